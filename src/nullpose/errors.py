@@ -1,0 +1,58 @@
+"""The errors that nullpose raises: one root, few leaves, each with a message a person can act on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["Fault", "NullposeError", "OutputError", "ScenarioError", "SolveError", "UsageError"]
+
+
+class NullposeError(Exception):
+    """Root of everything that nullpose raises on purpose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing wrong with an input, and where.
+
+    Args:
+        path: place in the input, as in ``jammers[1].power_w``; empty for the input as a whole.
+        message: what was given, what is allowed and what to try.
+    """
+
+    path: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.message}" if self.path else self.message
+
+
+class ScenarioError(NullposeError, ValueError):
+    """A scenario that cannot be used; it lists every fault, not only the first.
+
+    Args:
+        faults: everything that is wrong, in the order of the input.
+        source: the file or object at fault, as the user would name it; empty if there is none.
+    """
+
+    def __init__(self, faults: Sequence[Fault], source: str = "") -> None:
+        self.faults = tuple(faults)
+        self.source = source
+        lines = [str(fault) for fault in self.faults]
+        if source:
+            count = "1 fault" if len(lines) == 1 else f"{len(lines)} faults"
+            lines = [f"{source}: {count}", *(f"  {line}" for line in lines)]
+        super().__init__("\n".join(lines))
+
+
+class UsageError(NullposeError, ValueError):
+    """A request that does not fit its scenario or its options, such as a null without a jammer."""
+
+
+class OutputError(NullposeError, OSError):
+    """A result that could not be written where it was asked for."""
+
+
+class SolveError(NullposeError, RuntimeError):
+    """A solve that ended without a pose that can be reported."""
