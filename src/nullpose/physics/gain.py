@@ -1,0 +1,55 @@
+"""The small dipole's power gain towards a point (paper eqs. 1.2 to 1.4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.types import FloatArray
+
+__all__ = ["antenna_gain", "elevation_cosine"]
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) -> FloatArray:
+    """Return cos(gamma), gamma being the angle between the dipole and the direction to each point.
+
+    ``cos gamma_i = <(p_i - p) / |p_i - p|, u>``
+
+    Source: paper eq. 1.3.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
+
+    Returns:
+        Array of shape ``(..., m)``.
+    """
+    to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    return np.asarray(np.sum(_unit(to_points) * np.asarray(axis, dtype=float)[..., None, :], axis=-1))
+
+
+def antenna_gain(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) -> FloatArray:
+    """Return the dipole's power gain towards each point, 1 broadside and 0 along its axis.
+
+    ``G(gamma_i) = sin^2(gamma_i) = 1 - <(p_i - p) / |p_i - p|, u>^2``, evaluated as the squared norm of the
+    cross product of the two unit vectors: the same number, which keeps its digits beside the null, where the
+    printed difference loses all of them.
+
+    Source: paper eqs. 1.2 and 1.4; the maximum is 1, not the 1.5 of a short dipole's directivity.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
+
+    Returns:
+        Array of shape ``(..., m)``, between 0 and 1.
+    """
+    to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    across = np.cross(_unit(to_points), np.asarray(axis, dtype=float)[..., None, :])
+    return np.asarray(np.sum(across**2, axis=-1))

@@ -1,0 +1,65 @@
+"""Received power and the SINR of each link (paper eq. 2.1)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.gain import antenna_gain
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = ["received_power_w", "sinr"]
+
+
+def received_power_w(
+    position_m: ArrayLike,
+    axis: ArrayLike,
+    points_m: ArrayLike,
+    powers_w: ArrayLike,
+    reference_gain: float,
+) -> FloatArray:
+    """Return the power that the drone receives from each ground transmitter.
+
+    ``g0 G(gamma_i) P_i / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m
+    (1 in the paper).
+
+    Source: paper eq. 2.1.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: transmitters, shape ``(m, 3)``, metres.
+        powers_w: their powers, shape ``(m,)``, watts.
+        reference_gain: path gain at 1 m, a power ratio.
+
+    Returns:
+        Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
+    """
+    to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    distance_sq = np.sum(to_points**2, axis=-1)  # m^2
+    gain = antenna_gain(position_m, axis, points_m)
+    return np.asarray(reference_gain * gain * np.asarray(powers_w, dtype=float) / distance_sq)
+
+
+def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the signal to interference-plus-noise ratio of every node.
+
+    ``Gamma_i = (G(gamma_i) P_i / d_i^2) / (sum_j G(gamma_j) J_j / d_j^2 + sigma^2)``, with the jammers summed
+    and every power scaled by the path gain at 1 m.
+
+    Source: paper eq. 2.1, which has one jammer.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    g0 = scenario.receiver.reference_gain
+    signal_w = received_power_w(position_m, axis, scenario.node_positions_m, scenario.node_powers_w, g0)
+    jamming_w = received_power_w(position_m, axis, scenario.jammer_positions_m, scenario.jammer_powers_w, g0)
+    interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
+    return np.asarray(signal_w / (interference_w + scenario.receiver.noise_power_w))

@@ -1,0 +1,60 @@
+"""The zero-interference pose: the null on a jammer (paper eqs. 3.1 and 3.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = ["zero_interference_axis", "zero_interference_sinr"]
+
+
+def zero_interference_axis(position_m: ArrayLike, jammer_position_m: ArrayLike) -> FloatArray:
+    """Return the axis that points the dipole's null at a jammer.
+
+    ``u = (p_M - p) / |p_M - p|``; the sign ``b`` of eq. 3.1 is +1, the other being the same antenna.
+
+    Source: paper eq. 3.1.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        jammer_position_m: the jammer's position, shape ``(3,)``, metres.
+
+    Returns:
+        Unit vectors, shape ``(..., 3)``.
+    """
+    to_jammer = np.asarray(jammer_position_m, dtype=float) - np.asarray(position_m, dtype=float)
+    return np.asarray(to_jammer / np.linalg.norm(to_jammer, axis=-1, keepdims=True))
+
+
+def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
+    """Return every node's SINR with the null on the scenario's only jammer.
+
+    ``Gamma_i = (1 - <d_i, d_M>^2) P_i / (|p_i - p|^2 sigma^2)``, with ``d`` the unit directions: the jammer's
+    power is gone from it.
+
+    Source: paper eq. 3.2.
+
+    Args:
+        scenario: a scenario with exactly one jammer.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+
+    Raises:
+        ValueError: the scenario has no jammer or several.
+    """
+    if len(scenario.jammers) != 1:
+        raise ValueError(f"eq. 3.2 is for one jammer; this scenario has {len(scenario.jammers)}")
+    p = np.asarray(position_m, dtype=float)
+    to_nodes = scenario.node_positions_m - p[..., None, :]
+    distance_sq = np.sum(to_nodes**2, axis=-1)  # m^2
+    node_directions = to_nodes / np.sqrt(distance_sq)[..., None]
+    jammer_direction = zero_interference_axis(p, scenario.jammer_positions_m[0])
+    # 1 - <a, b>^2 = |a x b|^2 for unit vectors
+    gain = np.sum(np.cross(node_directions, jammer_direction[..., None, :]) ** 2, axis=-1)
+    received_w = scenario.receiver.reference_gain * gain * scenario.node_powers_w / distance_sq
+    return np.asarray(received_w / scenario.receiver.noise_power_w)
