@@ -1,0 +1,57 @@
+# Everything here needs Python 3.11 or newer with pip, and nothing else: each target makes what it misses in .venv.
+# Another interpreter: make demo PYTHON=python3.12
+
+PYTHON ?= python3
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
+
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.PHONY: help demo test check docs bench clean
+
+help: ## what can be made, a line each
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' Makefile
+
+demo: .venv/.with-core ## the paper's problem solved, its Figure 2 and its claims checked, into out/
+	$(BIN)/nullpose compare examples/paper.toml
+	$(BIN)/nullpose reproduce --out out
+
+test: .venv/.with-test ## the tests, on two processes
+	$(BIN)/pytest -n 2
+
+check: .venv/.with-lint ## lint, format, types and the import contract
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+docs: .venv/.with-docs ## the documentation, warnings being errors, into docs/_build/html
+	$(BIN)/sphinx-build -q -E -W --keep-going -n -b html docs docs/_build/html
+	@echo "Open docs/_build/html/index.html in a browser; it needs no network."
+
+bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
+	$(BIN)/python -m benchmarks
+
+clean: ## take away .venv, out and docs/_build
+	rm -rf .venv out docs/_build
+
+# The environment: made once, and brought up to date whenever pyproject.toml changes.
+
+.venv/.made:
+	@command -v $(PYTHON) > /dev/null || { echo "$(PYTHON) is not on the path. Install Python 3.11 or newer, or name one: make PYTHON=/path/to/python3"; exit 1; }
+	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11))" || { echo "nullpose needs Python 3.11 or newer; $(PYTHON) is $$($(PYTHON) --version 2>&1). Name a newer one: make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c "import ensurepip, venv" 2> /dev/null || { echo "$(PYTHON) lacks its venv module. Debian and Ubuntu pack it apart: apt install python3-venv"; exit 1; }
+	@echo "Making the environment in .venv (once, about a minute)"
+	@if [ -e .venv ] && ! $(BIN)/python -c "" 2> /dev/null; then rm -rf .venv; fi
+	@$(PYTHON) -m venv .venv
+	@touch $@
+
+.venv/.with-core: pyproject.toml .venv/.made
+	@echo "Installing nullpose and its dependencies into .venv"
+	@$(PIP) -e .
+	@touch $@
+
+.venv/.with-%: pyproject.toml .venv/.made
+	@echo "Installing nullpose and its $* tools into .venv"
+	@$(PIP) -e ".[$*]"
+	@touch $@

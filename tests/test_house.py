@@ -1,0 +1,153 @@
+"""The rules of the house that no other tool checks."""
+
+import ast
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "nullpose"
+TESTS = ROOT / "tests"
+
+MAX_FILE_LINES = 600
+MAX_FUNCTION_LINES = 80
+
+# Folders of tests that mirror no room of the source.
+OTHER_TESTS = {"benchmarks", "docs", "examples", "reference"}
+
+DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+
+# Written so that no pattern matches itself.
+UNFINISHED = re.compile(r"\b(?:TO[D]O|FIX[M]E|XX[X]|HAC[K])\b")
+MACHINE = re.compile(
+    r"/(?:work|root|home)/\w|/tmp/\w|pythonhost[e]d|jsdeliv[r]|unpk[g]|cdn[.]\w", re.IGNORECASE
+)
+AMERICAN = re.compile(
+    r"\b(?:normaliz|maximiz|minimiz|initializ|neighbor|behavior|color)\w*|\bmeters?\b", re.IGNORECASE
+)
+
+
+def _tracked_files() -> list[Path]:
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
+
+
+def _tracked_text() -> dict[Path, str]:
+    binary = {".png", ".jpg", ".gif", ".pdf", ".npz"}
+    files = [path for path in _tracked_files() if path.suffix not in binary and path.name != "LICENSE"]
+    return {path: path.read_text(encoding="utf-8") for path in files}
+
+
+def _hits(pattern: re.Pattern[str], suffixes: set[str] | None = None) -> list[str]:
+    return [
+        f"{path.relative_to(ROOT)}:{number}: {line.strip()[:100]}"
+        for path, text in _tracked_text().items()
+        if suffixes is None or path.suffix in suffixes
+        for number, line in enumerate(text.splitlines(), start=1)
+        if pattern.search(line)
+    ]
+
+
+def _source_files() -> list[Path]:
+    return sorted(SOURCE.rglob("*.py"))
+
+
+def _rooms() -> set[str]:
+    return {folder.name for folder in SOURCE.iterdir() if any(folder.glob("[!_]*.py"))}
+
+
+def test_files_are_short() -> None:
+    """No Python file, tests and benchmarks included, is longer than the limit."""
+    python = [path for path in _tracked_files() if path.suffix == ".py"]
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in python}
+    assert {str(path): lines for path, lines in lengths.items() if lines > MAX_FILE_LINES} == {}
+
+
+def test_functions_are_short() -> None:
+    """No function of the source, its docstring not counted, is longer than the limit."""
+    offenders = []
+    for path in _source_files():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                docstring = ast.get_docstring(node, clean=False) or ""
+                lines = (node.end_lineno or node.lineno) - node.lineno + 1 - len(docstring.splitlines())
+                if lines > MAX_FUNCTION_LINES:
+                    offenders.append(f"{path.relative_to(ROOT)}:{node.lineno} {node.name}: {lines}")
+    assert offenders == []
+
+
+def test_public_names_say_what_they_are() -> None:
+    """Every module, and every public class, function and method in it, has a docstring of some words."""
+    offenders = []
+    for path in _source_files():
+        module = ast.parse(path.read_text(encoding="utf-8"))
+        classes = [node for node in module.body if isinstance(node, ast.ClassDef) and node.name[0] != "_"]
+        members = [
+            node for scope in (module, *classes) for node in scope.body if isinstance(node, DEFINITIONS)
+        ]
+        for node in (module, *(member for member in members if member.name[0] != "_")):
+            first_line = (ast.get_docstring(node) or "").split("\n")[0]
+            if len(first_line.split()) < 2:
+                offenders.append(f"{path.relative_to(ROOT)}: {getattr(node, 'name', 'the module')}")
+    assert offenders == []
+
+
+def test_every_room_is_tested() -> None:
+    """Each room of the source that has code has a folder of tests."""
+    assert {room for room in _rooms() if not any((TESTS / room).rglob("test_*.py"))} == set()
+
+
+def test_tests_mirror_the_source() -> None:
+    """A test in a room's folder is named after a module of that room, or after one and what it asks of it."""
+    offenders = []
+    for folder in sorted(path for path in TESTS.iterdir() if path.is_dir() and any(path.rglob("test_*.py"))):
+        if folder.name in OTHER_TESTS:
+            continue
+        modules = {path.stem for path in (SOURCE / folder.name).rglob("*.py")}
+        modules |= {path.name for path in (SOURCE / folder.name).rglob("*") if path.is_dir()}
+        for test in folder.rglob("test_*.py"):
+            subject = test.stem.removeprefix("test_")
+            if not any(subject == module or subject.startswith(f"{module}_") for module in modules):
+                offenders.append(str(test.relative_to(ROOT)))
+    assert offenders == []
+
+
+def test_nothing_is_left_unfinished() -> None:
+    """No tracked file carries a mark of unfinished work."""
+    assert _hits(UNFINISHED) == []
+
+
+def test_no_machine_shows() -> None:
+    """No tracked file names a path of the machine it was written on, or a host that pages would load from."""
+    assert _hits(MACHINE) == []
+
+
+def test_prose_is_british() -> None:
+    """Pages are spelled the British way throughout."""
+    assert _hits(AMERICAN, suffixes={".md"}) == []
+
+
+def test_licence_is_the_one_stated() -> None:
+    """The licence in the metadata, in CITATION.cff and in LICENSE is the same."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    licence = (ROOT / "LICENSE").read_text(encoding="utf-8")
+    assert project["license"] == "Apache-2.0"
+    assert "Apache License" in licence.splitlines()[1]
+    assert "Version 2.0, January 2004" in licence.splitlines()[2]
+    assert licence.rstrip().endswith("limitations under the License.")
+    assert "license: Apache-2.0" in (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+
+
+def test_version_is_the_same_everywhere() -> None:
+    """pyproject.toml and CITATION.cff state the same version."""
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+
+
+@pytest.mark.parametrize("name", ["CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md"])
+def test_front_matter_is_there(name: str) -> None:
+    """The files that a newcomer looks for first exist and are not empty."""
+    assert (ROOT / name).stat().st_size > 0
