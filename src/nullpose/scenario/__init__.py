@@ -1,1 +1,9 @@
-"""."""
+"""What the user states: nodes, jammers, receiver and airspace, in files or in Python."""
+
+from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.ground_points import GroundPoint, Jammer, Node
+from nullpose.scenario.loading import load
+from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.scenario import Scenario
+
+__all__ = ["Airspace", "GroundPoint", "Jammer", "Node", "Receiver", "Scenario", "load"]

@@ -1,0 +1,79 @@
+"""What the vehicle's receiver adds: noise, and the path gain that all distances refer to."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from pydantic import Field
+
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import (
+    SPEED_OF_LIGHT_M_PER_S,
+    DecibelMilliwatts,
+    Decibels,
+    Hertz,
+    Watts,
+    ratio_from_db,
+    watts_from_dbm,
+)
+
+__all__ = ["Receiver"]
+
+
+class Receiver(Section):
+    """The receiver's noise power and the path gain at 1 m.
+
+    Args:
+        noise_w: noise power in the receiver's bandwidth [W]; or else
+        noise_dbm: the same in dBm.
+        reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; or else
+        frequency_hz: carrier frequency [Hz], from which the free-space gain at 1 m follows.
+    """
+
+    header: ClassVar[str] = "a table headed [receiver]"
+    pairs: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("noise_w", "noise_dbm"),
+        ("reference_gain_db", "frequency_hz"),
+    )
+
+    noise_w: Watts | None = Field(
+        default=None,
+        description="Noise power in the receiver's bandwidth, in watts. Either this or noise_dbm.",
+        examples=[1e-3],
+    )
+    noise_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Noise power in the receiver's bandwidth, in dBm. Either this or noise_w.",
+        examples=[-97.0],
+    )
+    reference_gain_db: Decibels | None = Field(
+        default=None,
+        description="Path gain at a distance of 1 m, in dB. Either this or frequency_hz.",
+        examples=[0.0],
+    )
+    frequency_hz: Hertz | None = Field(
+        default=None,
+        description="Carrier frequency in Hz, from which the free-space path gain at 1 m follows. "
+        "Either this or reference_gain_db.",
+        examples=[2.4e9],
+    )
+
+    @property
+    def noise_power_w(self) -> float:
+        """Noise power, however it was stated [W]."""
+        if self.noise_w is not None:
+            return self.noise_w
+        return watts_from_dbm(_given(self.noise_dbm))
+
+    @property
+    def reference_gain(self) -> float:
+        """Path gain at 1 m, linear: as stated, or ``(c / (4 pi f))^2`` from the frequency (Friis)."""
+        if self.frequency_hz is not None:
+            return (SPEED_OF_LIGHT_M_PER_S / (4.0 * math.pi * self.frequency_hz)) ** 2
+        return ratio_from_db(_given(self.reference_gain_db))
+
+
+def _given(value: float | None) -> float:
+    assert value is not None, "validation lets exactly one of a pair through"
+    return value

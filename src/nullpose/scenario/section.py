@@ -1,0 +1,123 @@
+"""The base of every table in a scenario file: frozen, closed, and reporting all its faults together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
+
+from nullpose.scenario.faults import Place, as_error_details, collected, rejection, scenario_error
+from nullpose.scenario.rewording import table_faults
+from nullpose.scenario.wording import described
+
+__all__ = ["Section"]
+
+
+class Section(BaseModel):
+    """A frozen table with named keys; building a faulty one raises ScenarioError with every fault."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    header: ClassVar[str] = ""
+    """What the table is called and how it is headed in a file."""
+    pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Keys of which exactly one is given, each pair being one quantity in two units."""
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise scenario_error(error, data) from None
+
+    # Tables inside tables must be built by pydantic's own path: it merges their faults with the rest,
+    # where a call of this constructor would fold them into one. This is pydantic's mark for that.
+    __init__.__dict__["__pydantic_base_init__"] = True
+
+    @classmethod
+    def from_dict(cls, data: object, source: str = "") -> Self:
+        """Returns the table that plain values describe, as ``to_dict`` writes them.
+
+        Args:
+            data: a mapping with the keys of a scenario file.
+            source: the file or object at fault in messages, as the user would name it.
+
+        Raises:
+            ScenarioError: with every fault of the data.
+        """
+        try:
+            return cls.model_validate(data)
+        except ValidationError as error:
+            raise scenario_error(error, data, source) from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table, as far as they can be judged."""
+        return ()
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _report_together(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if isinstance(data, cls):
+            return data
+        if not isinstance(data, Mapping):
+            raise rejection(f"got {described(data)}, must be {cls.header}")
+        table, error = None, None
+        try:
+            table = handler(data)
+        except ValidationError as several:
+            error = several
+        details = table_faults(error, data, cls.model_fields, cls.pairs)
+        details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]
+        if table is None or details:
+            raise collected(cls.__name__, details)
+        return table
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Returns a copy with some values replaced, validated like any other.
+
+        Args:
+            update: new values by key.
+            deep: without meaning here, since everything inside is frozen.
+
+        Raises:
+            ScenarioError: when the copy would be faulty.
+        """
+        values = {key: getattr(self, key) for key in type(self).model_fields}
+        return type(self)(**values | dict(update or {}))
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        return self
+
+    def __getstate__(self) -> dict[Any, Any]:
+        # Cached arrays stay behind: they would come back writeable.
+        state = super().__getstate__()
+        fields = type(self).model_fields
+        return state | {"__dict__": {key: value for key, value in state["__dict__"].items() if key in fields}}
+
+    def _values(self) -> tuple[object, ...]:
+        return tuple(getattr(self, key) for key in type(self).model_fields)
+
+    def __eq__(self, other: object) -> bool:
+        # Not pydantic's own comparison, which would meet the cached arrays too.
+        if not isinstance(other, Section):
+            return NotImplemented
+        return type(self) is type(other) and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._values()))
+
+    if not TYPE_CHECKING:  # type checkers know from the configuration that fields are frozen
+
+        def __setattr__(self, name: str, value: object) -> None:
+            raise AttributeError(f"cannot set {name}: scenarios are frozen; see model_copy for a changed one")
+
+        def __delattr__(self, name: str) -> None:
+            raise AttributeError(f"cannot delete {name}: scenarios are frozen")
