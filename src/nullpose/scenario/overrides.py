@@ -1,0 +1,202 @@
+"""Changing single values of a scenario by their path, as in ``jammers.M.power_w=10``."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.faults import Place, path_of
+from nullpose.scenario.ground_points import Jammer, Node
+from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.scenario import Scenario
+from nullpose.scenario.section import Section
+from nullpose.scenario.wording import listed, nearest, plain
+
+__all__ = ["Override", "apply_overrides", "parse_override"]
+
+_TABLES: dict[str, type[Section]] = {"airspace": Airspace, "receiver": Receiver}
+_LISTS: dict[str, type[Section]] = {"nodes": Node, "jammers": Jammer}
+
+_ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
+_STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """A new value for one place of a scenario.
+
+    Args:
+        path: the place, such as ``jammers.M.power_w``, ``jammers[0].power_w``, ``nodes.S1.position_m[2]``
+            or ``airspace.altitude_m``; names that hold a dot, a bracket or an equals sign stand in quotes.
+        value: a number, text, list or table, as a TOML file would hold.
+    """
+
+    path: str
+    value: object
+
+    def __str__(self) -> str:
+        return f"{self.path}={plain(self.value)}"
+
+
+def parse_override(text: str) -> Override:
+    """Returns the override that a text such as ``receiver.noise_dbm=-97`` states.
+
+    Args:
+        text: path, equals sign, value. The value is read as TOML; a bare word is a text.
+
+    Raises:
+        ScenarioError: when the text has another form.
+    """
+    parts = _ASSIGNMENT.fullmatch(text)
+    if not parts or not parts[1].strip() or not parts[2].strip():
+        message = "must be a path, an equals sign and a value, as in jammers.M.power_w=10"
+        raise ScenarioError([Fault(text, message)], "override")
+    path, value = parts[1].strip(), parts[2].strip()
+    return Override(path, _value(path, value))
+
+
+def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> Scenario:
+    """Returns the scenario with the given values in place of its own, validated anew.
+
+    Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency) drops the other.
+
+    Args:
+        scenario: where to start.
+        overrides: texts such as ``jammers.M.power_w=10``, or Override values.
+
+    Raises:
+        ScenarioError: with every path that does not exist and every fault of the result.
+    """
+    data = scenario.to_dict()
+    known = tuple(_known_paths(scenario))
+    faults: list[Fault] = []
+    applied: list[Override] = []
+    for override in overrides:
+        try:
+            parsed = parse_override(override) if isinstance(override, str) else override
+            applied.append(parsed)
+            _assign(data, _steps(parsed.path), plain(parsed.value))
+        except ScenarioError as error:
+            faults += error.faults
+        except _UnknownPathError as error:
+            faults.append(Fault(parsed.path, f"{error}; did you mean {_nearest_path(parsed.path, known)}?"))
+    source = f"override {listed([str(override) for override in applied])}"
+    try:
+        changed = Scenario.from_dict(data)
+    except ScenarioError as error:
+        raise ScenarioError([*faults, *error.faults], source) from None
+    if faults:
+        raise ScenarioError(faults, source)
+    return changed
+
+
+class _UnknownPathError(Exception):
+    """A path that leads nowhere; the message says where it ends."""
+
+
+def _value(path: str, text: str) -> object:
+    try:
+        tables = tomllib.loads(f"value = {text}")
+        if tables.keys() == {"value"}:
+            return tables["value"]
+    except (ValueError, RecursionError):
+        pass  # not TOML; it may be a bare word
+    try:
+        return float(text)  # .5 and 5. are numbers to everyone but TOML
+    except ValueError:
+        pass
+    if text[0] in "[{\"'" or "\n" in text:
+        message = f"the value {text} is not TOML; write as in 10, [5, 20] or a bare word"
+        raise ScenarioError([Fault(path, message)], "override")
+    return text
+
+
+def _steps(path: str) -> Place:
+    """Returns the path as keys, names and indices; raises _UnknownPathError when it is not one."""
+    steps: list[str | int] = []
+    end = 0
+    while end < len(path):
+        step = _STEP.match(path, end)
+        if not step:
+            raise _UnknownPathError("this is not a path")
+        steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
+        end = step.end()
+    return tuple(steps)
+
+
+def _assign(data: dict[str, Any], steps: Place, value: object) -> None:
+    """Sets the value at the place that the steps lead to."""
+    if not steps or steps[0] not in Scenario.model_fields:
+        raise _UnknownPathError("there is no such value in a scenario")
+    key, rest = str(steps[0]), steps[1:]
+    if not rest:
+        data[key] = value
+    elif key in _TABLES:
+        _assign_key(_TABLES[key], data[key], rest, value)
+    elif key in _LISTS:
+        index = _index(key, data[key], rest[0])
+        if len(rest) == 1:
+            data[key][index] = value
+        else:
+            _assign_key(_LISTS[key], data[key][index], rest[1:], value)
+    else:
+        raise _UnknownPathError(f"{key} is a single value")
+
+
+def _index(key: str, members: object, step: str | int) -> int:
+    """Returns the index of the node or jammer with a name or an index."""
+    if not isinstance(members, list) or not members:
+        raise _UnknownPathError(f"the scenario has no {key}")
+    names = [member.get("name") if isinstance(member, dict) else None for member in members]
+    if step in names:
+        return names.index(str(step))
+    if isinstance(step, int) and step < len(members):
+        return step
+    have = listed([f"[{index}] {name}" for index, name in enumerate(names)])
+    raise _UnknownPathError(f"{key} has no member {path_of((step,))}, it has {have}")
+
+
+def _assign_key(kind: type[Section], table: object, steps: Place, value: object) -> None:
+    """Sets a key of a table, or a member of its list; drops the other key of a pair."""
+    key = steps[0]
+    if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
+        raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
+    if len(steps) == 1:
+        table[key] = value
+        for pair in kind.pairs:
+            if key in pair:
+                table.pop(pair[1 - pair.index(key)], None)
+        return
+    index, row = steps[1], table.get(key)
+    if len(steps) > 2 or not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
+        raise _UnknownPathError(f"{key} {_shape(row)}")
+    row[index] = value
+
+
+def _shape(row: object) -> str:
+    if row is None:
+        return "is not given, so set it whole"
+    return f"has the members [0] to [{len(row) - 1}]" if isinstance(row, list) else "is a single value"
+
+
+def _nearest_path(path: str, known: Sequence[str]) -> str:
+    """Returns the known path most like the given one, of the same depth if one there is like it."""
+    same_depth = [other for other in known if other.count(".") == path.count(".")]
+    return nearest(path, same_depth) or nearest(path, known, at_least=0.0)
+
+
+def _known_paths(scenario: Scenario) -> Iterator[str]:
+    """Yields every path that may be set, members by name and by index."""
+    yield from Scenario.model_fields
+    for key, kind in _TABLES.items():
+        yield from (path_of((key, field)) for field in kind.model_fields)
+    for key, kind in _LISTS.items():
+        for index, member in enumerate(getattr(scenario, key)):
+            for step in (member.name, index):
+                yield path_of((key, step))
+                yield from (path_of((key, step, field)) for field in kind.model_fields)
