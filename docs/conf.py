@@ -1,0 +1,42 @@
+"""How the documentation is built: `make docs`."""
+
+import sys
+import tomllib
+from pathlib import Path
+
+DOCS = Path(__file__).parent
+sys.path[:0] = [str(DOCS), str(DOCS / "_ext")]
+
+project = "nullpose"
+author = "The nullpose developers"
+release = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "docstrings",
+    "offline_math",
+    "validation",
+]
+exclude_patterns = ["_build", "_ext"]
+
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+html_math_renderer = "mathml"
+math_eqref_format = "({number})"
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+python_use_unqualified_type_names = True
+# Types of other packages have no pages here, and the build asks no network for theirs.
+nitpick_ignore_regex = [
+    (r"py:.*", r"(numpy|np|pydantic|typing|collections|matplotlib|rich|pathlib|os|enum|abc)(\..*)?"),
+    (r"py:.*", r".*(ArrayLike|NDArray|FloatArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)"),
+]
+
+html_theme = "furo"
+html_title = "nullpose"
+html_static_path = ["_static"]
+html_css_files = ["nullpose.css"]
+html_copy_source = False
+html_show_sourcelink = False
