@@ -1,1 +1,7 @@
-"""."""
+"""A scenario as numbers: the max-min ratio family that every solver works on."""
+
+from nullpose.family.axis_field import AxisField
+from nullpose.family.build import build_family
+from nullpose.family.ratios import Family
+
+__all__ = ["AxisField", "Family", "build_family"]

@@ -37,7 +37,8 @@ class Pose:
         angles = (float(self.roll_rad), float(self.pitch_rad), float(self.yaw_rad))
         if position_m.shape != (3,) or not np.all(np.isfinite(position_m)) or not np.all(np.isfinite(angles)):
             raise ValueError(
-                f"a pose takes three finite coordinates and three finite angles; given {self.position_m!r}, {angles}"
+                "a pose takes three finite coordinates and three finite angles; "
+                f"given {self.position_m!r}, {angles}"
             )
         position_m.flags.writeable = False
         object.__setattr__(self, "position_m", position_m)

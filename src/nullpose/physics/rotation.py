@@ -26,7 +26,9 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
         Array of shape ``(..., 3, 3)``.
     """
     roll, pitch, yaw = np.broadcast_arrays(
-        np.asarray(roll_rad, dtype=float), np.asarray(pitch_rad, dtype=float), np.asarray(yaw_rad, dtype=float)
+        np.asarray(roll_rad, dtype=float),
+        np.asarray(pitch_rad, dtype=float),
+        np.asarray(yaw_rad, dtype=float),
     )
     cr, sr = np.cos(roll), np.sin(roll)
     cp, sp = np.cos(pitch), np.sin(pitch)

@@ -1,0 +1,98 @@
+"""The family of ratios ``(u^T N_k(p) u) / (u^T D_k(p) u)`` and the positions it is asked about."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, fields
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["DomainArrays", "Family", "FamilyArrays"]
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+FamilyArrays: TypeAlias = tuple[
+    FloatArray, FloatArray, FloatArray, IntArray, IntArray, FloatArray, IntArray, IntArray, FloatArray
+]
+DomainArrays: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Family:
+    """Ratios over the link forms of points, as plain arrays.
+
+    With ``T(r) = (|r|^2 I - r r^T) / |r|^4`` and ``r_j = points[j] - p``, ratio k is
+    ``N_k = n_k I + w_k T(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e T(r_j(e))``, the sum being over the
+    entries e
+    from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a denominator. Everything
+    is dimensionless but the positions.
+
+    Args:
+        points_m: (m, 3) ground points, metres.
+        numerator_isotropic: (r,) ``n_k``.
+        numerator_weight: (r,) ``w_k``, m^2.
+        numerator_point: (r,) index ``a(k)`` into the points.
+        denominator_of: (r,) index ``g(k)`` of each ratio's denominator.
+        denominator_isotropic: (g,) ``d_g``, positive.
+        denominator_start: (g + 1,) bounds of each denominator's entries.
+        denominator_point: (e,) index of each entry's point.
+        denominator_weight: (e,) ``b_e``, m^2.
+        low_m: (3,) lowest position, minus infinity where unbounded.
+        high_m: (3,) highest position.
+        keep_out_points_m: (q, 3) centres of the balls that positions must stay out of and could reach.
+        keep_out_m: their radius.
+    """
+
+    points_m: FloatArray
+    numerator_isotropic: FloatArray
+    numerator_weight: FloatArray
+    numerator_point: IntArray
+    denominator_of: IntArray
+    denominator_isotropic: FloatArray
+    denominator_start: IntArray
+    denominator_point: IntArray
+    denominator_weight: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
+    keep_out_points_m: FloatArray
+    keep_out_m: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                array = np.ascontiguousarray(value).copy()
+                array.flags.writeable = False
+                object.__setattr__(self, field.name, array)
+
+    @property
+    def arrays(self) -> FamilyArrays:
+        """The ratios as the kernels take them."""
+        return (
+            self.points_m,
+            self.numerator_isotropic,
+            self.numerator_weight,
+            self.numerator_point,
+            self.denominator_of,
+            self.denominator_isotropic,
+            self.denominator_start,
+            self.denominator_point,
+            self.denominator_weight,
+        )
+
+    @property
+    def domain(self) -> DomainArrays:
+        """The positions as the kernels take them: (low, high, keep-out points, keep-out radius)."""
+        return (self.low_m, self.high_m, self.keep_out_points_m, self.keep_out_m)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of every number in the family: two families with the same digest are the same problem."""
+        sha = hashlib.sha256()
+        for field in fields(self):
+            value = np.ascontiguousarray(getattr(self, field.name))
+            sha.update(f"{field.name}:{value.dtype.str}:{value.shape};".encode())
+            sha.update(value.tobytes())
+        return sha.hexdigest()

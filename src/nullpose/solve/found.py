@@ -1,0 +1,31 @@
+"""What a scheme hands back before it is evaluated and reported."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Found"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Found:
+    """A pose found by a scheme's search.
+
+    Args:
+        position_m: (3,) metres.
+        axis: (3,) antenna axis, of any length.
+        log_value: the logarithm of the smallest ratio there, as the search saw it.
+        starts: local searches run.
+        evaluations: poses evaluated.
+        note: a sentence for the solution; may be empty.
+    """
+
+    position_m: NDArray[np.float64]
+    axis: NDArray[np.float64]
+    log_value: float
+    starts: int
+    evaluations: int
+    note: str = ""

@@ -1,0 +1,159 @@
+"""Ratios of a family at a pose, and their derivatives.
+
+With ``r = q - p`` the link form of a point is ``h(p, u) = |u x r|^2 / |r|^4``, which for a unit axis is
+``sin^2(gamma) / |r|^2`` (design family (F); paper eqs. 1.2 to 1.4). Ratio k is ``N_k / D_g(k)`` with
+``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not depend on the length of ``u``, so an
+axis that is an affine function of the position needs no normalising and no second derivative of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import kernel
+
+__all__ = ["derivatives", "log_ratios", "min_log_ratio"]
+
+
+@kernel
+def link_form(points, j, p, u):
+    """Return ``|u x r|^2 / |r|^4`` for point j, without cancellation beside the null."""
+    rx, ry, rz = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
+    cx = u[1] * rz - u[2] * ry
+    cy = u[2] * rx - u[0] * rz
+    cz = u[0] * ry - u[1] * rx
+    rho2 = rx * rx + ry * ry + rz * rz
+    return (cx * cx + cy * cy + cz * cz) / (rho2 * rho2)
+
+
+@kernel
+def log_ratios(family, p, u, log_denominators, out):
+    """Fill the logarithm of every ratio at position p and axis u, and those of the denominators."""
+    points, n0, nw, npt, den, d0, dstart, dpt, dw = family
+    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    for g in range(d0.shape[0]):
+        total = d0[g] * uu
+        for e in range(dstart[g], dstart[g + 1]):
+            total += dw[e] * link_form(points, dpt[e], p, u)
+        log_denominators[g] = math.log(total) if total > 0.0 else -math.inf
+    for k in range(nw.shape[0]):
+        value = n0[k] * uu + nw[k] * link_form(points, npt[k], p, u)
+        out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominators[den[k]]
+
+
+@kernel
+def min_log_ratio(family, p, u, log_denominators, out):
+    """Return the smallest log ratio at a pose: the objective that every solver here maximises."""
+    log_ratios(family, p, u, log_denominators, out)
+    smallest = out[0]
+    for k in range(1, out.shape[0]):
+        smallest = min(smallest, out[k])
+    return smallest
+
+
+@kernel
+def add_form(points, j, weight, p, u, grad, hess, second):
+    """Return ``weight * h_j``; add its derivatives in (p, u) to ``grad`` and, if asked for, ``hess``.
+
+    The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (u.r)^2 = |u x r|^2`` and ``h = A
+    |r|^-4``.
+    """
+    r = np.empty(3)
+    for i in range(3):
+        r[i] = points[j, i] - p[i]
+    rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
+    c = u[0] * r[0] + u[1] * r[1] + u[2] * r[2]
+    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    cx = u[1] * r[2] - u[2] * r[1]
+    cy = u[2] * r[0] - u[0] * r[2]
+    cz = u[0] * r[1] - u[1] * r[0]
+    area = cx * cx + cy * cy + cz * cz
+    i2 = 1.0 / rho2
+    i4 = weight * i2 * i2
+    i6 = i4 * i2
+    i8 = i6 * i2
+    ar = np.empty(3)
+    au = np.empty(3)
+    # (u.u) r - c u and (r.r) u - c r are double cross products: no cancellation beside the null
+    ar[0] = 2.0 * (cy * u[2] - cz * u[1])
+    ar[1] = 2.0 * (cz * u[0] - cx * u[2])
+    ar[2] = 2.0 * (cx * u[1] - cy * u[0])
+    au[0] = 2.0 * (r[1] * cz - r[2] * cy)
+    au[1] = 2.0 * (r[2] * cx - r[0] * cz)
+    au[2] = 2.0 * (r[0] * cy - r[1] * cx)
+    for i in range(3):
+        grad[i] -= ar[i] * i4 - 4.0 * area * i6 * r[i]
+        grad[3 + i] += au[i] * i4
+    if second:
+        for i in range(3):
+            for k in range(3):
+                same = 1.0 if i == k else 0.0
+                hess[i, k] += (
+                    2.0 * (uu * same - u[i] * u[k]) * i4
+                    - 4.0 * i6 * (ar[i] * r[k] + r[i] * ar[k])
+                    + area * (24.0 * i8 * r[i] * r[k] - 4.0 * i6 * same)
+                )
+                hess[3 + i, 3 + k] += 2.0 * (rho2 * same - r[i] * r[k]) * i4
+                mixed = 2.0 * (2.0 * u[i] * r[k] - r[i] * u[k] - c * same) * i4 - 4.0 * i6 * au[i] * r[k]
+                hess[3 + i, k] -= mixed
+                hess[k, 3 + i] -= mixed
+    return weight * area * i2 * i2
+
+
+@kernel
+def derivatives(family, p, u, multipliers, f, grads, hess, work):
+    """Fill log ratios ``f``, their gradients (R, 6), and the multiplier-weighted Hessian (6, 6).
+
+    ``work`` is scratch of shape (G, 50): per denominator its value, its gradient, its Hessian, its total
+    multiplier.
+    """
+    points, n0, nw, npt, den, d0, dstart, dpt, dw = family
+    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    hess[:, :] = 0.0
+    gradient = np.empty(6)
+    form = np.empty((6, 6))
+    for g in range(d0.shape[0]):
+        gradient[:] = 0.0
+        form[:, :] = 0.0
+        value = d0[g] * uu
+        for i in range(3):
+            gradient[3 + i] = 2.0 * d0[g] * u[i]
+            form[3 + i, 3 + i] = 2.0 * d0[g]
+        for e in range(dstart[g], dstart[g + 1]):
+            value += add_form(points, dpt[e], dw[e], p, u, gradient, form, True)
+        work[g, 0] = value
+        work[g, 43] = 0.0
+        for i in range(6):
+            work[g, 1 + i] = gradient[i] / value
+            for k in range(6):
+                work[g, 7 + 6 * i + k] = form[i, k] / value - gradient[i] * gradient[k] / (value * value)
+    for k in range(nw.shape[0]):
+        z = multipliers[k]
+        second = z > 0.0
+        gradient[:] = 0.0
+        if second:
+            form[:, :] = 0.0
+        value = n0[k] * uu
+        if n0[k] != 0.0:
+            for i in range(3):
+                gradient[3 + i] = 2.0 * n0[k] * u[i]
+                if second:
+                    form[3 + i, 3 + i] = 2.0 * n0[k]
+        value += add_form(points, npt[k], nw[k], p, u, gradient, form, second)
+        g = den[k]
+        f[k] = math.log(value) - math.log(work[g, 0])
+        for i in range(6):
+            grads[k, i] = gradient[i] / value - work[g, 1 + i]
+        if second:
+            work[g, 43] += z
+            for i in range(6):
+                for m in range(6):
+                    hess[i, m] += z * (form[i, m] / value - gradient[i] * gradient[m] / (value * value))
+    for g in range(d0.shape[0]):
+        z = work[g, 43]
+        if z > 0.0:
+            for i in range(6):
+                for m in range(6):
+                    hess[i, m] -= z * work[g, 7 + 6 * i + m]

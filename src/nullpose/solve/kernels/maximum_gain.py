@@ -1,0 +1,95 @@
+"""Maximum gain for any number of nodes: the axis is chosen for the nodes alone, the position for the SINR.
+
+The axis maximises the smallest numerator; where a whole arc of axes does (one far node decides, and hears
+the drone
+broadside along a circle), the one that receives least jamming is taken. The paper defines the case for two
+nodes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.axis import best_axis_of_forms, bilinear, fill_forms, form_value
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.links import min_log_ratio
+
+__all__ = ["maximum_gain_value"]
+
+_TIE = 1e-11
+
+
+@kernel
+def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
+    """Fill the quietest axis across ``normal`` among those whose forms all reach ``level``."""
+    a, b, v = np.empty(3), np.empty(3), np.empty(3)
+    least = 0
+    for i in range(1, 3):
+        if abs(normal[i]) < abs(normal[least]):
+            least = i
+    e = np.zeros(3)
+    e[least] = 1.0
+    a[:] = np.cross(normal, e)
+    a /= math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
+    b[:] = np.cross(normal, a)
+    ratios = numerators.shape[0]
+    angles = np.empty(2 * ratios + 2)
+    d_aa, d_ab, d_bb = (
+        bilinear(denominator, a, a),
+        bilinear(denominator, a, b),
+        bilinear(denominator, b, b),
+    )
+    angles[0] = 0.5 * math.atan2(2.0 * d_ab, d_aa - d_bb) + 0.5 * math.pi
+    angles[1] = angles[0] + 0.5 * math.pi
+    count = 2
+    for k in range(ratios):
+        if k == worst:
+            continue
+        mean = 0.5 * (bilinear(numerators[k], a, a) + bilinear(numerators[k], b, b)) - level
+        x = 0.5 * (bilinear(numerators[k], a, a) - bilinear(numerators[k], b, b))
+        y = bilinear(numerators[k], a, b)
+        swing = math.hypot(x, y)
+        if swing > abs(mean):
+            turn = math.acos(-mean / swing)
+            angles[count] = 0.5 * (math.atan2(y, x) + turn)
+            angles[count + 1] = 0.5 * (math.atan2(y, x) - turn)
+            count += 2
+    quietest = math.inf
+    for m in range(count):
+        c, s = math.cos(angles[m]), math.sin(angles[m])
+        for i in range(3):
+            v[i] = c * a[i] + s * b[i]
+        allowed = True
+        for k in range(ratios):
+            allowed = allowed and form_value(numerators, k, v) >= level * (1.0 - _TIE)
+        if allowed:
+            jamming = bilinear(denominator, v, v)
+            if jamming < quietest:
+                quietest = jamming
+                for i in range(3):
+                    axis[i] = v[i]
+
+
+@kernel
+def maximum_gain_value(family, p, axis):
+    """Fill the maximum-gain axis at a position; return the smallest log ratio (shared denominator)."""
+    ratios = family[1].shape[0]
+    numerators = np.empty((ratios, 6))
+    denominators = np.empty((family[5].shape[0], 6))
+    fill_forms(family, p, numerators, denominators)
+    level = best_axis_of_forms(numerators, axis)
+    worst = -1
+    for k in range(ratios):
+        r = family[0][family[3][k]] - p
+        reach = family[2][k] / (r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+        if level >= reach * (1.0 - _TIE):
+            worst = k
+    if worst >= 0:
+        r = family[0][family[3][worst]] - p
+        r /= math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+        quietest_on_circle(numerators, worst, level, denominators[0], r, axis)
+    logs = np.empty(family[5].shape[0])
+    f = np.empty(ratios)
+    return min_log_ratio(family, p, axis, logs, f)

@@ -1,0 +1,159 @@
+"""Multistart: coarse positions judged by their best axis, the promising ones polished.
+
+A pose at least as good as one already known lies within a known distance of every node, since a ratio falls
+with the
+square of it (design note, domain cut); the starts fill that box, which shrinks as the incumbent improves, so
+that an unbounded horizontal domain needs no box of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.axis import best_axis
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.polish import axis_at, polish
+
+__all__ = ["search"]
+
+_MU_START = 0.1
+_MAX_STEPS = 200
+_SAME = 1e-9
+
+
+@kernel
+def cut_box(family, low, high, level, box_low, box_high):
+    """Fill the smallest box that holds every position whose smallest log ratio can reach ``level``."""
+    points, n0, nw, npt, den, d0 = family[:6]
+    for i in range(3):
+        box_low[i], box_high[i] = low[i], high[i]
+    for k in range(nw.shape[0]):
+        least = d0[den[k]] * math.exp(level) - n0[k]
+        if least > 0.0:
+            reach = math.sqrt(nw[k] / least)
+            for i in range(3):
+                box_low[i] = max(box_low[i], points[npt[k], i] - reach)
+                box_high[i] = min(box_high[i], points[npt[k], i] + reach)
+
+
+@kernel
+def push_out(p, low, high, keep_points, keep_radius):
+    """Move a position into the box and out of any keep-out ball; return whether it got there."""
+    for i in range(3):
+        p[i] = min(max(p[i], low[i]), high[i])
+    margin = 1.01 * keep_radius
+    for _ in range(8):
+        clear = True
+        for q in range(keep_points.shape[0]):
+            d = 0.0
+            for i in range(3):
+                d += (p[i] - keep_points[q, i]) ** 2
+            d = math.sqrt(d)
+            if d < margin:
+                clear = False
+                for i in range(3):
+                    way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else (1.0 if i == 2 else 0.0)
+                    p[i] = min(max(keep_points[q, i] + way * 1.02 * margin, low[i]), high[i])
+        if clear:
+            return True
+    return False
+
+
+@kernel
+def start_axis(family, axis_field, p, u, logs, f):
+    """Fill the axis to start with at a position, the best or the field's; return the smallest log ratio."""
+    if axis_field[0] == 0:
+        return best_axis(family, p, u)
+    axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+    return min_log_ratio(family, p, u, logs, f)
+
+
+@kernel
+def keep_if_better(value, p, u, best, best_p, best_u):
+    """Return the better of two values, copying the pose if it is the new one."""
+    if value > best:
+        for i in range(3):
+            best_p[i], best_u[i] = p[i], u[i]
+        return value
+    return best
+
+
+@kernel
+def search(family, domain, axis_field, landmarks, shift, coarse, polished, rounds, patience, best_p, best_u):
+    """Fill the best pose found; return its smallest log ratio, the polished starts and the evaluations made.
+
+    Args:
+        family: arrays of the family.
+        domain: (low, high, keep-out points, keep-out radius); the altitude is bounded.
+        axis_field: (0 free, 1 affine; offset; matrix).
+        landmarks: (m, 3) positions polished first, each after being moved into the domain.
+        shift: (3,) offset in [0, 1) of the low-discrepancy sequence: the seed.
+        coarse: positions judged in each round.
+        polished: the best of them polished in each round.
+        rounds: most rounds.
+        patience: rounds without improvement after which to stop.
+        best_p: output, (3,).
+        best_u: output, (3,).
+    """
+    low, high, keep_points, keep_radius = domain
+    ratios = family[1].shape[0]
+    f = np.empty(ratios)
+    logs = np.empty(family[5].shape[0])
+    p, u = np.empty(3), np.empty(3)
+    best = -math.inf
+    starts = 0
+    evaluations = 0
+    for m in range(landmarks.shape[0]):
+        for i in range(3):
+            p[i] = landmarks[m, i]
+        if push_out(p, low, high, keep_points, keep_radius):
+            start_axis(family, axis_field, p, u, logs, f)
+            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS)
+            best = keep_if_better(value, p, u, best, best_p, best_u)
+            starts += 1
+            evaluations += steps + 1
+    pool_p, pool_u = np.empty((coarse, 3)), np.empty((coarse, 3))
+    pool = np.empty(coarse)
+    box_low, box_high = np.empty(3), np.empty(3)
+    # golden-ratio sequence in three dimensions: the powers of the root of x^4 = x + 1
+    g = 1.2207440846057596
+    drawn = 0
+    idle = 0
+    for _ in range(rounds):
+        cut_box(family, low, high, best - 1e-12, box_low, box_high)
+        for i in range(3):
+            if not math.isfinite(box_low[i]) or not math.isfinite(box_high[i]):
+                return best, starts, evaluations
+        for c in range(coarse):
+            drawn += 1
+            for i in range(3):
+                s = shift[i] + drawn / g ** (i + 1)
+                s -= math.floor(s)
+                if i == 2 and drawn % 2 == 0:
+                    s = 0.0  # the optimum is often on the floor
+                p[i] = box_low[i] + s * (box_high[i] - box_low[i])
+            pool[c] = -math.inf
+            if push_out(p, low, high, keep_points, keep_radius):
+                pool[c] = start_axis(family, axis_field, p, u, logs, f)
+                for i in range(3):
+                    pool_p[c, i], pool_u[c, i] = p[i], u[i]
+                evaluations += 1
+        order = np.argsort(-pool)
+        before = best
+        for m in range(min(polished, coarse)):
+            c = order[m]
+            if not pool[c] > -math.inf:
+                break
+            for i in range(3):
+                p[i], u[i] = pool_p[c, i], pool_u[c, i]
+            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS)
+            best = keep_if_better(value, p, u, best, best_p, best_u)
+            starts += 1
+            evaluations += steps
+        idle = 0 if best > before + _SAME else idle + 1
+        if idle >= patience:
+            break
+    return best, starts, evaluations

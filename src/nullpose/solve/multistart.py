@@ -1,0 +1,90 @@
+"""The multistart search of a family under an axis field."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from nullpose.errors import SolveError
+from nullpose.family import AxisField, Family
+from nullpose.solve.found import Found
+
+__all__ = ["SearchSettings", "multistart"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchSettings:
+    """How hard the multistart tries.
+
+    Args:
+        coarse: positions judged in each round.
+        polished: the best of them that are polished in each round.
+        rounds: most rounds.
+        patience: rounds without improvement after which it stops.
+    """
+
+    coarse: int = 96
+    polished: int = 24
+    rounds: int = 12
+    patience: int = 2
+
+
+def landmarks(family: Family, most: int = 16) -> np.ndarray:
+    """Return positions worth a start of their own, (m, 3): over the points' centres and over each interferer.
+
+    The vertical case under strong jamming is a needle straight above the jammer that no grid would hit.
+    """
+    nodes = family.points_m[family.numerator_point]
+    interferers = family.points_m[np.unique(family.denominator_point)]
+    places = np.vstack([nodes.mean(axis=0)[None], interferers[:most], nodes[:most]])
+    places[:, 2] = family.low_m[2]
+    return np.asarray(places)
+
+
+def multistart(
+    family: Family, axis_field: AxisField, *, seed: int, settings: SearchSettings | None = None
+) -> Found:
+    """Return the best pose that a multistart finds: coarse positions, the promising ones polished.
+
+    Deterministic for a given seed. Not a proof: see :class:`nullpose.solve.Status`.
+
+    Args:
+        family: the ratios and their domain.
+        axis_field: which axes are allowed.
+        seed: start of the low-discrepancy sequence.
+        settings: how hard to try.
+
+    Raises:
+        SolveError: no position of the domain gave every ratio a positive value.
+    """
+    from nullpose.solve.kernels.search import search
+
+    settings = settings or SearchSettings()
+    position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    shift = np.random.default_rng(seed).uniform(size=3)
+    log_value, starts, evaluations = search(
+        family.arrays,
+        family.domain,
+        axis_field.arrays,
+        landmarks(family),
+        shift,
+        settings.coarse,
+        settings.polished,
+        settings.rounds,
+        settings.patience,
+        position_m,
+        axis,
+    )
+    if not math.isfinite(log_value):
+        raise SolveError(
+            "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
+        )
+    return Found(
+        position_m=position_m,
+        axis=axis,
+        log_value=log_value,
+        starts=int(starts),
+        evaluations=int(evaluations),
+    )

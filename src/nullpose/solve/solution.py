@@ -1,0 +1,137 @@
+"""What a solve returns: the answer and its evidence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Any
+
+from nullpose.physics import Link, Pose
+from nullpose.scenario import Scenario
+from nullpose.solve.scheme import Scheme
+
+__all__ = ["Objective", "Solution", "Stats", "Status"]
+
+
+class Status(StrEnum):
+    """How a solve ended."""
+
+    BEST_FOUND = "best-found"
+
+    @property
+    def message(self) -> str:
+        """The status as a sentence."""
+        return _MESSAGES[self]
+
+
+_MESSAGES = {Status.BEST_FOUND: "the best of many local optima; not proved to be the global one"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objective:
+    """The number that was maximised, evaluated at the reported pose, and what is proved about it.
+
+    Args:
+        name: ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
+        value: that number, a power ratio.
+        value_db: the same in dB.
+        upper_bound: no pose exceeds this; None if nothing is proved.
+        relative_gap: ``(upper_bound - value) / value``; None if nothing is proved.
+    """
+
+    name: str
+    value: float
+    value_db: float
+    upper_bound: float | None = None
+    relative_gap: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stats:
+    """What the solve cost.
+
+    Args:
+        wall_s: wall-clock time, seconds.
+        starts: local searches run.
+        evaluations: poses evaluated.
+    """
+
+    wall_s: float
+    starts: int
+    evaluations: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Solution:
+    """A pose, what it gives, and how it was found.
+
+    Args:
+        scenario: what was solved.
+        scheme: the case.
+        status: how the solve ended.
+        objective: the value at the pose and the bound on it.
+        pose: position and attitude.
+        links: every node's link at the pose (paper eq. 2.1), in the scenario's order.
+        stats: time and counts.
+        provenance: versions, seed and settings that produced it.
+        note: a sentence on what the scheme did here, such as which jammer the null points at; may be empty.
+    """
+
+    scenario: Scenario
+    scheme: Scheme
+    status: Status
+    objective: Objective
+    pose: Pose
+    links: tuple[Link, ...]
+    stats: Stats
+    provenance: Mapping[str, Any]
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
+
+    @property
+    def binding_node(self) -> str:
+        """Name of the node with the smallest SINR (the first, if several share it to the last digit)."""
+        return min(self.links, key=lambda link: link.sinr).node
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the solution as plain data for JSON; a number that JSON cannot hold becomes None."""
+        pose = self.pose
+        return {
+            "scenario": self.scenario.to_dict(),
+            "scheme": self.scheme.value,
+            "status": self.status.value,
+            "objective": {
+                "name": self.objective.name,
+                "value": self.objective.value,
+                "value_db": _finite(self.objective.value_db),
+                "upper_bound": self.objective.upper_bound,
+                "relative_gap": self.objective.relative_gap,
+            },
+            "pose": {
+                "position_m": [float(x) for x in pose.position_m],
+                "roll_rad": pose.roll_rad,
+                "pitch_rad": pose.pitch_rad,
+                "yaw_rad": pose.yaw_rad,
+                "antenna_axis": [float(x) for x in pose.antenna_axis],
+            },
+            "links": [
+                {"node": link.node, "sinr": link.sinr, "sinr_db": _finite(link.sinr_db)}
+                for link in self.links
+            ],
+            "stats": {
+                "wall_s": self.stats.wall_s,
+                "starts": self.stats.starts,
+                "evaluations": self.stats.evaluations,
+            },
+            "provenance": dict(self.provenance),
+            "note": self.note,
+        }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
