@@ -1,7 +1,7 @@
 """Equations as MathML, written when the pages are built: browsers draw them without a script or a network.
 
-The build also fails, by a warning, on a formula that could not be converted whole and on a page that would load
-anything from another host.
+The build also warns, and so fails when strict, of a formula that could not be converted whole and of a page
+that would load anything from another host.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ LEFT_OVER = re.compile(r"\\[A-Za-z]+|<m[io]>&(?:amp;)?</m[io]>")
 
 # What a browser fetches by itself, as opposed to a link that a reader may follow.
 FETCHED = re.compile(
-    r"""<(?:script|img|iframe)[^>]*\ssrc=["'](?:https?:)?//|<link[^>]*rel=["']stylesheet["'][^>]*//"""
+    r"""<(?:script|img|iframe)\b[^>]*\ssrc=["'](?:https?:)?//|<link\b[^>]*rel=["']stylesheet["'][^>]*//"""
 )
 
 
@@ -37,9 +37,7 @@ def mathml(node: nodes.math | nodes.math_block, display: str) -> str:
     latex = " ".join(node.astext().split())
     try:
         converted = convert(latex, display=display)
-    except (
-        Exception
-    ) as error:  # the converter's errors have no common root; strict builds stop at the warning
+    except Exception as error:  # they have no common root; a strict build ends at the warning
         LOGGER.warning("formula not converted (%s): %s", error, latex, location=node)
         return ""
     left_over = LEFT_OVER.search(converted)
