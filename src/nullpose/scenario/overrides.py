@@ -185,9 +185,10 @@ def _shape(row: object) -> str:
 
 
 def _nearest_path(path: str, known: Sequence[str]) -> str:
-    """Returns the known path most like the given one, of the same depth if one there is like it."""
+    """Returns a known path of the same depth and much like the given, else its known beginning, else any."""
     same_depth = [other for other in known if other.count(".") == path.count(".")]
-    return nearest(path, same_depth) or nearest(path, known, at_least=0.0)
+    beginning = max((other for other in known if path.startswith(other)), key=len, default="")
+    return nearest(path, same_depth, at_least=0.7) or beginning or nearest(path, known, at_least=0.0)
 
 
 def _known_paths(scenario: Scenario) -> Iterator[str]:

@@ -116,7 +116,7 @@ def _of_three(first: Array, second: Array, third: Array, radius: float) -> Array
     independent = area_squared > 1e-24 * b_squared * c_squared  # not on one line
     first, b, c, normal = (v[independent] for v in (first, b, c, normal))
     area_squared, b_squared, c_squared = (v[independent, None] for v in (area_squared, b_squared, c_squared))
-    centre = np.cross(normal, b * c_squared - c * b_squared) / (-2.0 * area_squared)
+    centre = np.cross(normal, b * c_squared - c * b_squared) / (2.0 * area_squared)
     height_squared = (radius**2 - (centre**2).sum(axis=1, keepdims=True)) / area_squared
     meets = height_squared[:, 0] >= 0.0
     height = np.sqrt(height_squared[meets]) * normal[meets]

@@ -1,0 +1,171 @@
+"""Files that cannot be read, and those that can."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import load
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def fault_of(path: str | os.PathLike[str]) -> Fault:
+    """Returns the one fault for which a file cannot be read."""
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    assert caught.value.source == os.fspath(path)
+    assert caught.value.__suppress_context__
+    (fault,) = caught.value.faults
+    return fault
+
+
+def test_paper_example_is_the_papers_scenario() -> None:
+    """The paper's file holds the numbers of its section 4."""
+    scenario = load(EXAMPLES / "paper.toml")
+    assert scenario.name == "Bonilla Licea et al., ICASSP 2024, section 4"
+    assert scenario.node_positions_m.tolist() == [[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]]
+    assert scenario.jammer_positions_m.tolist() == [[17.0, 15.0, 4.0]]
+    assert [*scenario.node_powers_w, *scenario.jammer_powers_w] == [1.0, 1.0, 1.0]
+    assert scenario.airspace.altitude_m == (8.0, 30.0)
+    assert scenario.airspace.x_m is None
+    assert scenario.airspace.y_m is None
+    assert scenario.airspace.keep_out_m == 1.0
+    assert scenario.receiver.noise_power_w == 1e-3
+    assert scenario.receiver.reference_gain == 1.0
+
+
+def test_field_example_is_a_ten_node_scene() -> None:
+    """The field's file has ten nodes and two jammers, in dBm and Hz, in a bounded airspace."""
+    text = (EXAMPLES / "field.toml").read_text(encoding="utf-8")
+    scenario = load(EXAMPLES / "field.toml")
+    assert (len(scenario.nodes), len(scenario.jammers)) == (10, 2)
+    assert scenario.airspace.x_m is not None
+    assert scenario.airspace.y_m is not None
+    assert scenario.receiver.frequency_hz == 2.4e9
+    assert "power_w =" not in text
+
+
+def test_path_may_be_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A path given as text, relative to the working folder, is as good as a Path."""
+    monkeypatch.chdir(EXAMPLES)
+    assert load("paper.toml") == load(EXAMPLES / "paper.toml")
+
+
+def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
+    """A file that an editor saved as UTF-8 with a mark loads like any other."""
+    path = tmp_path / "mark.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + (EXAMPLES / "paper.toml").read_bytes())
+    assert load(path) == load(EXAMPLES / "paper.toml")
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    """A missing file is called that, and a file of a like name beside it is suggested."""
+    assert fault_of(tmp_path / "paper.toml").message == "there is no such file; check the path"
+    (tmp_path / "papers.toml").touch()
+    (tmp_path / "other.toml").touch()
+    assert fault_of(tmp_path / "paper.toml").message == (
+        f"there is no such file; did you mean {tmp_path / 'papers.toml'}?"
+    )
+
+
+def test_missing_folder(tmp_path: Path) -> None:
+    """A file in a missing folder is missing with its folder."""
+    message = fault_of(tmp_path / "nowhere" / "paper.toml").message
+    assert message == f"there is no such file, nor a folder {tmp_path / 'nowhere'}; check the path"
+
+
+def test_folder_given(tmp_path: Path) -> None:
+    """A folder is called a folder, and a scenario file in it is suggested."""
+    assert fault_of(tmp_path).message == "this is a folder, must be a scenario file; check the path"
+    (tmp_path / "paper.toml").touch()
+    assert f"did you mean {tmp_path / 'paper.toml'}?" in fault_of(tmp_path).message
+
+
+def test_file_as_folder(tmp_path: Path) -> None:
+    """A path that leads through a file is refused with the system's reason."""
+    (tmp_path / "paper.toml").touch()
+    message = fault_of(tmp_path / "paper.toml" / "x").message
+    assert "cannot be read (not a directory)" in message
+
+
+def test_unreadable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that may not be read is refused with the system's reason."""
+
+    def refuse(self: Path) -> bytes:
+        raise PermissionError(13, "Permission denied", str(self))
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    message = fault_of(tmp_path / "paper.toml").message
+    assert message == "the file cannot be read (permission denied); check its name and permissions"
+
+
+def test_impossible_name() -> None:
+    """A name that no file can have is refused."""
+    assert fault_of("pa\0per.toml").message == "this cannot be the name of a file"
+
+
+def test_not_utf8(tmp_path: Path) -> None:
+    """Bytes that are not UTF-8 are reported with their line."""
+    path = tmp_path / "latin.toml"
+    path.write_bytes(b'name = "a"\n# \xe9tude\n')
+    fault = fault_of(path)
+    assert fault.path == "line 2"
+    assert fault.message == "byte 0xe9 is not UTF-8 text; save the file as UTF-8"
+
+
+def test_utf16_is_recognised(tmp_path: Path) -> None:
+    """A file saved as UTF-16 is called so."""
+    path = tmp_path / "wide.toml"
+    path.write_bytes('name = "a"'.encode("utf-16"))
+    assert "it looks like UTF-16" in fault_of(path).message
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        (
+            'name = "a"\n[airspace]\naltitude_m [8, 30]\n',
+            "line 3, column 12",
+            "lines are written as in power_w = 1.0",
+        ),
+        ("[airspace\n", "line 1, column 10", "this is not TOML: "),
+        ('name = "a', "line 1, column 10", "this is not TOML: "),
+        ("[airspace]\naltitude_m = [8, 30", "line 2, column 20", "this is not TOML: "),
+        ("x = 8 m\n", "line 1, column 7", "on a line of its own"),
+        ("x = abc\n", "line 1, column 5", "texts stand in quotes"),
+        ("x = 1\nx = 2\n", "line 2, column 6", "a key is given twice; keep one"),
+        (
+            "[nodes]\nx = 1\n[nodes]\n",
+            "line 3, column 7",
+            "lists of tables, such as [[nodes]], take double brackets",
+        ),
+        ("x = .5\n", "line 1, column 5", "numbers are written as in 8.0"),
+        ("= 3\n", "line 1, column 1", "power_w = 1.0"),
+    ],
+)
+def test_broken_toml(text: str, place: str, words: str, tmp_path: Path) -> None:
+    """Broken TOML is reported by line and column, with what may help."""
+    path = tmp_path / "broken.toml"
+    path.write_text(text, encoding="utf-8")
+    fault = fault_of(path)
+    assert fault.path == place
+    assert fault.message.startswith("this is not TOML: ")
+    assert words in fault.message
+    assert "at line" not in fault.message
+    assert "('" not in fault.message
+
+
+def test_endless_nesting(tmp_path: Path) -> None:
+    """Brackets without end are refused, not followed."""
+    path = tmp_path / "deep.toml"
+    path.write_text("x = " + "[" * 100_000, encoding="utf-8")
+    assert "nested too deeply" in fault_of(path).message
+
+
+def test_endless_number(tmp_path: Path) -> None:
+    """A number of thousands of digits is refused, not converted."""
+    path = tmp_path / "long.toml"
+    path.write_text("x = " + "9" * 5000, encoding="utf-8")
+    assert "too many digits" in fault_of(path).message

@@ -1,0 +1,213 @@
+"""Single values changed by path."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Override, Scenario, apply_overrides, load, parse_override
+
+PAPER = load(Path(__file__).parents[2] / "examples" / "paper.toml")
+
+
+def faults_of(*overrides: str | Override, scenario: Scenario = PAPER) -> dict[str, str]:
+    """Returns the messages, by path, with which overrides are refused."""
+    with pytest.raises(ScenarioError) as caught:
+        apply_overrides(scenario, overrides)
+    assert caught.value.source.startswith("override")
+    return {fault.path: fault.message for fault in caught.value.faults}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a=1", 1),
+        ("a=1e-3", 1e-3),
+        ("a=-2.5", -2.5),
+        (" a = 1 ", 1),
+        ("a=.5", 0.5),
+        ("a=5.", 5.0),
+        ("a=[5, 20]", [5, 20]),
+        ("a=true", True),
+        ('a="10"', "10"),
+        ("a='x=y'", "x=y"),
+        ("a=word", "word"),
+        ("a=two words", "two words"),
+        ("a=10 W", "10 W"),
+        ("a={x = 1}", {"x": 1}),
+        ("a=[]", []),
+    ],
+)
+def test_values_are_toml_or_bare_words(text: str, value: object) -> None:
+    """A value is read as TOML; what is not, is a number to anyone else or a text."""
+    assert parse_override(text) == Override("a", value)
+    assert type(parse_override(text).value) is type(value)
+
+
+@pytest.mark.parametrize("text", ["", "=", "a", "a=", "=1", " = 1", "a= "])
+def test_without_path_or_value(text: str) -> None:
+    """A text that is no assignment is refused with the form that is expected."""
+    with pytest.raises(ScenarioError, match=r"an equals sign and a value, as in jammers\.M\.power_w=10"):
+        parse_override(text)
+
+
+@pytest.mark.parametrize("text", ["a=[1, 2", "a={x", 'a="x', "a='x", "a=1\nb=2"])
+def test_broken_values(text: str) -> None:
+    """A list, table or quoted text that does not end is refused, and so is a second line."""
+    with pytest.raises(ScenarioError, match="is not TOML"):
+        parse_override(text)
+
+
+@pytest.mark.parametrize(
+    "path", ["jammers.M.power_w", "jammers[0].power_w", 'jammers."M".power_w', "jammers.'M'.power_w"]
+)
+def test_members_by_name_or_index(path: str) -> None:
+    """A node or jammer is found by its name, quoted or not, or by its index."""
+    assert apply_overrides(PAPER, [f"{path}=10"]).jammers[0].power_w == 10.0
+
+
+def test_scalars_lists_and_places_in_lists() -> None:
+    """Whole lists and single places in them can be set; everything else stays."""
+    changed = apply_overrides(
+        PAPER,
+        ["airspace.altitude_m=[5, 20]", "nodes.S1.position_m[2]=3", "name=windy day", "airspace.x_m=[-9, 9]"],
+    )
+    assert changed.airspace.altitude_m == (5.0, 20.0)
+    assert changed.airspace.x_m == (-9.0, 9.0)
+    assert changed.nodes[0].position_m == (0.0, 0.0, 3.0)
+    assert changed.name == "windy day"
+    assert changed.nodes[1] == PAPER.nodes[1]
+    assert changed.receiver == PAPER.receiver
+
+
+def test_whole_tables_and_lists() -> None:
+    """A table or a list of tables can be replaced as a whole."""
+    assert apply_overrides(PAPER, ["jammers=[]"]).jammers == ()
+    moved = apply_overrides(PAPER, ["jammers.M={name = 'J', position_m = [1, 2, 3], power_dbm = 3}"])
+    assert moved.jammer_names == ("J",)
+    assert apply_overrides(PAPER, ["receiver={noise_dbm = 0, frequency_hz = 1e9}"]).receiver.noise_w is None
+
+
+@pytest.mark.parametrize(
+    ("override", "kept", "dropped"),
+    [
+        ("receiver.noise_dbm=-90", "noise_dbm", "noise_w"),
+        ("receiver.frequency_hz=1e9", "frequency_hz", "reference_gain_db"),
+        ("receiver.noise_w=2", "noise_w", "noise_dbm"),
+        ("receiver.reference_gain_db=2", "reference_gain_db", "frequency_hz"),
+    ],
+)
+def test_setting_one_of_a_pair_drops_the_other(override: str, kept: str, dropped: str) -> None:
+    """A quantity stated in another unit is not stated twice."""
+    receiver = apply_overrides(PAPER, [override]).receiver
+    assert getattr(receiver, kept) is not None
+    assert getattr(receiver, dropped) is None
+
+
+def test_power_in_the_other_unit() -> None:
+    """A power may be overridden in dBm where the file states W."""
+    jammer = apply_overrides(PAPER, ["jammers.M.power_dbm=40"]).jammers[0]
+    assert (jammer.power_w, jammer.power_dbm) == (None, 40.0)
+    assert jammer.transmit_power_w == pytest.approx(10.0, rel=1e-15)
+
+
+def test_later_overrides_win_and_see_earlier_ones() -> None:
+    """Overrides are applied in order, and only the outcome has to be a scenario."""
+    assert apply_overrides(PAPER, ["name=a", "name=b"]).name == "b"
+    assert apply_overrides(PAPER, ["nodes.S1.name=gate", "nodes.gate.power_w=7"]).nodes[0].power_w == 7.0
+    risen = apply_overrides(PAPER, ["airspace.altitude_m[0]=40", "airspace.altitude_m[1]=50"])
+    assert risen.airspace.altitude_m == (40.0, 50.0)
+
+
+def test_no_override_changes_nothing() -> None:
+    """Without overrides the scenario is the same, and with one the given scenario is left alone."""
+    assert apply_overrides(PAPER, []) == PAPER
+    before = PAPER.to_dict()
+    apply_overrides(PAPER, ["jammers.M.power_w=10"])
+    assert PAPER.to_dict() == before
+
+
+def test_override_values_from_python() -> None:
+    """Overrides may be values, with numpy numbers and arrays."""
+    changed = apply_overrides(
+        PAPER, [Override("jammers.M.power_w", np.float64(3.0)), Override("nodes.S1.position_m", np.ones(3))]
+    )
+    assert changed.jammers[0].power_w == 3.0
+    assert changed.nodes[0].position_m == (1.0, 1.0, 1.0)
+
+
+def test_names_that_need_quotes() -> None:
+    """A name with a dot, a bracket or an equals sign is reached in quotes, and suggested so."""
+    dotted = apply_overrides(PAPER, ['nodes.S1.name="a.b=[c]"'])
+    assert apply_overrides(dotted, ['nodes."a.b=[c]".power_w=5']).nodes[0].power_w == 5.0
+    message = faults_of("nodes.ab.power_w=5", scenario=apply_overrides(PAPER, ["nodes.S1.name='a b'"]))
+    assert 'did you mean nodes."a b".power_w?' in message["nodes.ab.power_w"]
+
+
+@pytest.mark.parametrize(
+    ("path", "words", "suggestion"),
+    [
+        ("jammer.M.power_w", "no such value in a scenario", "jammers.M.power_w"),
+        ("power_w", "no such value in a scenario", "nodes.S1.power_w"),
+        ("airspce.altitude_m", "no such value", "airspace.altitude_m"),
+        ("jammers.N.power_w", "jammers has no member N, it has [0] M", "jammers.M.power_w"),
+        ("jammers[1].power_w", "jammers has no member [1], it has [0] M", "jammers[0].power_w"),
+        ("nodes.S3.power_w", "it has [0] S1, [1] S2", "nodes.S1.power_w"),
+        ("nodes.S1.power", "the keys here are name, position_m, power_w, power_dbm", "nodes.S1.power_w"),
+        ("airspace.keepout", "the keys here are altitude_m, x_m, y_m, keep_out_m", "airspace.keep_out_m"),
+        ("receiver[0]", "no such key", "receiver"),
+        ("airspace.altitude_m[2]", "altitude_m has the members [0] to [1]", "airspace.altitude_m"),
+        ("airspace.altitude_m.low", "altitude_m has the members [0] to [1]", "airspace.altitude_m"),
+        ("airspace.altitude_m[0][0]", "altitude_m has the members", "airspace.altitude_m"),
+        ("airspace.x_m[0]", "x_m is not given, so set it whole", "airspace.x_m"),
+        ("receiver.noise_w[0]", "noise_w is a single value", "receiver.noise_w"),
+        ("name.first", "name is a single value", "name"),
+        ("jammers..power_w", "this is not a path", "jammers.M.power_w"),
+        ("nodes[-1].power_w", "this is not a path", "nodes[1].power_w"),
+        ("[0].power_w", "no such value", "nodes[0].power_w"),
+    ],
+)
+def test_paths_that_lead_nowhere(path: str, words: str, suggestion: str) -> None:
+    """A path that does not exist is named, with the place where it ends and the nearest one that exists."""
+    ((given, message),) = faults_of(f"{path}=1").items()
+    assert given == path
+    assert words in message
+    assert message.endswith(f"; did you mean {suggestion}?")
+
+
+def test_without_jammers() -> None:
+    """The path of a jammer that is not there says that there are none."""
+    calm = apply_overrides(PAPER, ["jammers=[]"])
+    message = faults_of("jammers.M.power_w=1", scenario=calm)["jammers.M.power_w"]
+    assert message.startswith("the scenario has no jammers")
+
+
+def test_every_fault_of_every_override_at_once() -> None:
+    """Missing paths, broken values and faulty results are reported together."""
+    faults = faults_of("jammers.N.power_w=1", "name=[", "noise", "jammers.M.power_w=-1", "nodes.S1.name=M")
+    assert list(faults) == ["jammers.N.power_w", "name", "noise", "jammers[0].name", "jammers[0].power_w"]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "path"),
+    [
+        (["nodes=3", "nodes.S1.power_w=2"], "nodes"),
+        (["nodes=[]"], "nodes"),
+        (["nodes.S1=3", "nodes[0].power_w=2"], "nodes[0]"),
+        (["receiver=3", "receiver.noise_w=2"], "receiver"),
+        (["airspace.altitude_m=3", "airspace.altitude_m[0]=3"], "airspace.altitude_m"),
+        (["receiver.noise_dbm=word"], "receiver.noise_dbm"),
+        (["airspace.altitude_m=[20, 5]"], "airspace.altitude_m"),
+        (["jammers.M.position_m=[0, 0, 0]"], "jammers[0].position_m"),
+    ],
+)
+def test_results_that_are_no_scenario(overrides: list[str], path: str) -> None:
+    """A value that a file could not hold is refused like one in a file."""
+    assert path in faults_of(*overrides)
+
+
+def test_error_names_the_overrides() -> None:
+    """The error's source says which overrides were tried."""
+    with pytest.raises(ScenarioError, match=r"^override jammers\.M\.power_w=-1: 1 fault\n"):
+        apply_overrides(PAPER, ["jammers.M.power_w=-1"])

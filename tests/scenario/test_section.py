@@ -1,0 +1,51 @@
+"""What all tables have in common."""
+
+import subprocess
+import sys
+
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Airspace, Jammer, Node, Receiver
+from nullpose.scenario.section import Section
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "path"),
+    [
+        (Airspace, {"altitude_m": (2.0, 1.0)}, "altitude_m"),
+        (Receiver, {"noise_w": 0.0, "frequency_hz": 1e9}, "noise_w"),
+        (Node, {"position_m": (0.0, 0.0), "power_w": 1.0}, "position_m"),
+        (Jammer, {"position_m": (0.0, 0.0, 0.0), "power_w": "1"}, "power_w"),
+        (Jammer, {"position_m": (0.0, 0.0, 0.0), "power": 1}, "power"),
+        (Node, {"position_m": (0.0, 0.0, 0.0), "power_w": 1.0, "name": ""}, "name"),
+    ],
+)
+def test_each_table_refuses_faults_by_itself(
+    table: type[Section], values: dict[str, object], path: str
+) -> None:
+    """A table built in Python, or from a dictionary, raises ScenarioError with paths from itself."""
+    for build in (lambda: table(**values), lambda: table.from_dict(values, "my scene")):
+        with pytest.raises(ScenarioError) as caught:
+            build()
+        assert [fault.path for fault in caught.value.faults] == [path]
+
+
+def test_user_text_is_repeated_as_it_is() -> None:
+    """Braces and percent signs in what was given are no placeholders."""
+    with pytest.raises(ScenarioError, match=r'the text "\{message\} %s \{0\}"'):
+        Jammer(position_m="{message} %s {0}", power_w=1.0)
+
+
+def test_either_stated_power_is_in_watts() -> None:
+    """The transmit power is in W whichever unit was stated."""
+    assert Node(position_m=(0, 0, 0), power_w=2).transmit_power_w == 2.0
+    assert Node(position_m=(0, 0, 0), power_dbm=33).transmit_power_w == pytest.approx(1.9952623, rel=1e-7)
+
+
+def test_import_is_lean() -> None:
+    """Importing the room brings in no solver, no plots and no command line."""
+    heavy = "{'scipy', 'numba', 'matplotlib', 'typer', 'rich'}"
+    script = f"import nullpose.scenario, sys; print(sorted({heavy} & sys.modules.keys()))"
+    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == "[]"
