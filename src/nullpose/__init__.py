@@ -1,1 +1,128 @@
-"""."""
+"""nullpose finds the best pose for a drone's antenna under jamming.
+
+The drone carries one short dipole, whose null it can turn towards a jammer. Given ground nodes, jammers and
+an airspace, nullpose finds the position and the attitude that maximise the smallest SINR over the nodes.
+
+The names below are the whole public face; each is imported when it is first used, so that importing the
+package costs nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from nullpose.errors import (
+        Fault,
+        NullposeError,
+        OutputError,
+        ScenarioError,
+        SolveError,
+        UsageError,
+    )
+    from nullpose.physics import Link, Pose, evaluate, min_sinr
+    from nullpose.scenario import (
+        Airspace,
+        Jammer,
+        Node,
+        Receiver,
+        Scenario,
+        apply_overrides,
+        json_schema,
+        load,
+    )
+    from nullpose.solve import Scheme, Solution, Status, compare, solve
+    from nullpose.study import SweepTable, sweep
+
+    __version__: str
+
+__all__ = [
+    "Airspace",
+    "Fault",
+    "Jammer",
+    "Link",
+    "Node",
+    "NullposeError",
+    "OutputError",
+    "Pose",
+    "Receiver",
+    "Scenario",
+    "ScenarioError",
+    "Scheme",
+    "Solution",
+    "SolveError",
+    "Status",
+    "SweepTable",
+    "UsageError",
+    "__version__",
+    "apply_overrides",
+    "compare",
+    "evaluate",
+    "json_schema",
+    "load",
+    "min_sinr",
+    "solve",
+    "sweep",
+]
+
+_ROOMS = {
+    "nullpose.errors": (
+        "Fault",
+        "NullposeError",
+        "OutputError",
+        "ScenarioError",
+        "SolveError",
+        "UsageError",
+    ),
+    "nullpose.physics": ("Link", "Pose", "evaluate", "min_sinr"),
+    "nullpose.scenario": (
+        "Airspace",
+        "Jammer",
+        "Node",
+        "Receiver",
+        "Scenario",
+        "apply_overrides",
+        "json_schema",
+        "load",
+    ),
+    "nullpose.solve": ("Scheme", "Solution", "Status", "compare", "solve"),
+    "nullpose.study": ("SweepTable", "sweep"),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+
+class _Face(ModuleType):
+    """This package, on which a public name always wins over a room of the same name.
+
+    Importing the room ``nullpose.solve`` would otherwise rebind ``nullpose.solve`` from the function to the
+    room, so that what the name means would depend on what was imported before.
+    """
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (isinstance(value, ModuleType) and name in _ROOM_OF):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Face
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name, importing its room at the first use (PEP 562)."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        value: Any = version("nullpose")
+    elif name in _ROOM_OF:
+        value = getattr(import_module(_ROOM_OF[name]), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names beside what the module holds already."""
+    return sorted({*globals(), *__all__})

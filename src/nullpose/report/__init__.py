@@ -1,1 +1,1 @@
-"""."""
+"""What was found, as tables, figures and verdicts; nothing here is imported before it is needed."""

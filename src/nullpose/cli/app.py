@@ -1,0 +1,59 @@
+"""The ``nullpose`` command. Nothing heavy is imported before a verb runs, so that help comes at once."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.check import check
+from nullpose.cli.compare import compare
+from nullpose.cli.faults import FaultReportingGroup
+from nullpose.cli.reproduce import reproduce
+from nullpose.cli.schema import schema
+from nullpose.cli.solve import solve
+from nullpose.cli.sweep import sweep
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    name="nullpose",
+    cls=FaultReportingGroup,
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from nullpose import __version__
+
+        typer.echo(f"nullpose {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def nullpose(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit."),
+    ] = False,
+) -> None:
+    """Find the best pose for a drone's antenna under jamming.
+
+    A scenario file (TOML) states nodes, jammers, receiver and airspace. Start with
+    [bold]nullpose compare examples/paper.toml[/].
+
+    Exit codes: 0 fine, 2 bad input or usage, 1 anything else, 130 interrupted.
+    """
+
+
+for _verb in (solve, compare, sweep, reproduce, check, schema):
+    app.command()(_verb)
+
+
+def main() -> None:
+    """Run the command line and exit with its code."""
+    app(prog_name="nullpose")

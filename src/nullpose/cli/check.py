@@ -1,0 +1,25 @@
+"""The verb ``check``."""
+
+from __future__ import annotations
+
+import typer
+
+from nullpose.cli.options import JsonOutput, Overrides, ScenarioFile
+from nullpose.cli.output import show, show_json
+
+__all__ = ["check"]
+
+
+def check(file: ScenarioFile, overrides: Overrides = None, json_output: JsonOutput = False) -> None:
+    """Check a scenario file and show what it amounts to, without solving it."""
+    from nullpose.report.summary import summarise
+    from nullpose.scenario import apply_overrides, load
+
+    summary = summarise(apply_overrides(load(file), overrides or []))
+    if json_output:
+        show_json(summary.to_dict())
+        return
+    from nullpose.report.scenario_tables import scenario_view
+
+    show(scenario_view(summary))
+    typer.echo(f"{file}: no faults")

@@ -1,0 +1,47 @@
+"""Options that several verbs share."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["JsonOutput", "OutFolder", "Overrides", "ScenarioFile", "SchemeName", "Seed"]
+
+
+class SchemeName(StrEnum):
+    """The schemes by name, spelled out here because importing the solver would slow down every help page."""
+
+    OPTIMUM = "optimum"
+    ZERO_INTERFERENCE = "zero-interference"
+    MAXIMUM_GAIN = "maximum-gain"
+    VERTICAL = "vertical"
+    MAXIMUM_GAIN_PRINTED = "maximum-gain-printed"
+
+
+ScenarioFile = Annotated[
+    Path, typer.Argument(metavar="FILE", help="Scenario file (TOML).", show_default=False)
+]
+
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="PATH=VALUE",
+        help="Change one value of the scenario, as in jammers.M.power_w=10. Can be repeated.",
+        show_default=False,
+    ),
+]
+
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the random starts.")]
+
+JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+
+OutFolder = Annotated[
+    Path,
+    typer.Option(
+        "--out", metavar="DIR", help="Folder for the files; made if it is missing.", show_default=False
+    ),
+]

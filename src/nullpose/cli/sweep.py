@@ -1,0 +1,63 @@
+"""The verb ``sweep``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.options import JsonOutput, OutFolder, ScenarioFile, SchemeName, Seed
+from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+
+__all__ = ["sweep"]
+
+
+def sweep(
+    file: ScenarioFile,
+    settings: Annotated[
+        list[str],
+        typer.Option(
+            "--set",
+            metavar="PATH",
+            help="The value to vary, as in jammers.M.power_w. Repeated as PATH=VALUE it fixes another.",
+            show_default=False,
+        ),
+    ],
+    start: Annotated[float, typer.Option("--from", help="First value.", show_default=False)],
+    stop: Annotated[float, typer.Option("--to", help="Last value.", show_default=False)],
+    out: OutFolder,
+    points: Annotated[int, typer.Option("--points", help="How many values, both ends included.")] = 37,
+    log: Annotated[
+        bool, typer.Option("--log/--linear", help="Space the values by a constant ratio, or evenly.")
+    ] = False,
+    scheme: Annotated[
+        list[SchemeName] | None,
+        typer.Option("--scheme", help="Only this scheme. Can be repeated.", show_default="all four"),
+    ] = None,
+    seed: Seed = 0,
+    json_output: JsonOutput = False,
+) -> None:
+    """Solve a scenario at many values of one setting; write a table (CSV) and a figure (PNG, SVG)."""
+    from nullpose.scenario import load
+    from nullpose.study.plan import plan_sweep
+
+    plan = plan_sweep(
+        load(file),
+        settings,
+        start=start,
+        stop=stop,
+        points=points,
+        log=log,
+        schemes=[name.value for name in scheme] if scheme else None,
+        out=out,
+        seed=seed,
+    )
+    with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
+        table = plan.run(on_progress=ticker)
+    from nullpose.report.sweep import sweep_view, write_sweep
+
+    files = write_sweep(table, plan.folder, log=log)
+    if json_output:
+        show_json({**table.to_dict(), "files": [str(path) for path in files]})
+    else:
+        show(sweep_view(table, files))

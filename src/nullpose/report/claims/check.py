@@ -1,0 +1,46 @@
+"""All the claims, in the order of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nullpose.report.claims.claim import Claim
+from nullpose.report.claims.limits import (
+    strong_jamming,
+    weak_jamming,
+    zero_interference_constant,
+)
+from nullpose.report.claims.maximum_gain import equidistant, null_at_jammer
+from nullpose.report.claims.saturation import saturation
+from nullpose.report.claims.study import JammingStudy
+from nullpose.report.claims.vertical import above_jammer, pose_optimisation_wins
+
+__all__ = ["check_claims"]
+
+_CHECKS: tuple[Callable[[JammingStudy], Claim], ...] = (
+    weak_jamming,
+    strong_jamming,
+    zero_interference_constant,
+    null_at_jammer,
+    above_jammer,
+    equidistant,
+    pose_optimisation_wins,
+    saturation,
+)
+
+
+def check_claims(
+    study: JammingStudy, on_progress: Callable[[int, int], None] | None = None
+) -> tuple[Claim, ...]:
+    """Return every claim of the paper with its verdict.
+
+    Args:
+        study: the data.
+        on_progress: called after each claim with how many are checked and how many there are.
+    """
+    claims: list[Claim] = []
+    for check in _CHECKS:
+        claims.append(check(study))
+        if on_progress is not None:
+            on_progress(len(claims), len(_CHECKS))
+    return tuple(claims)

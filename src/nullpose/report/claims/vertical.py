@@ -1,0 +1,115 @@
+"""Claims on the vehicle that cannot tilt: where it ends up, and what tilting gains."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.report.claims.claim import Claim, Verdict
+from nullpose.report.claims.study import JammingStudy
+
+__all__ = ["above_jammer", "pose_optimisation_wins"]
+
+_ABOVE_M = 0.1
+_SIGNIFICANT_DB = 1.0
+_WEAK, _STRONG = 0.01, 1.0  # P_M/P at most, at least
+
+
+def above_jammer(study: JammingStudy) -> Claim:
+    """Return the check that the vertical antenna ends up straight above the jammer.
+
+    Args:
+        study: the data.
+    """
+    limit = study.holds_from(lambda level: _offset_m(study, level) <= _ABOVE_M)
+    strongest = study.levels[-1]
+    before = [level for level in study.levels if limit is None or level < limit]
+    farthest = max(before, key=lambda level: _offset_m(study, level))
+    levels = sorted({1e-3, 0.1, before[-1], 1.0, 10.0, 1000.0, strongest})
+    start = f"from P_M/P = {limit:.3g} on" if limit is not None else "at no swept level"
+    jump = _offset_m(study, before[-1])
+    return Claim(
+        id="vertical-above-jammer",
+        claim="The vertical solution moves towards the jammer until it is directly above it.",
+        source="section 4",
+        verdict=Verdict.of(limit is not None),
+        method=f"Horizontal distance from the jammer, at most {_ABOVE_M} m at every swept level from some "
+        "level on, bisected.",
+        finding=f"Within {_ABOVE_M} m of the vertical above the jammer {start}, and "
+        f"{_offset_m(study, strongest):.1g} m from it at P_M/P = {strongest:g}. It does not glide there: "
+        f"it is {_offset_m(study, study.levels[0]):.1f} m away at the weakest jamming, "
+        f"{_offset_m(study, farthest):.1f} m at P_M/P = {farthest:.3g}, still {jump:.1f} m at the last "
+        "swept level before, and then jumps.",
+        evidence={
+            "levels": [
+                {
+                    "jamming_to_transmission_ratio": level,
+                    "horizontal_distance_m": _offset_m(study, level),
+                    "position_m": [float(x) for x in study.at("vertical", level).pose.position_m],
+                    "value_db": study.at("vertical", level).min_sinr_db,
+                }
+                for level in levels
+            ]
+        },
+        holds_from=limit,
+    )
+
+
+def _offset_m(study: JammingStudy, level: float) -> float:
+    away = study.at("vertical", level).pose.position_m - study.scenario.jammer_positions_m[0]
+    return math.hypot(float(away[0]), float(away[1]))
+
+
+def pose_optimisation_wins(study: JammingStudy) -> Claim:
+    """Return the check that the best pose beats the best vertical one, most under strong jamming.
+
+    Args:
+        study: the data.
+    """
+    leads_db = np.array([study.lead_db("optimum", "vertical", level) for level in study.levels])
+    levels = np.array(study.levels)
+    weak_db, strong_db = leads_db[levels <= _WEAK], leads_db[levels >= _STRONG]
+    peak = int(np.argmax(leads_db))
+    limit = study.holds_from(lambda level: study.lead_db("optimum", "vertical", level) >= _SIGNIFICANT_DB)
+    zero_from = study.holds_from(lambda level: study.lead_db("zero-interference", "vertical", level) >= 0.0)
+    gain_from = study.holds_from(lambda level: study.lead_db("maximum-gain", "vertical", level) >= 0.0)
+    start = f"from P_M/P = {limit:.3g} on" if limit is not None else "at no swept level"
+    return Claim(
+        id="pose-optimisation-wins",
+        claim="Optimising the full pose beats the under-actuated vehicle significantly, most under "
+        "strong jamming.",
+        source="section 4",
+        verdict=Verdict.of(
+            bool(np.all(leads_db > 0.0)),
+            bool(np.min(strong_db) >= _SIGNIFICANT_DB),
+            bool(np.min(strong_db) > np.max(weak_db)),
+        ),
+        method=f"Optimum less vertical in dB: above 0 everywhere, at least {_SIGNIFICANT_DB:g} dB wherever "
+        f"P_M/P >= {_STRONG:g}, and there everywhere more than anywhere below P_M/P = {_WEAK:g}.",
+        finding=f"{leads_db[0]:.2f} dB at P_M/P = {levels[0]:g}, at least {_SIGNIFICANT_DB:g} dB {start}, "
+        f"{leads_db[-1]:.2f} dB at P_M/P = {levels[-1]:g}; the most, {leads_db[peak]:.2f} dB, is at P_M/P "
+        f"= {levels[peak]:.2g}. Of the two simple schemes, "
+        f"{_ahead('zero interference', zero_from, levels[0])} and "
+        f"{_ahead('maximum gain', gain_from, levels[0])}.",
+        evidence={
+            "lead_at_weakest_db": float(leads_db[0]),
+            "lead_at_strongest_db": float(leads_db[-1]),
+            "largest_lead_db": float(leads_db[peak]),
+            "largest_lead_at": float(levels[peak]),
+            "smallest_lead_db": float(np.min(leads_db)),
+            "smallest_lead_under_strong_jamming_db": float(np.min(strong_db)),
+            "largest_lead_under_weak_jamming_db": float(np.max(weak_db)),
+            "at_least_1_db_from": limit,
+            "zero_interference_ahead_from": zero_from,
+            "maximum_gain_ahead_from": gain_from,
+        },
+    )
+
+
+def _ahead(name: str, start: float | None, weakest: float) -> str:
+    if start is None:
+        return f"{name} is not ahead of vertical at the strongest jamming"
+    if start <= weakest:
+        return f"{name} is ahead of vertical throughout"
+    return f"{name} is ahead of vertical only from P_M/P = {start:.3g} on"

@@ -1,0 +1,105 @@
+"""The look that all figures share, and how they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from nullpose.study import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["CURVES", "GREY", "INK", "Curve", "house_style", "write_figure"]
+
+INK = "#1a1a1a"
+GREY = "#6b6b6b"
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """How one scheme is drawn: told apart by colour, by line and by marker, so that any one is enough.
+
+    Args:
+        label: its name in words.
+        colour: the paper's colour.
+        line: a Matplotlib line style.
+        marker: a Matplotlib marker, or nothing.
+        width: line width, points.
+        order: drawing order, later ones on top.
+    """
+
+    label: str
+    colour: str
+    line: str | tuple[int, tuple[float, ...]]
+    marker: str
+    width: float
+    order: float
+
+
+CURVES: Mapping[str, Curve] = MappingProxyType(
+    {
+        "optimum": Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
+        "zero-interference": Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
+        "maximum-gain": Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
+        "vertical": Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
+        "maximum-gain-printed": Curve(
+            "maximum gain, eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)), "", 1.6, 2.0
+        ),
+    }
+)
+
+_RC: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.labelsize": 9.5,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "text.color": INK,
+    "svg.hashsalt": "nullpose",  # the same figure gives the same file
+}
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Apply the shared look to every figure made inside."""
+    import matplotlib
+
+    with matplotlib.rc_context(_RC):
+        yield
+
+
+def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
+    """Return the paths of a PNG and an SVG of a figure after writing both.
+
+    Args:
+        figure: what to write.
+        folder: an existing folder.
+        stem: file name without its suffix.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    png, svg = folder / f"{stem}.png", folder / f"{stem}.svg"
+    with house_style():
+        with replacing(png) as temporary:
+            figure.savefig(temporary, format="png", dpi=200, facecolor="white")
+        with replacing(svg) as temporary:
+            figure.savefig(temporary, format="svg", facecolor="white", metadata={"Date": None})
+    return png, svg

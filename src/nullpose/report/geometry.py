@@ -1,0 +1,60 @@
+"""Angles and distances of a pose, as a reader asks for them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics import Pose
+
+__all__ = ["azimuth_rad", "distance_m", "null_angle_rad", "tilt_rad"]
+
+
+def null_angle_rad(pose: Pose, point_m: ArrayLike) -> float:
+    """Return the angle between the antenna's axis, where its null is, and the direction to a point.
+
+    Between 0 (the null is on the point) and pi/2 (the point is broadside), the axis having no sign. It is
+    ``atan2(|u x r|, |u . r|)``, which keeps its digits at both ends.
+
+    Args:
+        pose: where the drone is and how it is turned.
+        point_m: a ground point, shape ``(3,)``, metres.
+    """
+    to_point = np.asarray(point_m, dtype=float) - pose.position_m
+    across = float(np.linalg.norm(np.cross(pose.antenna_axis, to_point)))
+    return math.atan2(across, abs(float(pose.antenna_axis @ to_point)))
+
+
+def distance_m(pose: Pose, point_m: ArrayLike) -> float:
+    """Return how far the drone is from a point, metres.
+
+    Args:
+        pose: where the drone is.
+        point_m: a ground point, shape ``(3,)``, metres.
+    """
+    return float(np.linalg.norm(np.asarray(point_m, dtype=float) - pose.position_m))
+
+
+def tilt_rad(pose: Pose) -> float:
+    """Return the angle between the antenna's axis and the vertical, from 0 to pi/2.
+
+    Args:
+        pose: how the drone is turned.
+    """
+    east, north, up = pose.antenna_axis
+    return math.atan2(math.hypot(east, north), abs(up))
+
+
+def azimuth_rad(pose: Pose) -> float:
+    """Return the direction in which the upper end of the axis leans, from x (east) towards y (north).
+
+    In (-pi, pi]; 0 for a vertical axis, which leans nowhere.
+
+    Args:
+        pose: how the drone is turned.
+    """
+    east, north, up = (float(component) for component in pose.antenna_axis)
+    sign = -1.0 if up < 0.0 else 1.0
+    return math.atan2(sign * north, sign * east) if math.hypot(east, north) > 0.0 else 0.0

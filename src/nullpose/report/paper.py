@@ -1,0 +1,45 @@
+"""The scenario of the paper's section 4, and the jamming levels at which it is studied."""
+
+from __future__ import annotations
+
+from nullpose.scenario import Override, Scenario, apply_overrides
+
+__all__ = ["JAMMER_POWER", "JAMMING_LEVELS", "POSE_LEVELS", "paper_scenario", "with_jamming"]
+
+JAMMER_POWER = "jammers.M.power_w"
+"""The swept setting: with nodes of 1 W it equals the paper's ratio P_M/P."""
+
+JAMMING_LEVELS = (1e-3, 1e6, 37)
+"""First and last P_M/P and the number of points, four to a decade."""
+
+POSE_LEVELS = (1e-2, 1.0, 1e2)
+"""P_M/P of the pose figure: weak, medium and strong jamming."""
+
+
+def paper_scenario() -> Scenario:
+    """Return the paper's scenario: two nodes 50 m apart, one jammer, altitudes from 8 m to 30 m.
+
+    Source: paper section 4, with unit transmission power, so that sigma^2 = 1 mW.
+    """
+    return Scenario.from_dict(
+        {
+            "name": "Bonilla Licea et al., ICASSP 2024, section 4",
+            "airspace": {"altitude_m": [8.0, 30.0]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+            "nodes": [
+                {"name": "S1", "position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
+                {"name": "S2", "position_m": [0.0, 50.0, 0.0], "power_w": 1.0},
+            ],
+            "jammers": [{"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": 1.0}],
+        }
+    )
+
+
+def with_jamming(scenario: Scenario, level: float) -> Scenario:
+    """Return the scenario with its jammer's power set.
+
+    Args:
+        scenario: the paper's scenario.
+        level: P_M/P, a power ratio above 0.
+    """
+    return apply_overrides(scenario, [Override(JAMMER_POWER, float(level))])

@@ -1,0 +1,28 @@
+"""Results as JSON text that any parser reads."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+
+__all__ = ["json_text"]
+
+
+def _standard(value: object) -> object:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): _standard(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_standard(item) for item in value]
+    return value
+
+
+def json_text(value: object) -> str:
+    """Return a value as indented JSON; what JSON has no number for (NaN, infinities) becomes null.
+
+    Args:
+        value: mappings, sequences, texts, numbers, truth values and None, nested at will.
+    """
+    return json.dumps(_standard(value), indent=2, ensure_ascii=False, allow_nan=False)

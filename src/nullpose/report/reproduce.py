@@ -1,0 +1,104 @@
+"""The paper's Figure 2, a figure of its poses, and its claims checked, written to a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nullpose.report.claims import Claim, JammingStudy, check_claims, claims_json, claims_markdown
+from nullpose.report.figures import draw_figure2, draw_poses
+from nullpose.report.figures.style import write_figure
+from nullpose.report.paper import JAMMER_POWER, JAMMING_LEVELS, POSE_LEVELS, paper_scenario
+from nullpose.report.plain import json_text
+from nullpose.solve import Scheme, solve
+from nullpose.study import SweepTable, prepare_folder, spaced, sweep, write_text
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = ["Reproduction", "reproduce", "reproduction_view"]
+
+_CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """What a reproduction found and wrote.
+
+    Args:
+        table: the data of Figure 2.
+        claims: the paper's claims with their verdicts.
+        files: what was written.
+        provenance: versions and seed.
+    """
+
+    table: SweepTable
+    claims: tuple[Claim, ...]
+    files: tuple[Path, ...]
+    provenance: dict[str, object]
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the claims and the files as plain data."""
+        return {**claims_json(self.claims, self.provenance), "files": [str(path) for path in self.files]}
+
+
+def reproduce(
+    folder: Path, *, seed: int = 0, on_progress: Callable[[int, int], None] | None = None
+) -> Reproduction:
+    """Return what the paper's section 4 looks like when computed, after writing it to a folder.
+
+    Args:
+        folder: where the files go; made if it is missing.
+        seed: the random seed of every solve.
+        on_progress: called now and then with how many steps are done and how many there are.
+
+    Raises:
+        OutputError: the folder or a file cannot be written; the folder is tried before any work.
+    """
+    prepare_folder(folder)
+    scenario = paper_scenario()
+    start, stop, points = JAMMING_LEVELS
+    levels = spaced(start, stop, points, log=True)
+    solves = points * len(Scheme)
+    total = solves + 8 * _CLAIM_STEPS
+
+    def tick(done: int, _: int) -> None:
+        if on_progress is not None:
+            on_progress(done, total)
+
+    table = sweep(scenario, JAMMER_POWER, levels, schemes=tuple(Scheme), seed=seed, on_progress=tick)
+    study = JammingStudy(scenario, table, seed)
+    claims = check_claims(study, lambda done, _: tick(solves + done * _CLAIM_STEPS, total))
+    poses = [study.at(Scheme.OPTIMUM.value, level) for level in POSE_LEVELS]
+    provenance = dict(solve(scenario, Scheme.ZERO_INTERFERENCE, seed=seed).provenance)
+    files = (
+        *write_figure(draw_figure2(table), folder, "figure2"),
+        table.write_csv(folder / "figure2.csv"),
+        *write_figure(draw_poses(scenario, poses), folder, "poses"),
+        write_text(folder / "claims.md", claims_markdown(claims)),
+        write_text(folder / "claims.json", json_text(claims_json(claims, provenance)) + "\n"),
+    )
+    return Reproduction(table=table, claims=claims, files=files, provenance=provenance)
+
+
+def reproduction_view(reproduction: Reproduction) -> RenderableType:
+    """Return the verdicts as a table, and the list of files.
+
+    Args:
+        reproduction: what was found and written.
+    """
+    from rich import box
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    view = Table(title="The paper's claims", box=box.SIMPLE_HEAD, pad_edge=False, show_lines=True)
+    view.title_justify, view.title_style = "left", "bold"
+    view.add_column("verdict")
+    view.add_column("claim and finding")
+    for claim in reproduction.claims:
+        body = Text.assemble((claim.claim, "bold"), "\n", claim.finding)
+        view.add_row(Text(claim.verdict.value, "green" if claim.verdict == "holds" else "red"), body)
+    return Group(view, Text("\n".join(f"Wrote {path}" for path in reproduction.files)))

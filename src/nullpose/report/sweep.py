@@ -1,0 +1,63 @@
+"""A sweep written to files, and shown in a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nullpose.report.figures.style import CURVES, write_figure
+from nullpose.report.figures.sweep import draw_sweep
+from nullpose.study import SweepTable
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = ["sweep_view", "write_sweep"]
+
+_SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
+
+
+def write_sweep(table: SweepTable, folder: Path, *, log: bool = False) -> tuple[Path, ...]:
+    """Return the paths of a sweep's CSV, PNG and SVG files after writing them.
+
+    Args:
+        table: what the sweep found.
+        folder: an existing folder.
+        log: draw the swept setting on a logarithmic axis.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    figure = draw_sweep(table, log=log)
+    return (table.write_csv(folder / "sweep.csv"), *write_figure(figure, folder, "sweep"))
+
+
+def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
+    """Return a sweep as a table of the smallest SINR in dB, one column per scheme.
+
+    Args:
+        table: what the sweep found.
+        files: what was written.
+    """
+    from rich import box
+    from rich.console import Group
+    from rich.markup import escape
+    from rich.table import Table
+    from rich.text import Text
+
+    view = Table(title="Smallest SINR over the nodes (dB)", box=box.SIMPLE_HEAD, pad_edge=False)
+    view.title_justify, view.title_style = "left", "bold"
+    view.add_column(escape(table.path), justify="right")
+    for scheme in table.schemes:
+        view.add_column(CURVES[scheme].label, justify="right")
+    columns = [table.of(scheme) for scheme in table.schemes]
+    step = -(-len(table.values) // _SHOWN)
+    for index in range(0, len(table.values), step):
+        cells = [f"{column[index].min_sinr_db:.4f}" for column in columns]
+        view.add_row(f"{table.values[index]:.6g}", *cells)
+    lines = [f"{scheme} does not apply: {reason}" for scheme, reason in table.left_out.items()]
+    lines += [f"One row in {step} is shown."] if step > 1 else []
+    lines += ["Each value is the best of many local optima found, not proved to be the best there is."]
+    lines += [f"Wrote {path}" for path in files]
+    return Group(view, Text("\n".join(lines)))

@@ -1,0 +1,97 @@
+"""A sweep as it is asked for on the command line, checked in full before any work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from nullpose.errors import UsageError
+from nullpose.scenario import Scenario, apply_overrides
+from nullpose.solve import PAPER_SCHEMES, Scheme
+from nullpose.solve.scheme import require_applicable
+from nullpose.study.files import prepare_folder
+from nullpose.study.spacing import spaced
+from nullpose.study.sweep import sweep
+from nullpose.study.table import SweepTable
+
+__all__ = ["SweepPlan", "plan_sweep"]
+
+
+@dataclass(frozen=True, slots=True)
+class SweepPlan:
+    """A sweep that can be run.
+
+    Args:
+        scenario: the scenario, fixed settings applied.
+        path: the setting that is varied.
+        values: what it is set to.
+        schemes: the cases to solve.
+        folder: where the results go; it exists and can be written.
+        seed: the random seed of every solve.
+    """
+
+    scenario: Scenario
+    path: str
+    values: tuple[float, ...]
+    schemes: tuple[Scheme, ...]
+    folder: Path
+    seed: int
+
+    def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
+        """Return what the sweep finds.
+
+        Args:
+            on_progress: called after each solve with how many are done and how many there are.
+        """
+        return sweep(
+            self.scenario,
+            self.path,
+            self.values,
+            schemes=self.schemes,
+            seed=self.seed,
+            on_progress=on_progress,
+        )
+
+
+def plan_sweep(
+    scenario: Scenario,
+    settings: Sequence[str],
+    *,
+    start: float,
+    stop: float,
+    points: int,
+    out: Path,
+    log: bool = False,
+    schemes: Sequence[str] | None = None,
+    seed: int = 0,
+) -> SweepPlan:
+    """Return the plan of a sweep, its output folder made.
+
+    Args:
+        scenario: the scenario to start from.
+        settings: one path to vary, and any number of ``path=value`` to fix.
+        start: the first value.
+        stop: the last value.
+        points: how many values.
+        out: where the results go.
+        log: space the values by a constant ratio.
+        schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
+        seed: the random seed of every solve.
+
+    Raises:
+        UsageError: not exactly one path to vary, a bad range, or a scheme that does not apply.
+        ScenarioError: a fixed setting is at fault.
+        OutputError: the folder cannot be written.
+    """
+    varied = [setting for setting in settings if "=" not in setting]
+    if len(varied) != 1:
+        given = ", ".join(settings)
+        raise UsageError(f"--set: exactly one path to vary is needed, without a value; given {given}")
+    values = spaced(start, stop, points, log=log)
+    base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
+    wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
+    if schemes is not None:
+        for scheme in wanted:
+            require_applicable(base, scheme)
+    return SweepPlan(base, varied[0].strip(), values, wanted, prepare_folder(out), seed)

@@ -1,0 +1,91 @@
+"""Many solves along one setting of a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from types import MappingProxyType
+
+from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, not_applicable, solve
+from nullpose.study.table import SweepRow, SweepTable
+
+__all__ = ["sweep"]
+
+
+def sweep(
+    scenario: Scenario,
+    path: str,
+    values: Sequence[float],
+    *,
+    schemes: Sequence[str] = PAPER_SCHEMES,
+    seed: int = 0,
+    on_progress: Callable[[int, int], None] | None = None,
+) -> SweepTable:
+    """Return the best pose of every scheme at every value of one setting.
+
+    Schemes that the scenario does not admit are left out, with the reason in the table. Every value is
+    checked before the first solve.
+
+    Args:
+        scenario: the scenario whose setting is varied.
+        path: the setting, as in ``jammers.M.power_w``.
+        values: what to set it to, in its own unit.
+        schemes: which cases to solve.
+        seed: the random seed of every solve.
+        on_progress: called after each solve with how many are done and how many there are.
+
+    Raises:
+        ScenarioError: the path does not exist, or a value makes no valid scenario.
+        UsageError: no scheme applies.
+    """
+    scenarios = _scenarios(scenario, path, values)
+    wanted = [Scheme(scheme) for scheme in schemes]
+    reasons = {scheme: not_applicable(scenario, scheme) for scheme in wanted}
+    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason is not None}
+    solved = [scheme for scheme in wanted if reasons[scheme] is None]
+    if not solved:
+        raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
+    rows: list[SweepRow] = []
+    total = len(scenarios) * len(solved)
+    for value, varied in scenarios:
+        for scheme in solved:
+            rows.append(_row(value, solve(varied, scheme, seed=seed)))
+            if on_progress is not None:
+                on_progress(len(rows), total)
+    return SweepTable(path=path, rows=tuple(rows), left_out=MappingProxyType(left_out))
+
+
+def _scenarios(scenario: Scenario, path: str, values: Sequence[float]) -> list[tuple[float, Scenario]]:
+    varied: list[tuple[float, Scenario]] = []
+    faults: dict[str, list[tuple[float, Fault]]] = {}
+    for value in map(float, values):
+        try:
+            varied.append((value, apply_overrides(scenario, [Override(path, value)])))
+        except ScenarioError as error:
+            for fault in error.faults:
+                faults.setdefault(fault.path, []).append((value, fault))
+    if faults:
+        raise ScenarioError([_summary(found) for found in faults.values()], source=f"sweep of {path}")
+    return varied
+
+
+def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
+    """Return one fault for all the values that have it, so that a long sweep gives a short message."""
+    value, fault = found[0]
+    others = len(found) - 1
+    more = f" and {others} other value{'s' * (others > 1)}" if others else ""
+    return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
+
+
+def _row(value: float, solution: Solution) -> SweepRow:
+    return SweepRow(
+        value=value,
+        scheme=solution.scheme.value,
+        status=solution.status.value,
+        min_sinr=solution.objective.value,
+        min_sinr_db=solution.objective.value_db,
+        pose=solution.pose,
+        links=solution.links,
+        note=solution.note,
+    )
