@@ -22,8 +22,12 @@ def json_schema() -> dict[str, Any]:
     It says what can be said key by key; faults between keys, such as a reversed range, are left to ``load``.
     """
     schema = Scenario.model_json_schema(schema_generator=_TomlSchema)
-    heading = {"$schema": DIALECT, "title": "nullpose scenario"}
-    return heading | {"description": "A scenario file of nullpose, in TOML."} | schema
+    heading = {
+        "$schema": DIALECT,
+        "title": "nullpose scenario",
+        "description": "Nodes, jammers, a receiver and an airspace; positions in metres east, north and up.",
+    }
+    return heading | {key: value for key, value in schema.items() if key not in heading}
 
 
 class _TomlSchema(GenerateJsonSchema):
