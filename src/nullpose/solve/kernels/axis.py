@@ -150,7 +150,7 @@ def add_pair(forms, working, members, i, j, candidates, values, count, floor):
             for b in range(5):
                 if a + b >= 1 and a + b - 1 < 7:
                     poly[a + b - 1] += (a - b) * q[a] * n[b]
-        for root in range(real_roots(poly, 6, roots)):
+        for root in range(real_roots(poly, np.int64(6), roots)):
             s = roots[root]
             for d in range(3):
                 v[d] = curve[0, d] + s * (curve[1, d] + s * curve[2, d])
@@ -159,7 +159,7 @@ def add_pair(forms, working, members, i, j, candidates, values, count, floor):
             if m in (i, j):
                 continue
             quartic(forms[working[m]] - forms[working[i]], curve, poly)
-            for root in range(real_roots(poly, 4, roots)):
+            for root in range(real_roots(poly, np.int64(4), roots)):
                 s = roots[root]
                 for d in range(3):
                     v[d] = curve[0, d] + s * (curve[1, d] + s * curve[2, d])
@@ -236,7 +236,7 @@ def best_axis_of_forms(forms, axis):
             lowest, worst = top, k
     best = spread_axis(forms, axis)  # a first level prunes most candidates of the early working sets
     tolerance = 1e-14 * scale
-    count = 0
+    count = np.int64(0)
     members = 0
     new = worst
     while members < total:

@@ -15,6 +15,7 @@ import numpy as np
 from nullpose.solve.kernels.axis import best_axis_of_forms, bilinear, fill_forms, form_value
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.symmetric import tangents
 
 __all__ = ["maximum_gain_value"]
 
@@ -25,15 +26,7 @@ _TIE = 1e-11
 def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
     """Fill the quietest axis across ``normal`` among those whose forms all reach ``level``."""
     a, b, v = np.empty(3), np.empty(3), np.empty(3)
-    least = 0
-    for i in range(1, 3):
-        if abs(normal[i]) < abs(normal[least]):
-            least = i
-    e = np.zeros(3)
-    e[least] = 1.0
-    a[:] = np.cross(normal, e)
-    a /= math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
-    b[:] = np.cross(normal, a)
+    tangents(normal, a, b)
     ratios = numerators.shape[0]
     angles = np.empty(2 * ratios + 2)
     d_aa, d_ab, d_bb = (

@@ -19,7 +19,7 @@ import numpy as np
 
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.links import derivatives, log_ratios, min_log_ratio
-from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, gauss_solve
+from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, gauss_solve, tangents
 
 __all__ = ["polish"]
 
@@ -70,15 +70,8 @@ def chart(field, matrix, rate, u, free, length, jacobian):
                 jacobian[3 + i, n] = length * rate
             n += 1
     if field == 0:
-        least = 0
-        for i in range(1, 3):
-            if abs(u[i]) < abs(u[least]):
-                least = i
-        e = np.zeros(3)
-        e[least] = 1.0
-        a = np.cross(u, e)
-        a /= math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
-        b = np.cross(u, a)
+        a, b = np.empty(3), np.empty(3)
+        tangents(u, a, b)
         for i in range(3):
             jacobian[3 + i, n] = a[i]
             jacobian[3 + i, n + 1] = b[i]

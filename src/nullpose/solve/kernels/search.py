@@ -22,6 +22,7 @@ __all__ = ["search"]
 _MU_START = 0.1
 _MAX_STEPS = 200
 _SAME = 1e-9
+_GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
 @kernel
@@ -72,13 +73,14 @@ def start_axis(family, axis_field, p, u, logs, f):
 
 
 @kernel
-def keep_if_better(value, p, u, best, best_p, best_u):
-    """Return the better of two values, copying the pose if it is the new one."""
-    if value > best:
-        for i in range(3):
-            best_p[i], best_u[i] = p[i], u[i]
-        return value
-    return best
+def draw(shift, number, box_low, box_high, p):
+    """Fill the position of one number of the golden-ratio sequence, every other one on the box's floor."""
+    for i in range(3):
+        s = shift[i] + number / _GOLDEN ** (i + 1)
+        s -= math.floor(s)
+        if i == 2 and number % 2 == 0:
+            s = 0.0  # the optimum is often on the floor
+        p[i] = box_low[i] + s * (box_high[i] - box_low[i])
 
 
 @kernel
@@ -99,61 +101,56 @@ def search(family, domain, axis_field, landmarks, shift, coarse, polished, round
         best_u: output, (3,).
     """
     low, high, keep_points, keep_radius = domain
-    ratios = family[1].shape[0]
-    f = np.empty(ratios)
+    f = np.empty(family[1].shape[0])
     logs = np.empty(family[5].shape[0])
     p, u = np.empty(3), np.empty(3)
     best = -math.inf
     starts = 0
     evaluations = 0
-    for m in range(landmarks.shape[0]):
-        for i in range(3):
-            p[i] = landmarks[m, i]
-        if push_out(p, low, high, keep_points, keep_radius):
-            start_axis(family, axis_field, p, u, logs, f)
-            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS)
-            best = keep_if_better(value, p, u, best, best_p, best_u)
-            starts += 1
-            evaluations += steps + 1
-    pool_p, pool_u = np.empty((coarse, 3)), np.empty((coarse, 3))
-    pool = np.empty(coarse)
+    size = max(coarse, landmarks.shape[0])
+    pool_p, pool_u = np.empty((size, 3)), np.empty((size, 3))
+    pool = np.empty(size)
     box_low, box_high = np.empty(3), np.empty(3)
-    # golden-ratio sequence in three dimensions: the powers of the root of x^4 = x + 1
-    g = 1.2207440846057596
     drawn = 0
     idle = 0
-    for _ in range(rounds):
+    for turn in range(rounds + 1):  # the first turn is the landmarks'
+        judged = landmarks.shape[0] if turn == 0 else coarse
         cut_box(family, low, high, best - 1e-12, box_low, box_high)
-        for i in range(3):
-            if not math.isfinite(box_low[i]) or not math.isfinite(box_high[i]):
-                return best, starts, evaluations
-        for c in range(coarse):
-            drawn += 1
-            for i in range(3):
-                s = shift[i] + drawn / g ** (i + 1)
-                s -= math.floor(s)
-                if i == 2 and drawn % 2 == 0:
-                    s = 0.0  # the optimum is often on the floor
-                p[i] = box_low[i] + s * (box_high[i] - box_low[i])
+        for c in range(judged):
+            if turn == 0:
+                for i in range(3):
+                    p[i] = landmarks[c, i]
+            else:
+                drawn += 1
+                draw(shift, drawn, box_low, box_high, p)
             pool[c] = -math.inf
             if push_out(p, low, high, keep_points, keep_radius):
                 pool[c] = start_axis(family, axis_field, p, u, logs, f)
                 for i in range(3):
                     pool_p[c, i], pool_u[c, i] = p[i], u[i]
                 evaluations += 1
-        order = np.argsort(-pool)
         before = best
-        for m in range(min(polished, coarse)):
-            c = order[m]
+        for _ in range(judged if turn == 0 else min(polished, coarse)):
+            c = 0
+            for i in range(1, judged):
+                if pool[i] > pool[c]:
+                    c = i
             if not pool[c] > -math.inf:
                 break
+            pool[c] = -math.inf
             for i in range(3):
                 p[i], u[i] = pool_p[c, i], pool_u[c, i]
             value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS)
-            best = keep_if_better(value, p, u, best, best_p, best_u)
+            if value > best:
+                best = value
+                for i in range(3):
+                    best_p[i], best_u[i] = p[i], u[i]
             starts += 1
             evaluations += steps
-        idle = 0 if best > before + _SAME else idle + 1
-        if idle >= patience:
+        if turn > 0:
+            idle = 0 if best > before + _SAME else idle + 1
+            if idle >= patience:
+                break
+        elif not best > -math.inf:
             break
     return best, starts, evaluations

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 
 from nullpose.solve.kernels.jit import kernel
 
-__all__ = ["cholesky_factor", "cholesky_solve", "eigen3", "gauss_solve"]
+__all__ = ["cholesky_factor", "cholesky_solve", "eigen3", "gauss_solve", "tangents"]
 
 _SWEEPS = 30
 
@@ -126,4 +125,23 @@ def gauss_solve(a, b, n):
         for k in range(i + 1, n):
             s -= a[i, k] * b[k]
         b[i] = s / a[i, i]
-    return bool(np.all(np.isfinite(b[:n])))
+    for i in range(n):
+        if not math.isfinite(b[i]):
+            return False
+    return True
+
+
+@kernel
+def tangents(u, a, b):
+    """Fill two unit vectors that make an orthogonal frame with the unit vector ``u``."""
+    least = 0
+    for i in range(1, 3):
+        if abs(u[i]) < abs(u[least]):
+            least = i
+    # a = u x e_least, normalised; b = u x a
+    i, j = (least + 1) % 3, (least + 2) % 3
+    norm = math.sqrt(u[i] * u[i] + u[j] * u[j])
+    a[least], a[i], a[j] = 0.0, u[j] / norm, -u[i] / norm
+    b[0] = u[1] * a[2] - u[2] * a[1]
+    b[1] = u[2] * a[0] - u[0] * a[2]
+    b[2] = u[0] * a[1] - u[1] * a[0]
