@@ -45,6 +45,9 @@ class ScenarioError(NullposeError, ValueError):
             lines = [f"{source}: {count}", *(f"  {line}" for line in lines)]
         super().__init__("\n".join(lines))
 
+    def __reduce__(self) -> tuple[type[ScenarioError], tuple[tuple[Fault, ...], str]]:
+        return type(self), (self.faults, self.source)
+
 
 class UsageError(NullposeError, ValueError):
     """A request that does not fit its scenario or its options, such as a null without a jammer."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 from nullpose.solve.kernels.jit import kernel
 
 __all__ = ["cholesky_factor", "cholesky_solve", "eigen3", "gauss_solve", "tangents"]
@@ -125,10 +124,10 @@ def gauss_solve(a, b, n):
         for k in range(i + 1, n):
             s -= a[i, k] * b[k]
         b[i] = s / a[i, i]
+    finite = True
     for i in range(n):
-        if not math.isfinite(b[i]):
-            return False
-    return True
+        finite = finite and math.isfinite(b[i])
+    return finite
 
 
 @kernel
