@@ -9,8 +9,8 @@ __all__ = ["JAMMER_POWER", "JAMMING_LEVELS", "POSE_LEVELS", "paper_scenario", "w
 JAMMER_POWER = "jammers.M.power_w"
 """The swept setting: with nodes of 1 W it equals the paper's ratio P_M/P."""
 
-JAMMING_LEVELS = (1e-3, 1e6, 37)
-"""First and last P_M/P and the number of points, four to a decade."""
+JAMMING_LEVELS = (1e-3, 1e6, 109)
+"""First and last P_M/P and the number of points, twelve to a decade."""
 
 POSE_LEVELS = (1e-2, 1.0, 1e2)
 """P_M/P of the pose figure: weak, medium and strong jamming."""

@@ -35,14 +35,13 @@ def binding_nodes(solution: Solution) -> frozenset[str]:
 
 
 def status_words(solution: Solution) -> str:
-    """Return how sure the answer is, in words with the number of local searches behind it.
+    """Return how sure the answer is, in words, and the work behind it.
 
     Args:
         solution: what was found.
     """
-    return (
-        f"{solution.status.message} ({_count(solution.stats.starts, 'start')}, {solution.stats.wall_s:.2g} s)"
-    )
+    effort = f"{_count(solution.stats.starts, 'start')}, {solution.stats.wall_s:.2g} s"
+    return f"{solution.status.message}\n{effort}"
 
 
 def _count(number: int, noun: str) -> str:
@@ -193,7 +192,7 @@ def _comparison_rows(scenario: Scenario, solutions: Sequence[Solution]) -> list[
     value: _Rows = [
         ("smallest SINR (dB)", [f"[bold]{s.objective.value_db:.7f}[/]" for s in solutions]),
         ("smallest SINR", [f"{s.objective.value:.7g}" for s in solutions]),
-        ("below the best (dB)", [_fixed(best_db - s.objective.value_db, 4) for s in solutions]),
+        ("gap to the best (dB)", [_fixed(best_db - s.objective.value_db, 4) for s in solutions]),
     ]
     poses = [solution.pose for solution in solutions]
     pose: _Rows = [

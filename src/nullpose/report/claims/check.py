@@ -15,7 +15,7 @@ from nullpose.report.claims.saturation import saturation
 from nullpose.report.claims.study import JammingStudy
 from nullpose.report.claims.vertical import above_jammer, pose_optimisation_wins
 
-__all__ = ["check_claims"]
+__all__ = ["CLAIM_COUNT", "check_claims"]
 
 _CHECKS: tuple[Callable[[JammingStudy], Claim], ...] = (
     weak_jamming,
@@ -27,6 +27,9 @@ _CHECKS: tuple[Callable[[JammingStudy], Claim], ...] = (
     pose_optimisation_wins,
     saturation,
 )
+
+CLAIM_COUNT = len(_CHECKS)
+"""How many claims there are to check."""
 
 
 def check_claims(

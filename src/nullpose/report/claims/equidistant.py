@@ -13,14 +13,14 @@ __all__ = ["best_equidistant"]
 _REACH_M = (
     100.0  # horizontally from the nodes' midpoint; no pose of the paper's scenario worth having is farther
 )
-_ZOOMS, _SHRINK = 40, 0.5
+_ZOOMS, _SHRINK = 30, 0.4
 
 
 def best_equidistant(scenario: Scenario, *, as_printed: bool = False) -> tuple[FloatArray, float]:
     """Return the best position on the plane halfway between two nodes, and the smallest SINR there.
 
     With the dipole broadside to both nodes (paper eq. 3.4), both have the same SINR on that plane, smooth in
-    two unknowns (the nodes being equally high): a grid of 0.25 m is refined around its best point.
+    two unknowns (the nodes being equally high): a grid of 0.5 m is refined around its best point.
 
     Args:
         scenario: two nodes of equal power and height.
@@ -42,15 +42,15 @@ def best_equidistant(scenario: Scenario, *, as_printed: bool = False) -> tuple[F
             ratios(scenario, np.concatenate([position, height_m[..., None]], axis=-1)).min(axis=-1)
         )
 
-    offsets = np.linspace(-_REACH_M, _REACH_M, 801)
-    heights = np.linspace(low_m, high_m, 89)
+    offsets = np.linspace(-_REACH_M, _REACH_M, 401)
+    heights = np.linspace(low_m, high_m, 45)
     half_offset, half_height = 1.0, 1.0  # m, searched on either side of the best point so far
     for _ in range(_ZOOMS):
         grid = np.meshgrid(offsets, heights, indexing="ij")
         values = smallest(*grid)
         i, j = np.unravel_index(int(np.argmax(values)), values.shape)
         offset, height, best = float(offsets[i]), float(heights[j]), float(values[i, j])
-        offsets = np.linspace(offset - half_offset, offset + half_offset, 21)
-        heights = np.clip(np.linspace(height - half_height, height + half_height, 21), low_m, high_m)
+        offsets = np.linspace(offset - half_offset, offset + half_offset, 9)
+        heights = np.clip(np.linspace(height - half_height, height + half_height, 9), low_m, high_m)
         half_offset, half_height = _SHRINK * half_offset, _SHRINK * half_height
     return np.array([*(middle[:2] + offset * aside[:2]), height]), best

@@ -53,10 +53,11 @@ def _end(study: JammingStudy, scheme: str) -> dict[str, float | None]:
     strongest = study.levels[-1]
     last_db = study.at(scheme, strongest).min_sinr_db
     change_db = last_db - study.at(scheme, strongest / 10.0).min_sinr_db
-    start = study.holds_from(lambda level: abs(study.at(scheme, level).min_sinr_db - last_db) <= _NEAR_DB)
-    flat = abs(change_db) <= _FLAT_DB
+    start = None
+    if abs(change_db) <= _FLAT_DB:
+        start = study.holds_from(lambda level: abs(study.at(scheme, level).min_sinr_db - last_db) <= _NEAR_DB)
     return {
         "value_at_strongest_db": last_db,
         "change_over_last_decade_db": change_db,
-        "within_0.01_db_from": start if flat else None,
+        "within_0.01_db_from": start,
     }

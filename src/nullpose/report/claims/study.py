@@ -12,7 +12,7 @@ from nullpose.study import SweepRow, SweepTable, sweep
 
 __all__ = ["JammingStudy"]
 
-_BISECTIONS = 20  # of a quarter of a decade: relative precision 6e-7
+_BISECTIONS = 12  # of a twelfth of a decade: relative precision 5e-5
 
 
 class JammingStudy:

@@ -8,7 +8,9 @@ from nullpose.report.claims.claim import Claim
 
 __all__ = ["claims_json", "claims_markdown"]
 
-_UNPROVED = "Each pose behind these numbers is the best of many local optima found, not proved to be the best."
+_UNPROVED = (
+    "Each pose behind these numbers is the best of many local optima found, not proved to be the best."
+)
 
 
 def claims_json(claims: Sequence[Claim], provenance: Mapping[str, object]) -> dict[str, object]:

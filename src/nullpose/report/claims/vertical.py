@@ -23,24 +23,23 @@ def above_jammer(study: JammingStudy) -> Claim:
         study: the data.
     """
     limit = study.holds_from(lambda level: _offset_m(study, level) <= _ABOVE_M)
-    strongest = study.levels[-1]
-    before = [level for level in study.levels if limit is None or level < limit]
-    farthest = max(before, key=lambda level: _offset_m(study, level))
-    levels = sorted({1e-3, 0.1, before[-1], 1.0, 10.0, 1000.0, strongest})
+    weakest, strongest = study.levels[0], study.levels[-1]
+    before = [level for level in study.levels if limit is None or level < limit] or [weakest]
+    levels = sorted({weakest, 0.01, 0.1, before[-1], 1.0, 10.0, 1000.0, strongest})
     start = f"from P_M/P = {limit:.3g} on" if limit is not None else "at no swept level"
-    jump = _offset_m(study, before[-1])
+    first_m, last_m = _offset_m(study, weakest), _offset_m(study, before[-1])
+    way = "backs away from it" if last_m > first_m else "comes nearer"
     return Claim(
         id="vertical-above-jammer",
-        claim="The vertical solution moves towards the jammer until it is directly above it.",
+        claim="The vertical solution moves until it is directly above the jammer.",
         source="section 4",
         verdict=Verdict.of(limit is not None),
         method=f"Horizontal distance from the jammer, at most {_ABOVE_M} m at every swept level from some "
         "level on, bisected.",
         finding=f"Within {_ABOVE_M} m of the vertical above the jammer {start}, and "
         f"{_offset_m(study, strongest):.1g} m from it at P_M/P = {strongest:g}. It does not glide there: "
-        f"it is {_offset_m(study, study.levels[0]):.1f} m away at the weakest jamming, "
-        f"{_offset_m(study, farthest):.1f} m at P_M/P = {farthest:.3g}, still {jump:.1f} m at the last "
-        "swept level before, and then jumps.",
+        f"as the jamming grows it first {way}, from {first_m:.1f} m at P_M/P = {weakest:g} to "
+        f"{last_m:.1f} m at {before[-1]:.3g}, and then jumps.",
         evidence={
             "levels": [
                 {

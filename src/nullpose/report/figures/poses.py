@@ -73,7 +73,7 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
         for index, row in enumerate(rows):
             axes: Any = figure.add_subplot(1, len(rows), index + 1, projection="3d", computed_zorder=False)
             _draw_panel(axes, scenario, row)
-        figure.subplots_adjust(left=0.012, right=0.972, bottom=0.08, top=0.98, wspace=0.06)
+        figure.subplots_adjust(left=0.016, right=0.962, bottom=0.08, top=0.98, wspace=0.06)
         handles, labels = figure.axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False, handlelength=2.6)
     return figure
@@ -100,7 +100,7 @@ def _draw_panel(axes: Any, scenario: Scenario, row: SweepRow) -> None:
     axes.scatter(*position, color=_DRONE, s=26, zorder=7, depthshade=False, label="drone")
     angle_deg = math.degrees(null_angle_rad(pose, jammer))
     axes.set_title(
-        f"$P_M/P$ = {row.value:g}\n{row.min_sinr_db:.2f} dB, null {angle_deg:.1f}° off the jammer",
+        f"$P_M/P$ = {row.value:g}\nsmallest SINR {row.min_sinr_db:.2f} dB, null {angle_deg:.1f}° off the jammer",
         fontsize=10, y=0.96,
     )  # fmt: skip
 
@@ -151,10 +151,10 @@ def _frame_scene(axes: Any, scenario: Scenario, position: FloatArray) -> None:
         high[side] = max(high[side], position[side] + _AXIS_M)
     low[2], high[2] = min(0.0, float(points[:, 2].min())), float(position[2]) + 1.3 * _PATTERN_M
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(tuple(high - low), zoom=1.2)  # one metre is as long along every axis
+    axes.set_box_aspect(tuple(high - low), zoom=1.13)  # one metre is as long along every axis
     axes.set_xlabel("x (east)  m", labelpad=-3)
     axes.set_ylabel("y (north)  m", labelpad=-1)
-    axes.set_zlabel("z (up)  m", labelpad=-7)
+    axes.set_zlabel("z (up)  m", labelpad=-8)
     axes.tick_params(pad=-2, labelsize=7.5)
     for axis, ticks in ((axes.xaxis, 4), (axes.yaxis, 6), (axes.zaxis, 3)):
         axis.set_major_locator(MaxNLocator(ticks, steps=(1, 2, 5, 10)))
