@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test check docs bench clean
+.PHONY: help demo test check docs bench figures clean
 
 help: ## what can be made, a line each
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' Makefile
@@ -31,6 +31,9 @@ docs: .venv/.with-docs ## the documentation, warnings being errors, into docs/_b
 
 bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
 	$(BIN)/python -m benchmarks
+
+figures: .venv/.with-core ## the pictures and the claims that README and pages show, made anew
+	$(BIN)/python docs/make_figures.py
 
 clean: ## take away .venv, out and docs/_build
 	rm -rf .venv out docs/_build

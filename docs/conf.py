@@ -39,4 +39,5 @@ html_title = "nullpose"
 html_static_path = ["_static"]
 html_css_files = ["nullpose.css"]
 html_copy_source = False
+html_show_copyright = False
 html_show_sourcelink = False

@@ -1,0 +1,49 @@
+"""The numbers on the limits page are what the program finds."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nullpose
+from nullpose.physics import sinr
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "limits.md").read_text(encoding="utf-8")
+TURNS_RAD = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+@pytest.fixture(scope="module")
+def solution() -> nullpose.Solution:
+    """The optimum of the paper's scenario under strong jamming."""
+    scenario = nullpose.load(ROOT / "examples" / "paper.toml")
+    return nullpose.solve(nullpose.apply_overrides(scenario, ["jammers.M.power_w=100"]))
+
+
+def test_value_without_error(solution: nullpose.Solution) -> None:
+    """The value that the page starts from is the optimum."""
+    assert f"reaches a smallest SINR of {solution.objective.value:.3f}" in PAGE
+
+
+def test_axis_two_degrees_off(solution: nullpose.Solution) -> None:
+    """The value left with the axis 2 degrees off is the worst over all directions of the error."""
+    axis = solution.pose.antenna_axis
+    across = np.cross(axis, [0.0, 0.0, 1.0])
+    across /= np.linalg.norm(across)
+    aside = np.cos(TURNS_RAD)[:, None] * across + np.sin(TURNS_RAD)[:, None] * np.cross(axis, across)
+    axes = np.cos(np.radians(2.0)) * axis + np.sin(np.radians(2.0)) * aside
+    worst = np.min(sinr(solution.scenario, np.broadcast_to(solution.pose.position_m, axes.shape), axes))
+    assert f"only {worst:.3f} with its axis 2 degrees off" in PAGE
+
+
+def test_jammer_one_metre_off(solution: nullpose.Solution) -> None:
+    """The value left with the jammer 1 m aside is the worst over all horizontal directions."""
+    x, y, z = solution.scenario.jammers[0].position_m
+    moved = ([x + float(np.cos(turn)), y + float(np.sin(turn)), z] for turn in TURNS_RAD[::2])
+    worst = min(
+        nullpose.min_sinr(
+            nullpose.apply_overrides(solution.scenario, [f"jammers.M.position_m={place}"]), solution.pose
+        )
+        for place in moved
+    )
+    assert f"leaves {worst:.3f}" in PAGE
