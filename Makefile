@@ -54,7 +54,8 @@ clean: ## take away .venv, out and docs/_build
 	@$(PIP) -e .
 	@touch $@
 
-.venv/.with-%: pyproject.toml .venv/.made
-	@echo "Installing nullpose and its $* tools into .venv"
-	@$(PIP) -e ".[$*]"
+.venv/.with-%: .venv/.with-core
+	@echo "Installing the $* tools into .venv"
+	@$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['optional-dependencies']['$*'], sep='\n')" > .venv/$*.txt
+	@$(PIP) -r .venv/$*.txt
 	@touch $@
