@@ -27,6 +27,7 @@ math_eqref_format = "({number})"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray")}
 python_use_unqualified_type_names = True
 # Types of other packages have no pages here, and the build asks no network for theirs.
 nitpick_ignore_regex = [

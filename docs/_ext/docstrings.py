@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from pydantic import BaseModel
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon.docstring import GoogleDocstring
+
+
+ALIAS = re.compile(r"TypeAliasForwardRef\('(\w+)'\)")
 
 
 class Docstring(GoogleDocstring):
@@ -19,17 +24,27 @@ def read_sections(app: Sphinx, what: str, name: str, obj: object, options: objec
     lines[:] = Docstring(list(lines), what=what, name=name, obj=obj, options=options).lines()
 
 
-def model_signature(
-    app: Sphinx, what: str, name: str, obj: object, options: object, signature: str, returns: str
-) -> tuple[str, str] | None:
-    """Return no signature for a table of the scenario: its keys are described below it, with their units."""
+def tidy_signature(
+    app: Sphinx,
+    what: str,
+    name: str,
+    obj: object,
+    options: object,
+    signature: str | None,
+    returns: str | None,
+) -> tuple[str, str]:
+    """Return a signature and its result's type as a reader wants them.
+
+    None for a table of the scenario, whose keys are described below it with their units; type aliases by name
+    elsewhere, inside other types too.
+    """
     if what == "class" and isinstance(obj, type) and issubclass(obj, BaseModel):
         return "", ""
-    return None
+    return ALIAS.sub(r"\1", signature or ""), ALIAS.sub(r"\1", returns or "")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register both; this stands in for sphinx.ext.napoleon."""
     app.connect("autodoc-process-docstring", read_sections)
-    app.connect("autodoc-process-signature", model_signature)
+    app.connect("autodoc-process-signature", tidy_signature)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
