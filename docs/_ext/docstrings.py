@@ -8,7 +8,6 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon.docstring import GoogleDocstring
 
-
 ALIAS = re.compile(r"TypeAliasForwardRef\('(\w+)'\)")
 
 
@@ -32,15 +31,17 @@ def tidy_signature(
     options: object,
     signature: str | None,
     returns: str | None,
-) -> tuple[str, str]:
-    """Return a signature and its result's type as a reader wants them.
+) -> tuple[str, str | None] | None:
+    """Return a signature and its result's type as a reader wants them; nothing where there is no signature.
 
-    None for a table of the scenario, whose keys are described below it with their units; type aliases by name
-    elsewhere, inside other types too.
+    A table of the scenario shows none: its keys are described below it, with their units. Elsewhere type
+    aliases go by their names, inside other types too.
     """
+    if signature is None:
+        return None
     if what == "class" and isinstance(obj, type) and issubclass(obj, BaseModel):
-        return "", ""
-    return ALIAS.sub(r"\1", signature or ""), ALIAS.sub(r"\1", returns or "")
+        return "", None
+    return ALIAS.sub(r"\1", signature), ALIAS.sub(r"\1", returns) if returns else None
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
