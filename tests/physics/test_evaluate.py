@@ -1,0 +1,58 @@
+"""What a pose gives each node of a scenario."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.physics import Link, Pose, antenna_axis, evaluate, min_sinr, sinr
+from nullpose.scenario import Scenario
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+@given(seed=SEEDS, yaw=st.floats(-math.pi, math.pi))
+def test_links_are_the_sinr_of_the_pose(
+    seed: int, yaw: float, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Each node's link, in order, is eq. 2.1 at the pose's axis, whatever the yaw; the least is min_sinr."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, 4, 2)
+    position, axis = random_poses(rng)
+    pose = Pose.from_axis(position, axis, yaw)
+    links = evaluate(scene, pose)
+    assert [link.node for link in links] == ["S1", "S2", "S3", "S4"]
+    np.testing.assert_allclose([link.sinr for link in links], sinr(scene, position, axis), rtol=1e-9)
+    np.testing.assert_allclose(
+        [link.sinr_db for link in links], 10.0 * np.log10([link.sinr for link in links]), atol=1e-12
+    )
+    assert min_sinr(scene, pose) == min(link.sinr for link in links)
+
+
+def test_the_paper_at_its_optimum(paper: Scenario) -> None:
+    """At the position known as the paper's optimum for P_M/P = 1 a fine grid of axes comes to 0.9837 dB."""
+    position = np.array([-2.24, 23.82, 8.0])
+    roll, pitch = np.meshgrid(np.linspace(-0.31, -0.29, 201), np.linspace(-1.39, -1.37, 201))
+    ratios = np.min(sinr(paper, position, antenna_axis(roll, pitch)), axis=-1)
+    at = np.unravel_index(np.argmax(ratios), ratios.shape)
+    best = min_sinr(paper, Pose(position, roll[at], pitch[at]))
+    assert best == pytest.approx(ratios[at], rel=1e-13)
+    assert 10.0 * math.log10(best) == pytest.approx(0.9837, abs=1e-4)
+
+
+def test_a_node_in_the_null_is_minus_infinity(paper: Scenario) -> None:
+    """A node straight along the dipole is received with nothing: 0, or minus infinity in dB, no warning."""
+    links = evaluate(paper, Pose([0.0, 0.0, 10.0], 0.0, 0.0))
+    assert links[0] == Link(node="S1", sinr=0.0, sinr_db=-math.inf)
+    assert links[1].sinr > 0.0
+    assert min_sinr(paper, Pose([0.0, 0.0, 10.0], 0.0, 0.0)) == 0.0
+
+
+def test_a_link_holds_plain_numbers(paper: Scenario) -> None:
+    """Links hold Python floats, so that they print and serialise as numbers."""
+    for link in evaluate(paper, Pose([1.0, 2.0, 10.0], 0.1, 0.2)):
+        assert type(link.sinr) is float
+        assert type(link.sinr_db) is float

@@ -1,0 +1,77 @@
+"""Poses: frozen values whose axis is eq. 1.1."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.physics import Pose, antenna_axis
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+@given(seed=SEEDS, yaw=st.floats(-math.pi, math.pi), length=st.floats(1e-6, 1e6))
+def test_a_pose_from_an_axis_has_that_axis(seed: int, yaw: float, length: float) -> None:
+    """The pose built from an axis of any length and sign has it, pointing up, at the yaw asked for."""
+    axis = np.random.default_rng(seed).normal(size=3)
+    pose = Pose.from_axis([1.0, 2.0, 3.0], length * axis, yaw)
+    unit = axis / np.linalg.norm(axis)
+    np.testing.assert_allclose(pose.antenna_axis, unit if unit[2] > 0.0 else -unit, atol=1e-15)
+    assert pose.yaw_rad == yaw
+    assert abs(pose.roll_rad) <= math.pi / 2
+    assert abs(pose.pitch_rad) <= math.pi / 2
+
+
+def test_axis_is_that_of_the_angles() -> None:
+    """The pose's axis is eq. 1.1 of its own roll, pitch and yaw; yaw is 0 if left out."""
+    pose = Pose([0.0, 0.0, 10.0], 0.3, -0.7, 1.1)
+    np.testing.assert_array_equal(pose.antenna_axis, antenna_axis(0.3, -0.7, 1.1))
+    assert Pose([0.0, 0.0, 10.0], 0.3, -0.7).yaw_rad == 0.0
+
+
+def test_a_pose_is_frozen() -> None:
+    """Neither the fields nor the position's numbers can be set, and the array given stays its owner's."""
+    given_m = np.array([1.0, 2.0, 3.0])
+    pose = Pose(given_m, 0.1, 0.2)
+    given_m[0] = 9.0
+    assert pose.position_m[0] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        pose.position_m[0] = 5.0
+    with pytest.raises(AttributeError):
+        pose.roll_rad = 0.0
+
+
+def test_equal_poses_are_equal_and_hash_alike() -> None:
+    """Equality and hash go by the six numbers, and nothing else equals a pose."""
+    pose = Pose([1.0, 2.0, 3.0], 0.1, 0.2)
+    same = Pose(np.array([1, 2, 3]), np.float64(0.1), 0.2, 0.0)
+    assert pose == same
+    assert hash(pose) == hash(same)
+    others = [
+        Pose([1.0, 2.0, 3.5], 0.1, 0.2),
+        Pose([1.0, 2.0, 3.0], 0.15, 0.2),
+        Pose([1.0, 2.0, 3.0], 0.1, 0.25),
+        Pose([1.0, 2.0, 3.0], 0.1, 0.2, 0.5),
+    ]
+    assert len({pose, same, *others}) == 5
+    assert pose != "a pose"
+
+
+@pytest.mark.parametrize(
+    ("position_m", "angles"),
+    [
+        ([1.0, 2.0], (0.0, 0.0, 0.0)),
+        ([[1.0, 2.0, 3.0]], (0.0, 0.0, 0.0)),
+        ([1.0, 2.0, math.nan], (0.0, 0.0, 0.0)),
+        ([1.0, math.inf, 3.0], (0.0, 0.0, 0.0)),
+        ([1.0, 2.0, 3.0], (math.nan, 0.0, 0.0)),
+        ([1.0, 2.0, 3.0], (0.0, math.inf, 0.0)),
+        ([1.0, 2.0, 3.0], (0.0, 0.0, -math.inf)),
+    ],
+)
+def test_bad_numbers_are_refused(position_m: list, angles: tuple[float, float, float]) -> None:
+    """A position not of three components, or a number that is not finite, is refused with what was given."""
+    with pytest.raises(ValueError, match=r"three finite coordinates and three finite angles; given"):
+        Pose(position_m, *angles)

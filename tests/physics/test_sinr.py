@@ -1,0 +1,187 @@
+"""The SINR of each link: eq. 2.1, and what must leave it unchanged."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics import antenna_gain, received_power_w, sinr
+
+SEEDS = st.integers(0, 2**32 - 1)
+NODES = st.integers(1, 6)
+JAMMERS = st.integers(0, 3)
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS)
+def test_sinr_is_equation_2_1(
+    seed: int, nodes: int, jammers: int, random_scene: Callable, random_poses: Callable
+) -> None:
+    """The SINR is eq. 2.1 with the gains of eq. 1.4 as printed, written out in plain Python."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, nodes, jammers)
+    position, axis = random_poses(rng)
+
+    def received(point_m: tuple[float, float, float], power_w: float) -> float:
+        distance = math.dist(point_m, position)
+        cosine = sum((q - p) / distance * a for q, p, a in zip(point_m, position, axis, strict=True))
+        return (1.0 - cosine**2) * power_w / distance**2
+
+    interference_w = sum(received(j.position_m, j.transmit_power_w) for j in scene.jammers)
+    expected = [
+        received(node.position_m, node.transmit_power_w) / (interference_w + scene.receiver.noise_power_w)
+        for node in scene.nodes
+    ]
+    np.testing.assert_allclose(sinr(scene, position, axis), expected, rtol=1e-12, atol=1e-14)
+
+
+@given(seed=SEEDS)
+def test_moving_the_whole_scene_changes_nothing(
+    seed: int, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Rotating and shifting nodes, jammers, position and axis together leaves every SINR unchanged."""
+    rng = np.random.default_rng(seed)
+    before = random_scene(rng, 4, 2)
+    position, axis = random_poses(rng)
+    rotation = Rotation.from_quat(rng.normal(size=4)).as_matrix()
+    shift_m = rng.uniform(-100.0, 100.0, 3)
+    after = scene(
+        before.node_positions_m @ rotation.T + shift_m,
+        before.node_powers_w,
+        before.jammer_positions_m @ rotation.T + shift_m,
+        before.jammer_powers_w,
+    )
+    np.testing.assert_allclose(
+        sinr(after, rotation @ position + shift_m, rotation @ axis),
+        sinr(before, position, axis),
+        rtol=1e-9,
+    )
+
+
+@given(seed=SEEDS)
+def test_an_axis_and_its_opposite_are_the_same_antenna(
+    seed: int, random_scene: Callable, random_poses: Callable
+) -> None:
+    """The SINR at u and at -u is the same to the last bit."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, 3, 2)
+    position, axis = random_poses(rng)
+    np.testing.assert_array_equal(sinr(scene, position, axis), sinr(scene, position, -axis))
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS)
+def test_one_more_jammer_never_helps(
+    seed: int, nodes: int, jammers: int, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Adding a jammer raises no node's SINR, at any pose."""
+    rng = np.random.default_rng(seed)
+    more = random_scene(rng, nodes, jammers + 1)
+    fewer = scene(
+        more.node_positions_m,
+        more.node_powers_w,
+        more.jammer_positions_m[:-1],
+        more.jammer_powers_w[:-1],
+    )
+    positions, axes = random_poses(rng, 50)
+    assert np.all(sinr(more, positions, axes) <= sinr(fewer, positions, axes))
+
+
+@given(seed=SEEDS, factor=st.floats(1e-12, 1e12))
+def test_scaling_all_powers_changes_nothing(
+    seed: int, factor: float, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """The SINR is a ratio of powers: scaling nodes, jammers and noise together leaves it unchanged."""
+    rng = np.random.default_rng(seed)
+    one = random_scene(rng, 3, 2)
+    scaled = scene(
+        one.node_positions_m,
+        factor * one.node_powers_w,
+        one.jammer_positions_m,
+        factor * one.jammer_powers_w,
+        noise_w=factor * one.receiver.noise_power_w,
+    )
+    position, axis = random_poses(rng)
+    np.testing.assert_allclose(sinr(scaled, position, axis), sinr(one, position, axis), rtol=1e-14)
+
+
+@given(seed=SEEDS, gain_db=st.floats(-120.0, 20.0))
+def test_path_gain_weighs_against_the_noise_only(
+    seed: int, gain_db: float, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """A path gain at 1 m is the same as that much less noise."""
+    rng = np.random.default_rng(seed)
+    plain = random_scene(rng, 3, 2)
+    ground = (plain.node_positions_m, plain.node_powers_w, plain.jammer_positions_m, plain.jammer_powers_w)
+    gained = scene(*ground, reference_gain_db=gain_db)
+    quieter = scene(*ground, noise_w=plain.receiver.noise_power_w / 10.0 ** (gain_db / 10.0))
+    position, axis = random_poses(rng)
+    np.testing.assert_allclose(sinr(gained, position, axis), sinr(quieter, position, axis), rtol=1e-12)
+
+
+@given(seed=SEEDS, length=st.floats(0.01, 100.0))
+def test_only_power_over_squared_distance_counts(
+    seed: int, length: float, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Stretching the scene about the origin and raising the powers with its square changes nothing."""
+    rng = np.random.default_rng(seed)
+    one = random_scene(rng, 3, 2)
+    stretched = scene(
+        length * one.node_positions_m,
+        length**2 * one.node_powers_w,
+        length * one.jammer_positions_m,
+        length**2 * one.jammer_powers_w,
+    )
+    position, axis = random_poses(rng)
+    np.testing.assert_allclose(
+        sinr(stretched, length * position, axis), sinr(one, position, axis), rtol=1e-11
+    )
+
+
+@given(seed=SEEDS)
+def test_order_of_the_nodes_is_irrelevant(
+    seed: int, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Listing nodes and jammers in another order permutes the ratios and changes none."""
+    rng = np.random.default_rng(seed)
+    one = random_scene(rng, 5, 3)
+    nodes, jammers = rng.permutation(5), rng.permutation(3)
+    other = scene(
+        one.node_positions_m[nodes],
+        one.node_powers_w[nodes],
+        one.jammer_positions_m[jammers],
+        one.jammer_powers_w[jammers],
+    )
+    position, axis = random_poses(rng)
+    np.testing.assert_allclose(sinr(other, position, axis), sinr(one, position, axis)[nodes], rtol=1e-14)
+
+
+def test_without_jammers_it_is_the_snr(random_scene: Callable, random_poses: Callable) -> None:
+    """With no jammer the denominator is the noise alone."""
+    rng = np.random.default_rng(11)
+    scene = random_scene(rng, 3, 0)
+    position, axis = random_poses(rng)
+    distances = np.linalg.norm(scene.node_positions_m - position, axis=1)
+    gain = antenna_gain(position, axis, scene.node_positions_m)
+    snr = gain * scene.node_powers_w / distances**2 / scene.receiver.noise_power_w
+    np.testing.assert_allclose(sinr(scene, position, axis), snr, rtol=1e-14)
+
+
+def test_received_power_broadside() -> None:
+    """Broadside at 10 m a transmitter of 2 W arrives with the path gain times 2 W over 100 square metres."""
+    power_w = received_power_w(np.zeros(3), [0.0, 0.0, 1.0], [[10.0, 0.0, 0.0]], [2.0], 1e-4)
+    assert power_w == pytest.approx([1e-4 * 2.0 / 100.0], rel=1e-15)
+
+
+def test_shapes_follow_the_poses(random_scene: Callable, random_poses: Callable) -> None:
+    """Leading shapes of positions and axes broadcast, nodes come last, and each entry is the scalar call."""
+    rng = np.random.default_rng(12)
+    scene = random_scene(rng, 3, 2)
+    positions, _ = random_poses(rng, 4, 1)
+    _, axes = random_poses(rng, 5)
+    ratios = sinr(scene, positions, axes)
+    assert ratios.shape == (4, 5, 3)
+    for i, j in np.ndindex(4, 5):
+        np.testing.assert_allclose(ratios[i, j], sinr(scene, positions[i, 0], axes[j]), rtol=1e-14)
