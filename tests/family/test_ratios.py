@@ -1,0 +1,93 @@
+"""The family as a value: read-only arrays and a digest of every number."""
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose.family import Family, build_family
+
+FIELDS = [field.name for field in dataclasses.fields(Family)]
+ARRAYS = [name for name in FIELDS if name != "keep_out_m"]
+
+
+@pytest.fixture(scope="module")
+def family(random_scene: Callable) -> Family:
+    """Returns a family of three nodes and two jammers in which every array has a number."""
+    return build_family(random_scene(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_arrays_are_read_only(family: Family, name: str) -> None:
+    """No array of a family can be written to."""
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(family, name)[...] = 0
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_fields_cannot_be_set(family: Family, name: str) -> None:
+    """No field of a family can be replaced."""
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(family, name, getattr(family, name))
+
+
+def test_arrays_are_copies(family: Family) -> None:
+    """The arrays given stay their owner's: writing to them later changes neither family nor digest."""
+    weights = np.array(family.numerator_weight)
+    copy = dataclasses.replace(family, numerator_weight=weights)
+    digest = copy.digest
+    weights[0] = 99.0
+    assert copy.numerator_weight[0] == family.numerator_weight[0]
+    assert copy.digest == digest
+
+
+def test_what_kernels_take_is_the_family(family: Family) -> None:
+    """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
+    assert len(family.arrays) == 9
+    for name, array in zip(FIELDS, family.arrays, strict=False):
+        assert array is getattr(family, name)
+        assert array.flags.c_contiguous
+
+
+def test_digest_is_stable(family: Family) -> None:
+    """The digest is 64 hexadecimal digits, the same on every call, for a copy and for strided input."""
+    assert len(bytes.fromhex(family.digest)) == 32
+    assert family.digest == family.digest
+    assert dataclasses.replace(family).digest == family.digest
+    strided = np.repeat(family.points_m, 2, axis=0)[::2]
+    assert dataclasses.replace(family, points_m=strided).digest == family.digest
+
+
+def test_digest_of_equal_scenes_is_equal(random_scene: Callable) -> None:
+    """Two scenes with the same numbers, built apart, are the same problem; another one is not."""
+    digests = [build_family(random_scene(np.random.default_rng(seed), 4, 1)).digest for seed in (6, 6, 7)]
+    assert digests[0] == digests[1]
+    assert digests[0] != digests[2]
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_digest_sees_every_number(family: Family, name: str) -> None:
+    """Changing any one number by its last digit changes the digest, to a different one each time."""
+    value = np.array(getattr(family, name))
+    assert value.size > 0
+    digests = {family.digest}
+    for index in np.ndindex(value.shape):
+        changed = value.copy()
+        if value.dtype.kind == "i":
+            changed[index] += 1
+        else:
+            changed[index] = np.nextafter(changed[index], 0.0) if changed[index] != 0.0 else 5e-324
+        digests.add(dataclasses.replace(family, **{name: changed if value.shape else float(changed)}).digest)
+    assert len(digests) == 1 + value.size
+
+
+def test_digest_sees_the_shape(family: Family) -> None:
+    """The same numbers under other bounds of the entries are another problem."""
+    split = dataclasses.replace(
+        family,
+        denominator_isotropic=np.array([1.0, 1.0]),
+        denominator_start=np.array([0, 1, 2]),
+        denominator_of=np.array([0, 1, 0]),
+    )
+    assert split.digest != family.digest
