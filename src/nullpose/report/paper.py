@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.study import spaced
 
-__all__ = ["JAMMER_POWER", "JAMMING_LEVELS", "POSE_LEVELS", "paper_scenario", "with_jamming"]
+__all__ = [
+    "JAMMER_POWER",
+    "JAMMING_LEVELS",
+    "POSE_LEVELS",
+    "PRINTED_LEVELS",
+    "paper_scenario",
+    "with_jamming",
+]
 
 JAMMER_POWER = "jammers.M.power_w"
 """The swept setting: with nodes of 1 W it equals the paper's ratio P_M/P."""
 
-JAMMING_LEVELS = (1e-3, 1e6, 109)
-"""First and last P_M/P and the number of points, twelve to a decade."""
+JAMMING_LEVELS = spaced(1e-3, 1e6, 109, log=True)
+"""P_M/P of Figure 2, twelve to a decade."""
+
+PRINTED_LEVELS = (*JAMMING_LEVELS[:48:3], *JAMMING_LEVELS[48::12])
+"""P_M/P at which eq. 3.5 as printed is solved, for comparison: four to a decade up to 10, then one."""
 
 POSE_LEVELS = (1e-2, 1.0, 1e2)
 """P_M/P of the pose figure: weak, medium and strong jamming."""

@@ -20,9 +20,9 @@ def _standard(value: object) -> object:
 
 
 def json_text(value: object) -> str:
-    """Return a value as indented JSON; what JSON has no number for (NaN, infinities) becomes null.
+    """Return a value as indented JSON in ASCII; what JSON has no number for (NaN, infinities) becomes null.
 
     Args:
         value: mappings, sequences, texts, numbers, truth values and None, nested at will.
     """
-    return json.dumps(_standard(value), indent=2, ensure_ascii=False, allow_nan=False)
+    return json.dumps(_standard(value), indent=2, allow_nan=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,10 +17,16 @@ from nullpose.report.claims import (
 )
 from nullpose.report.figures import draw_figure2, draw_poses
 from nullpose.report.figures.style import write_figure
-from nullpose.report.paper import JAMMER_POWER, JAMMING_LEVELS, POSE_LEVELS, paper_scenario
+from nullpose.report.paper import (
+    JAMMER_POWER,
+    JAMMING_LEVELS,
+    POSE_LEVELS,
+    PRINTED_LEVELS,
+    paper_scenario,
+)
 from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme, solve
-from nullpose.study import SweepTable, prepare_folder, spaced, sweep, write_text
+from nullpose.study import SweepTable, prepare_folder, sweep, write_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -28,7 +34,6 @@ if TYPE_CHECKING:
 __all__ = ["Reproduction", "reproduce", "reproduction_view"]
 
 _CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
-_PRINTED_EVERY = 3  # eq. 3.5 as printed is for comparison only, and is solved at every third level
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +58,20 @@ class Reproduction:
 
 
 def reproduce(
-    folder: Path, *, seed: int = 0, on_progress: Callable[[int, int], None] | None = None
+    folder: Path,
+    *,
+    seed: int = 0,
+    levels: Sequence[float] = JAMMING_LEVELS,
+    printed_levels: Sequence[float] = PRINTED_LEVELS,
+    on_progress: Callable[[int, int], None] | None = None,
 ) -> Reproduction:
     """Return what the paper's section 4 looks like when computed, after writing it to a folder.
 
     Args:
         folder: where the files go; made if it is missing.
         seed: the random seed of every solve.
+        levels: P_M/P of the four curves, ascending.
+        printed_levels: P_M/P of maximum gain as eq. 3.5 is printed, ascending.
         on_progress: called now and then with how many steps are done and how many there are.
 
     Raises:
@@ -67,9 +79,8 @@ def reproduce(
     """
     prepare_folder(folder)
     scenario = paper_scenario()
-    start, stop, points = JAMMING_LEVELS
-    levels = spaced(start, stop, points, log=True)
-    solves = points * len(PAPER_SCHEMES) + len(levels[::_PRINTED_EVERY])
+    four_cases = len(levels) * len(PAPER_SCHEMES)
+    solves = four_cases + len(printed_levels)
     total = solves + CLAIM_COUNT * _CLAIM_STEPS
 
     def tick_from(offset: int, step: int = 1) -> Callable[[int, int], None]:
@@ -79,10 +90,10 @@ def reproduce(
         sweep(
             scenario,
             JAMMER_POWER,
-            levels[::_PRINTED_EVERY],
+            printed_levels,
             schemes=[Scheme.MAXIMUM_GAIN_PRINTED],
             seed=seed,
-            on_progress=tick_from(points * len(PAPER_SCHEMES)),
+            on_progress=tick_from(four_cases),
         )
     )
     study = JammingStudy(scenario, table, seed)

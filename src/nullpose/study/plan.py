@@ -12,7 +12,7 @@ from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.solve.scheme import require_applicable
 from nullpose.study.files import prepare_folder
 from nullpose.study.spacing import spaced
-from nullpose.study.sweep import sweep
+from nullpose.study.sweep import scenarios_along, sweep
 from nullpose.study.table import SweepTable
 
 __all__ = ["SweepPlan", "plan_sweep"]
@@ -94,4 +94,6 @@ def plan_sweep(
     if schemes is not None:
         for scheme in wanted:
             require_applicable(base, scheme)
-    return SweepPlan(base, varied[0].strip(), values, wanted, prepare_folder(out), seed)
+    path = varied[0].strip()
+    scenarios_along(base, path, values)  # a fault shows before a folder is made
+    return SweepPlan(base, path, values, wanted, prepare_folder(out), seed)

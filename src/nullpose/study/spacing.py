@@ -36,7 +36,8 @@ def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tupl
     if points < 2:
         faults.append(f"points: {points} given; a sweep needs at least 2")
     if faults:
-        raise UsageError("\n".join(faults))
+        count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
+        raise UsageError("\n  ".join([f"range of the sweep: {count}", *faults]))
     steps = [i / (points - 1) for i in range(points)]
     if log:
         values = [start ** (1.0 - s) * stop**s for s in steps]

@@ -10,7 +10,7 @@ from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, not_applicable, solve
 from nullpose.study.table import SweepRow, SweepTable
 
-__all__ = ["sweep"]
+__all__ = ["scenarios_along", "sweep"]
 
 
 def sweep(
@@ -39,7 +39,7 @@ def sweep(
         ScenarioError: the path does not exist, or a value makes no valid scenario.
         UsageError: no scheme applies.
     """
-    scenarios = _scenarios(scenario, path, values)
+    scenarios = scenarios_along(scenario, path, values)
     wanted = [Scheme(scheme) for scheme in schemes]
     reasons = {scheme: not_applicable(scenario, scheme) for scheme in wanted}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason is not None}
@@ -56,7 +56,19 @@ def sweep(
     return SweepTable(path=path, rows=tuple(rows), left_out=MappingProxyType(left_out))
 
 
-def _scenarios(scenario: Scenario, path: str, values: Sequence[float]) -> list[tuple[float, Scenario]]:
+def scenarios_along(
+    scenario: Scenario, path: str, values: Sequence[float]
+) -> tuple[tuple[float, Scenario], ...]:
+    """Return each value of a setting with the scenario that has it.
+
+    Args:
+        scenario: the scenario whose setting is varied.
+        path: the setting, as in ``jammers.M.power_w``.
+        values: what to set it to, in its own unit.
+
+    Raises:
+        ScenarioError: the path does not exist, or values make no valid scenario; every fault once.
+    """
     varied: list[tuple[float, Scenario]] = []
     faults: dict[str, list[tuple[float, Fault]]] = {}
     for value in map(float, values):
@@ -67,7 +79,7 @@ def _scenarios(scenario: Scenario, path: str, values: Sequence[float]) -> list[t
                 faults.setdefault(fault.path, []).append((value, fault))
     if faults:
         raise ScenarioError([_summary(found) for found in faults.values()], source=f"sweep of {path}")
-    return varied
+    return tuple(varied)
 
 
 def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:

@@ -14,6 +14,7 @@ __all__ = ["strong_jamming", "weak_jamming", "zero_interference_constant"]
 
 _COINCIDE_DB = 0.01
 _CONSTANT_DB = 1e-6
+_NOISE = 1e-9  # dB and m; what is smaller is rounding, and is told as at most this
 
 
 def weak_jamming(study: JammingStudy) -> Claim:
@@ -115,8 +116,9 @@ def zero_interference_constant(study: JammingStudy) -> Claim:
         verdict=Verdict.of(spread_db <= _CONSTANT_DB),
         method="Largest less smallest value over all swept levels, each solved afresh, at most "
         f"{_CONSTANT_DB:g} dB.",
-        finding=f"{sinrs_db[0]:.7f} dB at every one of {len(rows)} levels from P_M/P = {rows[0].value:g} to "
-        f"{rows[-1].value:g}, within {spread_db:.1g} dB; the position moves by at most {spread_m:.1g} m.",
+        finding=f"{sinrs_db[0]:.7f} dB at every one of {len(rows)} levels from P_M/P = {rows[0].value:g} "
+        f"to {rows[-1].value:g}, within {max(spread_db, _NOISE):.1g} dB; the position moves by at most "
+        f"{max(spread_m, _NOISE):.1g} m.",
         evidence={
             "min_db": min(sinrs_db),
             "max_db": max(sinrs_db),

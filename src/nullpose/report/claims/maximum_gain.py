@@ -15,6 +15,7 @@ __all__ = ["equidistant", "null_at_jammer"]
 _SCHEME = "maximum-gain"
 _POINTED_DEG = 1.0
 _BETTER_DB = 1e-4
+_NOISE_M = 1e-6  # what is smaller is told as at most this
 
 
 def null_at_jammer(study: JammingStudy) -> Claim:
@@ -39,8 +40,8 @@ def null_at_jammer(study: JammingStudy) -> Claim:
         "from some level on, bisected.",
         finding=f"The null is within {_POINTED_DEG:g} degree of the jammer {start}, and {last:.2g} "
         f"degrees off it at P_M/P = {strongest:g}, where the drone is at ({position_m[0]:.2f}, "
-        f"{position_m[1]:.2f}, {position_m[2]:.2f}) m: level with the jammer along the line of the nodes, "
-        "and not halfway.",
+        f"{position_m[1]:.2f}, {position_m[2]:.2f}) m; along the line of the nodes the jammer is at y = "
+        f"{study.scenario.jammer_positions_m[0][1]:g} m.",
         evidence={
             "levels": [
                 {
@@ -82,6 +83,7 @@ def equidistant(study: JammingStudy) -> Claim:
     fails = limit is None or limit < study.levels[-1]
     levels = [_row(study, level) for level in (0.1, 1.0, 1.4, 1.6, 3.0, 10.0, 1e3, study.levels[-1])]
     three = _row(study, 3.0)
+    printed = _printed_evidence(study)
     return Claim(
         id="maximum-gain-equidistant",
         claim="The best maximum-gain position is equally far from both nodes.",
@@ -90,22 +92,23 @@ def equidistant(study: JammingStudy) -> Claim:
         method="The best maximum-gain value (axis normalised) against the best one on the plane halfway "
         "between the nodes, found apart: the claim fails where the former is higher by more than "
         f"{_BETTER_DB:g} dB. The level from which it is, is bisected.",
-        finding=_equidistant_finding(limit, three),
-        evidence={"levels": levels, "as_printed": _printed_evidence(study)},
+        finding=_equidistant_finding(limit, three, printed),
+        evidence={"levels": levels, "as_printed": printed},
         holds_up_to=limit,
         fails_from=(study.levels[0] if limit is None else limit) if fails else None,
     )
 
 
-def _equidistant_finding(limit: float | None, three: dict[str, object]) -> str:
+def _equidistant_finding(limit: float | None, three: dict[str, object], printed: dict[str, float]) -> str:
     if limit is None:
         return "At no swept level is the best maximum-gain position equidistant."
+    apart_m = printed["largest_distance_difference_m"]
     first, second = _pair(three["distances_m"])
     return (
         f"Equidistant up to P_M/P = {limit:.3f} only. At P_M/P = 3 the best position is {first:.1f} m and "
         f"{second:.1f} m from the nodes and reaches {three['best_db']:.3f} dB; the best equidistant one "
         f"reaches {three['best_equidistant_db']:.3f} dB. With the axis of eq. 3.4 as printed, not "
-        "normalised, the optimum does stay equidistant."
+        f"normalised, the distances never differ by more than {max(apart_m, _NOISE_M):.1g} m."
     )
 
 
@@ -132,7 +135,7 @@ def _row(study: JammingStudy, level: float) -> dict[str, object]:
     }
 
 
-def _printed_evidence(study: JammingStudy) -> dict[str, object]:
+def _printed_evidence(study: JammingStudy) -> dict[str, float]:
     """Return how far from equidistant, and from the best equidistant value, eq. 3.5 as printed ever is."""
     nodes = study.scenario.node_positions_m
     rows = study.table.of("maximum-gain-printed")

@@ -42,8 +42,9 @@ def saturation(study: JammingStudy) -> Claim:
         f"gain with the axis normalised. Saturation is dated from where the curve stays within {_NEAR_DB} "
         "dB of its last value.",
         finding=f"At P_M/P = {study.levels[-1]:g}: {ends}. Eq. 3.5 as printed, its axis not normalised, "
-        f"never saturates: it changes by {falls_db:.2f} dB over the last decade, its position staying "
-        f"equidistant from the nodes to {apart_m:.1g} m.",
+        f"{'saturates too' if abs(falls_db) <= _FLAT_DB else 'never saturates'}: it changes by "
+        f"{falls_db:.2f} dB over the last decade, its position staying equidistant from the nodes to "
+        f"{max(apart_m, 1e-9):.1g} m.",
         evidence={**evidence, "printed_form_largest_distance_difference_m": apart_m},
         holds_from=max(starts) if len(starts) == len(_SCHEMES) else None,
     )

@@ -26,6 +26,7 @@ _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towa
 _ELEVATION_DEG, _AZIMUTH_DEG = 20.0, -32.0  # where the camera looks from
 _MARGIN_M = 6.0  # free ground around the scene
 _NODE, _JAMMER, _DRONE, _AXIS = "#0a6f3c", "#d40000", "#0a3fd6", "#0a3fd6"
+_PATTERN = "#8fb0ff"
 
 _TO_CAMERA = np.array(
     [
@@ -67,6 +68,7 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
         rows: the poses to draw, each at its own jamming level.
     """
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
     with house_style():
         figure = Figure(figsize=(4.6 * len(rows), 3.7))
@@ -74,8 +76,11 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
             axes: Any = figure.add_subplot(1, len(rows), index + 1, projection="3d", computed_zorder=False)
             _draw_panel(axes, scenario, row)
         figure.subplots_adjust(left=0.016, right=0.962, bottom=0.08, top=0.98, wspace=0.06)
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False, handlelength=2.6)
+        handles, _ = figure.axes[0].get_legend_handles_labels()
+        handles.append(Patch(color=_PATTERN, alpha=0.8, label="radiation pattern, near side cut away"))
+        figure.legend(
+            handles=handles, loc="lower center", ncols=len(handles), frameon=False, handlelength=2.6
+        )
     return figure
 
 
@@ -88,7 +93,7 @@ def _draw_panel(axes: Any, scenario: Scenario, row: SweepRow) -> None:
     for node in scenario.node_positions_m:
         _line(axes, node, position, color=_NODE, linewidth=0.8, alpha=0.7, zorder=2)
     ground = np.array([position[0], position[1], 0.0])
-    _line(axes, ground, position, color=GREY, linewidth=1.0, linestyle=":", zorder=2)
+    _line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
     axes.scatter(*ground, color=GREY, marker="+", s=30, zorder=2)
     _line(
         axes, position, jammer, color=_JAMMER, linewidth=1.5, linestyle=(0, (3, 1.5)), zorder=6.6,
@@ -100,9 +105,11 @@ def _draw_panel(axes: Any, scenario: Scenario, row: SweepRow) -> None:
     axes.scatter(*position, color=_DRONE, s=26, zorder=7, depthshade=False, label="drone")
     angle_deg = math.degrees(null_angle_rad(pose, jammer))
     axes.set_title(
-        f"$P_M/P$ = {row.value:g}\nsmallest SINR {row.min_sinr_db:.2f} dB, null {angle_deg:.1f}° off the jammer",
-        fontsize=10, y=0.96,
-    )  # fmt: skip
+        f"$P_M/P$ = {row.value:g}\n"
+        f"smallest SINR {row.min_sinr_db:.2f} dB, null {angle_deg:.1f}° off the jammer",
+        fontsize=10,
+        y=0.96,
+    )
 
 
 def _draw_pattern(axes: Any, pose: Pose) -> None:
@@ -112,7 +119,7 @@ def _draw_pattern(axes: Any, pose: Pose) -> None:
     surface = pattern_surface_m(pose, _PATTERN_M, around)
     axes.plot_surface(
         *surface,
-        color="#8fb0ff",
+        color=_PATTERN,
         alpha=0.45,
         linewidth=0.0,
         antialiased=False,

@@ -1,0 +1,87 @@
+"""The program as a whole: its help, its version, and what it does not import."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+
+import pytest
+from typer.testing import Result
+
+from nullpose import __version__
+from nullpose.cli.options import SchemeName
+from nullpose.solve import Scheme
+
+Run = Callable[..., Result]
+Process = Callable[..., subprocess.CompletedProcess[str]]
+
+VERBS = {
+    "solve": {"--scheme", "--set", "--seed", "--null-jammer", "--json"},
+    "compare": {"--set", "--seed", "--json"},
+    "sweep": {
+        "--set",
+        "--from",
+        "--to",
+        "--points",
+        "--log",
+        "--linear",
+        "--scheme",
+        "--out",
+        "--seed",
+        "--json",
+    },
+    "reproduce": {"--out", "--seed", "--json"},
+    "check": {"--set", "--json"},
+    "schema": set(),
+}
+
+
+def test_help_lists_every_verb(run: Run) -> None:
+    """The program's help names each verb and the exit codes."""
+    result = run("--help")
+    assert result.exit_code == 0
+    assert all(f" {verb} " in result.stdout for verb in VERBS)
+    assert "Exit codes: 0 fine, 2 bad input or usage" in result.stdout
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_of_a_verb_lists_its_options(run: Run, verb: str) -> None:
+    """A verb's help names each of its options and no other."""
+    result = run(verb, "--help")
+    named = {word.rstrip(",") for word in result.stdout.replace("│", " ").split() if word.startswith("--")}
+    assert result.exit_code == 0
+    assert named - {"--help"} == VERBS[verb]
+
+
+def test_help_imports_nothing_heavy() -> None:
+    """The command line can be built without the libraries that the verbs need."""
+    heavy = ("numpy", "numba", "pydantic", "scipy", "matplotlib")
+    code = f"import sys, nullpose.cli.app; print([name for name in {heavy!r} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_solve_imports_neither_scipy_nor_matplotlib(paper: str) -> None:
+    """A single solve loads only what it needs."""
+    code = (
+        "import sys; from typer.testing import CliRunner; from nullpose.cli.app import app;"
+        f"assert CliRunner().invoke(app, ['solve', {paper!r}]).exit_code == 0;"
+        "print([name for name in ('scipy.optimize', 'matplotlib') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_version(process: Process) -> None:
+    """`--version` prints one line."""
+    done = process("--version")
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"nullpose {__version__}\n", "")
+
+
+def test_no_arguments_shows_help(run: Run) -> None:
+    """Called with nothing, the program explains itself."""
+    assert "Usage: nullpose" in run().output
+
+
+def test_scheme_names_are_the_solver_s() -> None:
+    """The names spelled out for the help are those of the solver, in its order."""
+    assert [name.value for name in SchemeName] == [scheme.value for scheme in Scheme]

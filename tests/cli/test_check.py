@@ -1,0 +1,32 @@
+"""The verb `check`: what a scenario amounts to, without solving it."""
+
+import json
+import math
+from collections.abc import Callable
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+def test_table_tells_what_the_file_amounts_to(run: Run, paper: str) -> None:
+    """Nodes, jammers, airspace and receiver are shown, powers in both units."""
+    result = run("check", paper)
+    assert (result.exit_code, result.stderr) == (0, "")
+    for words in ("S1", "S2", "M", "8 to 30", "unbounded", "30.00", "0.00 dBm", f"{paper}: no faults"):
+        assert words in result.stdout
+
+
+def test_best_ratio_is_that_of_the_closest_point(run: Run, paper: str) -> None:
+    """Straight above a node at the lowest altitude, broadside: P / (8^2 sigma^2)."""
+    answer = json.loads(run("check", paper, "--json").stdout)
+    assert answer["nodes"][0]["nearest_m"] == pytest.approx(8.0)
+    assert answer["nodes"][0]["best_power_to_noise_db"] == pytest.approx(10.0 * math.log10(1e3 / 64.0))
+    assert answer["jammers"][0]["nearest_m"] == pytest.approx(4.0)
+
+
+def test_overrides_apply(run: Run, paper: str) -> None:
+    """What is shown is the scenario with its overrides."""
+    answer = json.loads(run("check", paper, "--set", "jammers.M.power_dbm=40", "--json").stdout)
+    assert answer["jammers"][0]["power_w"] == pytest.approx(10.0)

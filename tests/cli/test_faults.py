@@ -1,0 +1,305 @@
+"""Bad input at the command line: exit code 2, each fault with its place and what is allowed, no traceback."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+import nullpose.cli.check
+from nullpose.cli.app import app
+from nullpose.cli.faults import BAD_INPUT, INTERNAL, INTERRUPTED, PIPE_CLOSED
+from nullpose.errors import SolveError
+
+Run = Callable[..., Result]
+Process = Callable[..., subprocess.CompletedProcess[str]]
+
+GOOD = """\
+[airspace]
+altitude_m = [8.0, 30.0]
+keep_out_m = 1.0
+[receiver]
+noise_w = 1e-3
+reference_gain_db = 0.0
+[[nodes]]
+name = "S1"
+position_m = [0.0, 0.0, 0.0]
+power_w = 1.0
+[[nodes]]
+name = "S2"
+position_m = [0.0, 50.0, 0.0]
+power_w = 1.0
+[[jammers]]
+name = "M"
+position_m = [17.0, 15.0, 4.0]
+power_w = 1.0
+"""
+NODES = GOOD[GOOD.index("[[nodes]]") : GOOD.index("[[jammers]]")]
+
+BAD_FILES = {
+    "broken TOML": ("altitude_m = [8.0, 30.0]", "altitude_m = [8.0, 30.0", ["line 3", "column"]),
+    "unknown key": ("altitude_m", "altitud_m", ["airspace.altitud_m", "unknown key", "altitude_m"]),
+    "NaN": ("noise_w = 1e-3", "noise_w = nan", ["receiver.noise_w", "NaN"]),
+    "infinity": ("[17.0, 15.0, 4.0]", "[inf, 15.0, 4.0]", ["jammers[0].position_m", "inf"]),
+    "negative power": (
+        '"M"\nposition_m = [17.0, 15.0, 4.0]\npower_w = 1.0',
+        '"M"\nposition_m = [17.0, 15.0, 4.0]\npower_w = -1.0',
+        ["jammers[0].power_w", "-1.0"],
+    ),
+    "zero power": ("noise_w = 1e-3", "noise_w = 0.0", ["receiver.noise_w", "0.0"]),
+    "both of a pair": (
+        "noise_w = 1e-3",
+        "noise_w = 1e-3\nnoise_dbm = 0.0",
+        ["receiver", "noise_w", "noise_dbm"],
+    ),
+    "neither of a pair": ("noise_w = 1e-3\n", "", ["receiver", "noise_w", "noise_dbm"]),
+    "reversed altitudes": ("[8.0, 30.0]", "[30.0, 8.0]", ["airspace.altitude_m", "[30.0, 8.0]", "reversed"]),
+    "no nodes": (NODES, "", ["nodes", "[[nodes]]"]),
+    "duplicate names": ('"S2"', '"S1"', ["nodes[1].name", "S1"]),
+    "node on a jammer": (
+        "[0.0, 50.0, 0.0]",
+        "[17.0, 15.0, 4.0]",
+        ["jammers[0].position_m", "nodes[1]", "different places"],
+    ),
+    "no room": (
+        "altitude_m = [8.0, 30.0]\nkeep_out_m = 1.0",
+        "altitude_m = [1.0, 2.0]\nx_m = [-1.0, 1.0]\ny_m = [-1.0, 1.0]\nkeep_out_m = 40.0",
+        ["airspace", "keep_out_m"],
+    ),
+}
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> Path:
+    """A scenario file without faults."""
+    path = tmp_path / "good.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    return path
+
+
+def assert_refused(result: Result | subprocess.CompletedProcess[str], *words: str) -> None:
+    """The run ended as bad input ends: its words on standard error only, no traceback."""
+    code = result.exit_code if isinstance(result, Result) else result.returncode
+    assert code == BAD_INPUT, result.stderr
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    assert [word for word in words if word not in result.stderr] == [], result.stderr
+
+
+@pytest.mark.parametrize("kind", BAD_FILES)
+@pytest.mark.parametrize("verb", ["check", "solve"])
+def test_bad_file(run: Run, tmp_path: Path, verb: str, kind: str) -> None:
+    """Each kind of fault is told with its place and what was given."""
+    old, new, words = BAD_FILES[kind]
+    assert GOOD.count(old) == 1
+    path = tmp_path / "bad.toml"
+    path.write_text(GOOD.replace(old, new), encoding="utf-8")
+    assert_refused(run(verb, path), f"error: {path}: 1 fault", *words)
+
+
+def test_all_faults_at_once(run: Run, tmp_path: Path) -> None:
+    """A file with three faults gets three messages."""
+    path = tmp_path / "bad.toml"
+    text = GOOD.replace("[8.0, 30.0]", "[30.0, 8.0]").replace("noise_w = 1e-3", "noise_w = -1.0")
+    path.write_text(text.replace('"S2"', '"S1"'), encoding="utf-8")
+    words = ("3 faults", "airspace.altitude_m", "receiver.noise_w", "nodes[1].name")
+    assert_refused(run("compare", path, "--json"), *words)
+
+
+def test_missing_file(process: Process, tmp_path: Path) -> None:
+    """A file that is not there is named."""
+    path = tmp_path / "nowhere.toml"
+    assert_refused(process("solve", path), str(path), "no such file")
+
+
+def test_unreadable_file(run: Run, tmp_path: Path) -> None:
+    """A folder in place of a file is refused, and so are bytes that are no text."""
+    assert_refused(run("solve", tmp_path), str(tmp_path), "folder")
+    path = tmp_path / "bytes.toml"
+    path.write_bytes(b"\xff\xfe\x00\x80")
+    assert_refused(run("solve", path), str(path))
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("jammers.X.power_w=3", ["jammers.X.power_w", "jammers.M.power_w"]),
+        ("jammers.M.powr_w=3", ["jammers.M.powr_w", "jammers.M.power_w"]),
+        ("jammers.M.power_w=-3", ["power_w", "-3"]),
+        ("jammers.M.power_w", ["jammers.M.power_w", "equals sign"]),
+    ],
+)
+def test_bad_override(run: Run, good: Path, setting: str, words: list[str]) -> None:
+    """An override that leads nowhere is refused with the nearest path that exists."""
+    assert_refused(run("solve", good, "--set", setting), *words)
+
+
+def test_scheme_that_does_not_apply(run: Run, tmp_path: Path) -> None:
+    """Zero interference without a jammer is refused with the reason, in solve and in sweep."""
+    path = tmp_path / "calm.toml"
+    path.write_text(GOOD[: GOOD.index("[[jammers]]")], encoding="utf-8")
+    assert_refused(run("solve", path, "--scheme", "zero-interference"), "zero-interference", "jammer")
+    swept = ("sweep", path, "--set", "receiver.noise_w", "--from", 1, "--to", 2, "--out", tmp_path / "out")
+    assert_refused(run(*swept, "--scheme", "zero-interference"), "zero-interference", "jammer")
+    assert not (tmp_path / "out").exists()
+
+
+def test_null_jammer_that_does_not_exist(run: Run, good: Path) -> None:
+    """An unknown jammer is refused with the names that there are."""
+    arguments = ("solve", good, "--scheme", "zero-interference", "--null-jammer", "Q")
+    assert_refused(run(*arguments), "'Q'", "M")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["solve"], ["Missing argument"]),
+        (["fly"], ["fly"]),
+        (["solve", "x.toml", "--scheme", "best"], ["best", "optimum", "vertical"]),
+        (["solve", "x.toml", "--seed", "-1"], ["--seed", "0"]),
+        (["solve", "x.toml", "--frobnicate"], ["--frobnicate"]),
+        (["reproduce"], ["--out"]),
+    ],
+)
+def test_bad_usage(run: Run, arguments: list[str], words: list[str]) -> None:
+    """A command line that cannot be read is refused with the option at fault."""
+    assert_refused(run(*arguments), *words)
+
+
+def test_bad_range(run: Run, good: Path, tmp_path: Path) -> None:
+    """A sweep's range is refused with all that is wrong with it, and nothing is written."""
+    out = tmp_path / "out"
+    arguments = ("--from", -1, "--to", "nan", "--points", 1, "--log", "--out", out)
+    result = run("sweep", good, "--set", "jammers.M.power_w", *arguments)
+    assert_refused(result, "3 faults", "from: -1", "to: nan", "points: 1")
+    assert not out.exists()
+
+
+def test_bad_value_in_the_middle_of_a_range(run: Run, good: Path, tmp_path: Path) -> None:
+    """Values that make no scenario are refused before the first solve."""
+    arguments = ("--from", -1, "--to", 1, "--points", 9, "--out", tmp_path / "out")
+    result = run("sweep", good, "--set", "jammers.M.power_w", *arguments)
+    assert_refused(result, "jammers[0].power_w", "at -1 and 4 other values")
+
+
+def test_not_exactly_one_path_to_vary(run: Run, good: Path, tmp_path: Path) -> None:
+    """A sweep needs one path without a value."""
+    arguments = ("--from", 1, "--to", 2, "--out", tmp_path / "out")
+    for settings in (["jammers.M.power_w=1"], ["jammers.M.power_w", "nodes.S1.power_w"]):
+        options = [option for setting in settings for option in ("--set", setting)]
+        assert_refused(run("sweep", good, *options, *arguments), "--set", "exactly one path")
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_output_folder_that_cannot_be_written(
+    run: Run, good: Path, inside: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file where the folder should be, or above it, is refused before any work."""
+    monkeypatch.setattr("nullpose.study.plan.SweepPlan.run", None)
+    out = good / "deeper" if inside else good
+    arguments = ("--from", 1, "--to", 2, "--out", out)
+    assert_refused(run("sweep", good, "--set", "jammers.M.power_w", *arguments), "cannot write", str(out))
+    assert_refused(run("reproduce", "--out", out), "cannot write", str(out))
+    assert good.read_text(encoding="utf-8") == GOOD
+
+
+def _raising(error: BaseException) -> object:
+    def show(*_: object) -> None:
+        raise error
+
+    return show
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (SolveError("no pose reaches every node"), INTERNAL, "error: no pose reaches every node\n"),
+        (KeyboardInterrupt(), INTERRUPTED, "interrupted\n"),
+    ],
+)
+def test_exit_codes(
+    run: Run, good: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, words: str
+) -> None:
+    """A solve without an answer and an interrupt end with a line and a code of their own."""
+    monkeypatch.setattr(nullpose.cli.check, "show", _raising(error))
+    result = run("check", good)
+    assert (result.exit_code, result.stderr) == (code, words)
+
+
+def test_interrupt_that_comes_out_as_another_error(
+    run: Run, good: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An interrupt that native code swallowed is still told as one."""
+
+    def show(*_: object) -> None:
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise RuntimeError("half compiled") from None
+
+    monkeypatch.setattr(nullpose.cli.check, "show", show)
+    result = run("check", good)
+    assert (result.exit_code, result.stderr) == (INTERRUPTED, "interrupted\n")
+
+
+def test_internal_fault_asks_for_a_report(run: Run, good: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An error that nobody foresaw keeps its traceback, and says whose fault it is."""
+    monkeypatch.setattr(nullpose.cli.check, "show", _raising(RuntimeError("unforeseen")))
+    result = run("check", good)
+    assert result.exit_code == INTERNAL
+    assert "report it" in result.exception.__notes__[0]
+
+
+def test_interrupt_of_the_real_program(good: Path, tmp_path: Path) -> None:
+    """Ctrl-C in the middle of a sweep ends it with a short line and code 130."""
+    arguments = [
+        "sweep",
+        str(good),
+        "--set",
+        "jammers.M.power_w",
+        "--from",
+        "1",
+        "--to",
+        "2",
+        "--points",
+        "2000",
+    ]
+    program = subprocess.Popen(
+        [sys.executable, "-m", "nullpose", *arguments, "--out", str(tmp_path / "out")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (tmp_path / "out").exists() and program.poll() is None:
+        time.sleep(0.05)
+    time.sleep(1.0)  # by now it solves
+    program.send_signal(signal.SIGINT)
+    stdout, stderr = program.communicate(timeout=60)
+    # A signal that hits code run from a text makes Python end by the signal itself, which shells show as 130.
+    assert program.returncode in (INTERRUPTED, -signal.SIGINT)
+    assert stdout == ""
+    assert stderr.endswith("interrupted\n")
+    assert "Traceback" not in stderr
+
+
+@pytest.mark.parametrize("arguments", [["schema"], ["check", "FILE"], ["check", "FILE", "--json"]])
+def test_reader_that_goes_away(good: Path, arguments: list[str]) -> None:
+    """A closed pipe ends the program without a word."""
+    words = [str(good) if argument == "FILE" else argument for argument in arguments]
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "wb") as pipe:
+        done = subprocess.run(
+            [sys.executable, "-m", "nullpose", *words], stdout=pipe, stderr=subprocess.PIPE, check=False
+        )
+    assert (done.returncode, done.stderr) == (PIPE_CLOSED, b"")
+
+
+def test_the_group_is_what_the_program_uses() -> None:
+    """Errors are turned into messages by the application itself, not only by its entry point."""
+    assert app.info.cls.__name__ == "FaultReportingGroup"

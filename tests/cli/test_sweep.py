@@ -1,0 +1,53 @@
+"""The verb `sweep`: a table and a figure of every case."""
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+def test_files_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
+    """CSV, PNG and SVG are written into a folder made with its parents; the table is printed."""
+    out = tmp_path / "deep" / "out"
+    arguments = ("--from", "1e-2", "--to", "1e2", "--points", 5, "--log", "--out", out)
+    result = run("sweep", paper, "--set", "jammers.M.power_w", *arguments)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert sorted(path.name for path in out.iterdir()) == ["sweep.csv", "sweep.png", "sweep.svg"]
+    with (out / "sweep.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["jammers.M.power_w"]) for row in rows[::4]] == [0.01, 0.1, 1.0, 10.0, 100.0]
+    assert {row["scheme"] for row in rows} == {"optimum", "zero-interference", "maximum-gain", "vertical"}
+    optimum = [row for row in rows if row["scheme"] == "optimum"]
+    assert float(optimum[2]["min_sinr_db"]) == pytest.approx(0.9836997, abs=1e-6)
+    assert "0.9837" in result.stdout
+    assert str(out / "sweep.png") in result.stdout
+
+
+def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
+    """One object with the rows and the files; values evenly spaced unless asked otherwise."""
+    arguments = ("--from", 1, "--to", 3, "--points", 3, "--scheme", "vertical", "--json", "--out", tmp_path)
+    result = run("sweep", paper, "--set", "jammers.M.power_w", "--set", "receiver.noise_dbm=3", *arguments)
+    answer = json.loads(result.stdout)
+    assert answer["set"] == "jammers.M.power_w"
+    assert [(row["value"], row["scheme"]) for row in answer["rows"]] == [
+        (1.0, "vertical"),
+        (2.0, "vertical"),
+        (3.0, "vertical"),
+    ]
+    assert [Path(path).exists() for path in answer["files"]] == [True] * 3
+
+
+def test_a_case_that_does_not_apply_is_named(run: Run, paper: str, tmp_path: Path) -> None:
+    """Without a jammer three cases are swept, and the fourth is named with the reason."""
+    text = Path(paper).read_text(encoding="utf-8")
+    calm = tmp_path / "calm.toml"
+    calm.write_text(text[: text.index("[[jammers]]")], encoding="utf-8")
+    arguments = ("--from", 0.5, "--to", 2, "--points", 2, "--out", tmp_path / "out")
+    result = run("sweep", calm, "--set", "nodes.S1.power_w", *arguments)
+    assert result.exit_code == 0
+    assert "zero-interference does not apply" in result.stdout

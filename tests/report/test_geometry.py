@@ -1,0 +1,57 @@
+"""Angles and distances of a pose."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose import Pose
+from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
+
+UNIT = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: math.hypot(*v) > 0.1)
+
+
+@given(axis=UNIT, towards=UNIT)
+def test_null_angle_ignores_the_sign_of_the_axis(
+    axis: tuple[float, float, float], towards: tuple[float, float, float]
+) -> None:
+    """The angle lies in [0, pi/2], its sine squared is the antenna's gain, and -u is the same antenna."""
+    position = np.array([1.0, 2.0, 3.0])
+    point = position + 5.0 * np.array(towards)
+    angles = [null_angle_rad(Pose.from_axis(position, sign * np.array(axis)), point) for sign in (1, -1)]
+    cosine = abs(np.dot(axis, towards)) / (np.linalg.norm(axis) * np.linalg.norm(towards))
+    assert angles[0] == pytest.approx(angles[1], abs=1e-12)
+    assert 0.0 <= angles[0] <= math.pi / 2
+    assert math.cos(angles[0]) == pytest.approx(cosine, abs=1e-9)
+
+
+def test_a_null_on_the_point_keeps_its_digits() -> None:
+    """A microradian is told as one, where an arc cosine would give zero."""
+    pose = Pose(np.zeros(3), roll_rad=0.0, pitch_rad=1e-6)
+    assert null_angle_rad(pose, [0.0, 0.0, -7.0]) == pytest.approx(1e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("axis", "tilt_deg", "azimuth_deg"),
+    [
+        ((0.0, 0.0, 1.0), 0.0, 0.0),
+        ((1.0, 0.0, 1.0), 45.0, 0.0),
+        ((0.0, 1.0, 1.0), 45.0, 90.0),
+        ((0.0, 1.0, -1.0), 45.0, -90.0),
+        ((-1.0, -1.0, 0.1), 85.955, -135.0),
+    ],
+)
+def test_tilt_and_azimuth_of_the_upper_end(
+    axis: tuple[float, float, float], tilt_deg: float, azimuth_deg: float
+) -> None:
+    """Tilt is from the vertical, azimuth from east towards north, of the end that points up."""
+    pose = Pose.from_axis(np.zeros(3), axis)
+    assert math.degrees(tilt_rad(pose)) == pytest.approx(tilt_deg, abs=1e-3)
+    assert math.degrees(azimuth_rad(pose)) == pytest.approx(azimuth_deg, abs=1e-9)
+
+
+def test_distance() -> None:
+    """The distance is Euclid's."""
+    assert distance_m(Pose(np.array([3.0, 4.0, 12.0]), 0.0, 0.0), [0.0, 0.0, 0.0]) == 13.0

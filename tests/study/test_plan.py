@@ -1,0 +1,63 @@
+"""A sweep as asked for: checked in full, its folder made, before any work."""
+
+from pathlib import Path
+
+import pytest
+
+from nullpose import OutputError, Scenario, ScenarioError, UsageError
+from nullpose.study import SweepPlan, plan_sweep
+
+POWER = "jammers.M.power_w"
+
+
+def plan(scenario: Scenario, out: Path, settings: list[str] | None = None, **options: object) -> SweepPlan:
+    """Returns the plan of a short sweep."""
+    return plan_sweep(
+        scenario, settings or [POWER], **({"start": 1.0, "stop": 2.0, "points": 2, "out": out} | options)
+    )
+
+
+def test_fixed_settings_apply_to_every_value(paper: Scenario, tmp_path: Path) -> None:
+    """A path with a value is an override, the one without is varied."""
+    made = plan(paper, tmp_path / "out", ["receiver.noise_w=2e-3", POWER])
+    assert (made.path, made.values) == (POWER, (1.0, 2.0))
+    assert made.scenario.receiver.noise_power_w == 2e-3
+    assert (tmp_path / "out").is_dir()
+
+
+def test_a_plan_runs(paper: Scenario, tmp_path: Path) -> None:
+    """Running the plan gives the table of its schemes and values."""
+    table = plan(paper, tmp_path, schemes=["vertical"]).run()
+    assert [(row.value, row.scheme) for row in table.rows] == [(1.0, "vertical"), (2.0, "vertical")]
+
+
+@pytest.mark.parametrize("settings", [["receiver.noise_w=1"], [POWER, "receiver.noise_w"]])
+def test_exactly_one_path_is_varied(paper: Scenario, tmp_path: Path, settings: list[str]) -> None:
+    """None or two paths without a value are refused."""
+    with pytest.raises(UsageError, match="exactly one path"):
+        plan(paper, tmp_path, settings)
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        ({"settings": ["jammers.Q.power_w"]}, ScenarioError),
+        ({"settings": [POWER, "receiver.noise_w=-1"]}, ScenarioError),
+        ({"points": 1}, UsageError),
+        ({"start": -1.0}, ScenarioError),
+    ],
+)
+def test_no_folder_is_made_for_a_faulty_plan(
+    paper: Scenario, tmp_path: Path, options: dict[str, object], error: type[Exception]
+) -> None:
+    """Faults show before anything is written."""
+    with pytest.raises(error):
+        plan(paper, tmp_path / "out", **options)
+    assert not (tmp_path / "out").exists()
+
+
+def test_folder_that_cannot_be_written(paper: Scenario, tmp_path: Path) -> None:
+    """A file in the way is told before any work."""
+    (tmp_path / "out").touch()
+    with pytest.raises(OutputError, match="in the way"):
+        plan(paper, tmp_path / "out")

@@ -1,0 +1,73 @@
+"""Sweeps: the same answers as single solves, and every value checked before the first solve."""
+
+import itertools
+
+import pytest
+
+from nullpose import Scenario, ScenarioError, UsageError, solve
+from nullpose.scenario import apply_overrides
+from nullpose.study import sweep
+
+POWER = "jammers.M.power_w"
+
+
+def test_a_sweep_is_so_many_solves(paper: Scenario) -> None:
+    """Each row is what a solve at that value gives."""
+    ticks: list[tuple[int, int]] = []
+    table = sweep(
+        paper,
+        POWER,
+        [0.1, 10.0],
+        schemes=["optimum", "vertical"],
+        on_progress=lambda *tick: ticks.append(tick),
+    )
+    assert [(row.value, row.scheme) for row in table.rows] == [
+        (0.1, "optimum"),
+        (0.1, "vertical"),
+        (10.0, "optimum"),
+        (10.0, "vertical"),
+    ]
+    alone = solve(apply_overrides(paper, [f"{POWER}=10"]))
+    assert table.of("optimum")[1].pose == alone.pose
+    assert table.of("optimum")[1].min_sinr == alone.objective.value
+    assert ticks == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_all_four_cases_unless_told_otherwise(paper: Scenario) -> None:
+    """The default is the paper's four cases."""
+    table = sweep(paper, POWER, [1.0])
+    assert table.schemes == ("optimum", "zero-interference", "maximum-gain", "vertical")
+
+
+def test_more_jamming_never_helps(paper: Scenario) -> None:
+    """No scheme's value grows with the jammer's power."""
+    table = sweep(paper, POWER, [1e-3, 1e-1, 1.0, 1e2, 1e5])
+    for scheme in table.schemes:
+        values = [row.min_sinr for row in table.of(scheme)]
+        assert all(later <= earlier * (1.0 + 1e-9) for earlier, later in itertools.pairwise(values))
+
+
+def test_schemes_that_do_not_apply_are_left_out_with_the_reason(paper: Scenario) -> None:
+    """Without a jammer zero interference is missing from the rows; alone, it is an error."""
+    calm = Scenario.from_dict({**paper.to_dict(), "jammers": []})
+    table = sweep(calm, "receiver.noise_w", [1e-3])
+    assert "zero-interference" not in table.schemes
+    assert "jammer" in table.left_out["zero-interference"]
+    with pytest.raises(UsageError, match="jammer"):
+        sweep(calm, "receiver.noise_w", [1e-3], schemes=["zero-interference"])
+
+
+def test_faults_come_before_the_first_solve(paper: Scenario) -> None:
+    """A bad value at the end stops the sweep before it starts, with one message for all such values."""
+    ticks: list[int] = []
+    with pytest.raises(ScenarioError) as caught:
+        sweep(paper, POWER, [1.0, -1.0, -2.0], on_progress=lambda done, _: ticks.append(done))
+    assert len(caught.value.faults) == 1
+    assert "at -1 and 1 other value)" in str(caught.value)
+    assert ticks == []
+
+
+def test_path_that_does_not_exist(paper: Scenario) -> None:
+    """An unknown path is refused with the nearest one."""
+    with pytest.raises(ScenarioError, match=r"jammers\.M\.power_w"):
+        sweep(paper, "jammers.M.powr_w", [1.0])

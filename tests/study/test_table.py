@@ -1,0 +1,67 @@
+"""The table of a sweep: rows found again, joined and written with units."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose import Link, Pose
+from nullpose.study import SweepRow, SweepTable
+
+
+def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRow:
+    """Returns a row with an easy pose."""
+    ratio = 10.0 ** (db / 10.0)
+    pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
+    return SweepRow(value, scheme, "best-found", ratio, db, pose, (Link(node, ratio, db),), "a, note")
+
+
+TABLE = SweepTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))
+
+
+def test_values_and_schemes_come_once_in_order() -> None:
+    """Each value and each scheme is listed once."""
+    assert TABLE.values == (1.0, 2.0)
+    assert TABLE.schemes == ("optimum", "vertical")
+    assert [r.value for r in TABLE.of("vertical")] == [1.0, 2.0]
+
+
+def test_unknown_scheme() -> None:
+    """Asking for a scheme that was not swept names those that were."""
+    with pytest.raises(KeyError, match="optimum, vertical"):
+        TABLE.of("maximum-gain")
+
+
+def test_joined_tables_are_sorted_by_value() -> None:
+    """Two sweeps of one setting make one table; of two settings they do not."""
+    other = SweepTable("receiver.noise_w", (row(1.5, "maximum-gain"),), {"zero-interference": "no jammer"})
+    joined = TABLE.joined(other)
+    assert [r.value for r in joined.rows] == [1.0, 1.0, 1.5, 2.0, 2.0]
+    assert dict(joined.left_out) == {"zero-interference": "no jammer"}
+    with pytest.raises(ValueError, match=r"nodes\.S1"):
+        TABLE.joined(SweepTable("nodes.S1.power_w", ()))
+
+
+def test_csv_reads_back_to_the_last_digit(tmp_path: Path) -> None:
+    """Numbers survive the file, angles in degrees, names with commas and notes quoted."""
+    table = SweepTable("receiver.noise_w", (row(1 / 3, "optimum", db=-1 / 7, node='gate, "north"'),))
+    path = table.write_csv(tmp_path / "t.csv")
+    with path.open(encoding="utf-8", newline="") as file:
+        (read,) = csv.DictReader(file)
+    assert float(read["receiver.noise_w"]) == 1 / 3
+    assert float(read["min_sinr_db"]) == -1 / 7
+    assert float(read["pitch_deg"]) == pytest.approx(90.0)
+    assert float(read['sinr_gate, "north"_db']) == -1 / 7
+    assert [float(read[name]) for name in ("x_m", "y_m", "z_m")] == [1.0, 2.0, 8.0]
+    assert float(read["axis_x"]) == pytest.approx(1.0)
+    assert read["note"] == "a, note"
+
+
+def test_plain_data() -> None:
+    """The table as plain data keeps rows, poses and what was left out."""
+    data = SweepTable("receiver.noise_w", TABLE.rows[:1], {"zero-interference": "no jammer"}).to_dict()
+    assert data["left_out"] == [{"scheme": "zero-interference", "reason": "no jammer"}]
+    assert data["rows"][0]["pose"]["position_m"] == [1.0, 2.0, 8.0]
+    assert data["rows"][0]["links"] == [{"node": "S1", "sinr": 1.0, "sinr_db": 0.0}]

@@ -1,0 +1,57 @@
+"""The package's public face: every name is there, and importing it costs nothing."""
+
+import subprocess
+import sys
+
+import pytest
+
+import nullpose
+
+HEAVY = ("numpy", "numba", "pydantic", "scipy", "matplotlib", "rich", "typer")
+
+
+def _python(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+def test_every_public_name_is_there() -> None:
+    """Each name of __all__ can be reached, and is listed by dir()."""
+    assert all(getattr(nullpose, name) is not None for name in nullpose.__all__)
+    assert set(nullpose.__all__) <= set(dir(nullpose))
+
+
+def test_importing_the_package_imports_nothing_heavy() -> None:
+    """`import nullpose` leaves numerical and terminal libraries alone."""
+    code = f"import sys, nullpose; print([name for name in {HEAVY!r} if name in sys.modules])"
+    assert _python(code) == "[]"
+
+
+@pytest.mark.parametrize(
+    "before", ["", "import nullpose.solve;", "from nullpose.solve import Scheme;", "import nullpose.study;"]
+)
+def test_solve_is_the_function_whatever_was_imported_before(before: str) -> None:
+    """The room `nullpose.solve` never hides the function of the same name."""
+    code = (
+        f"import nullpose; {before} nullpose.solve; print(nullpose.solve.__name__, callable(nullpose.solve))"
+    )
+    assert _python(code) == "solve True"
+
+
+def test_the_room_can_still_be_imported_from() -> None:
+    """Names inside the room `nullpose.solve` are reached by a from-import after the function was used."""
+    code = (
+        "import nullpose; nullpose.solve; from nullpose.solve.scheme import Scheme; print(Scheme('optimum'))"
+    )
+    assert _python(code) == "optimum"
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    """A name that is not public is refused in Python's own way."""
+    with pytest.raises(AttributeError, match="no attribute 'best_pose'"):
+        _ = nullpose.best_pose
+
+
+def test_version_is_the_installed_one() -> None:
+    """The version is that of the installed distribution."""
+    assert nullpose.__version__.split(".")[0].isdigit()
