@@ -92,8 +92,9 @@ def _evidence_table(evidence: Mapping[str, object]) -> list[str]:
 def _words(name: str) -> str:
     for suffix, unit in (("_db", " (dB)"), ("_m", " (m)"), ("_deg", " (deg)")):
         if name.endswith(suffix):
-            return name.removesuffix(suffix).replace("_", " ") + unit
-    return name.replace("_", " ")
+            name = name.removesuffix(suffix) + unit
+            break
+    return name.replace("_", " ").replace(" db", " dB")
 
 
 def _cell(value: object) -> str:

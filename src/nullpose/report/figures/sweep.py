@@ -79,5 +79,5 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
         axes.set_xlabel(_axis_label(table.path))
         axes.set_ylabel("smallest SINR over the nodes  (dB)")
         axes.margins(x=0.02)
-        figure.legend(loc="outside upper center", ncols=3, frameon=False, handlelength=3.4)
+        figure.legend(loc="outside upper center", ncols=4, frameon=False, handlelength=3.2, columnspacing=1.4)
     return figure
