@@ -1,0 +1,122 @@
+"""Scenes and dense algebra that the tests of the solver share."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+
+from nullpose.family import Family
+from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+
+Place = tuple[float, float, float]
+
+
+@pytest.fixture(scope="session")
+def scene() -> Callable[..., Scenario]:
+    """Returns a builder: nodes and jammers with their powers (1 W if left out), altitudes and airspace."""
+
+    def build(
+        nodes_m: Sequence[Place],
+        jammers_m: Sequence[Place] = (),
+        *,
+        node_powers_w: Sequence[float] | float = 1.0,
+        jammer_powers_w: Sequence[float] | float = 1.0,
+        altitude_m: tuple[float, float] = (8.0, 30.0),
+        noise_w: float = 1e-3,
+        **airspace: object,
+    ) -> Scenario:
+        return Scenario(
+            airspace=Airspace(altitude_m=altitude_m, **airspace),
+            receiver=Receiver(noise_w=noise_w, reference_gain_db=0.0),
+            nodes=tuple(
+                Node(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(nodes_m, np.broadcast_to(node_powers_w, len(nodes_m)), strict=True)
+            ),
+            jammers=tuple(
+                Jammer(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(jammers_m, np.broadcast_to(jammer_powers_w, len(jammers_m)), strict=True)
+            ),
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def paper(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: the paper's scene at a jamming-to-transmission power ratio, in any airspace."""
+
+    def build(ratio: float, **airspace: object) -> Scenario:
+        return scene([(0, 0, 0), (0, 50, 0)], [(17, 15, 4)], jammer_powers_w=ratio, **airspace)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def random_scene(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: so many nodes and jammers on a field of 100 m, of a total jamming power."""
+
+    def build(
+        rng: np.random.Generator, nodes: int, jammers: int, jamming_w: float = 1.0, **airspace: object
+    ) -> Scenario:
+        return scene(
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (nodes, 3)),
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (jammers, 3)),
+            node_powers_w=10.0 ** rng.uniform(-0.5, 0.5, nodes),
+            jammer_powers_w=jamming_w / max(jammers, 1),
+            **airspace,
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """Returns a function: a family's numerators (R, 3, 3) and denominators (G, 3, 3) at a position."""
+
+    def link_matrix(r: np.ndarray) -> np.ndarray:
+        square = r @ r
+        return (square * np.eye(3) - np.outer(r, r)) / square**2
+
+    def forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        links = [link_matrix(point - position_m) for point in family.points_m]
+        numerators = [
+            isotropic * np.eye(3) + weight * links[point]
+            for isotropic, weight, point in zip(
+                family.numerator_isotropic, family.numerator_weight, family.numerator_point, strict=True
+            )
+        ]
+        denominators = []
+        for group, isotropic in enumerate(family.denominator_isotropic):
+            matrix = isotropic * np.eye(3)
+            for entry in range(family.denominator_start[group], family.denominator_start[group + 1]):
+                matrix += family.denominator_weight[entry] * links[family.denominator_point[entry]]
+            denominators.append(matrix)
+        return np.array(numerators), np.array(denominators)
+
+    return forms
+
+
+@pytest.fixture(scope="session")
+def random_family() -> Callable[..., Family]:
+    """Returns a builder: a family with several denominators and isotropic parts, as secrecy rates have."""
+
+    def build(rng: np.random.Generator, ratios: int, groups: int) -> Family:
+        points = ratios + 2 * groups
+        points_m = rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (points, 3))
+        return Family(
+            points_m=points_m,
+            numerator_isotropic=rng.uniform(0.0, 1.0, ratios),
+            numerator_weight=10.0 ** rng.uniform(2.0, 4.0, ratios),
+            numerator_point=np.arange(ratios),
+            denominator_of=np.arange(ratios) % groups,
+            denominator_isotropic=rng.uniform(0.5, 2.0, groups),
+            denominator_start=2 * np.arange(groups + 1),
+            denominator_point=ratios + np.arange(2 * groups),
+            denominator_weight=10.0 ** rng.uniform(1.0, 5.0, 2 * groups),
+            low_m=np.array([-np.inf, -np.inf, 8.0]),
+            high_m=np.array([np.inf, np.inf, 30.0]),
+            keep_out_points_m=np.zeros((0, 3)),
+            keep_out_m=1.0,
+        )
+
+    return build
