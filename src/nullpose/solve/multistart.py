@@ -63,6 +63,7 @@ def multistart(
 
     settings = settings or SearchSettings()
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    multipliers = np.empty(len(family.numerator_point))
     shift = np.random.default_rng(seed).uniform(size=3)
     log_value, starts, evaluations = search(
         family.arrays,
@@ -76,6 +77,7 @@ def multistart(
         settings.patience,
         position_m,
         axis,
+        multipliers,
     )
     if not math.isfinite(log_value):
         raise SolveError(

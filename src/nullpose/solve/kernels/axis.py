@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polynomial import real_roots
@@ -28,31 +29,6 @@ __all__ = ["best_axis", "best_axis_of_forms"]
 _SPREAD = 24
 _MAX_CANDIDATES = 4000
 _FLAT = 1e-10
-
-
-@kernel
-def form_value(forms, k, v):
-    """Return ``v^T A_k v`` for a symmetric matrix kept as (xx, yy, zz, xy, xz, yz)."""
-    a = forms[k]
-    return (
-        a[0] * v[0] * v[0]
-        + a[1] * v[1] * v[1]
-        + a[2] * v[2] * v[2]
-        + 2.0 * (a[3] * v[0] * v[1] + a[4] * v[0] * v[2] + a[5] * v[1] * v[2])
-    )
-
-
-@kernel
-def bilinear(a, x, y):
-    """Return ``x^T A y``."""
-    return (
-        a[0] * x[0] * y[0]
-        + a[1] * x[1] * y[1]
-        + a[2] * x[2] * y[2]
-        + a[3] * (x[0] * y[1] + x[1] * y[0])
-        + a[4] * (x[0] * y[2] + x[2] * y[0])
-        + a[5] * (x[1] * y[2] + x[2] * y[1])
-    )
 
 
 @kernel
@@ -279,35 +255,6 @@ def best_axis_of_forms(forms, axis):
         if inside:
             break
     return best
-
-
-@kernel
-def fill_form(points, j, p, weight, isotropic, out):
-    """Add ``weight * T(q_j - p)`` and ``isotropic * I`` to a form of six numbers."""
-    x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
-    rho2 = x * x + y * y + z * z
-    s = weight / (rho2 * rho2)
-    out[0] += isotropic + s * (y * y + z * z)
-    out[1] += isotropic + s * (x * x + z * z)
-    out[2] += isotropic + s * (x * x + y * y)
-    out[3] -= s * x * y
-    out[4] -= s * x * z
-    out[5] -= s * y * z
-
-
-@kernel
-def fill_forms(family, p, numerators, denominators):
-    """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
-    points, n0, nw, npt, _, d0, dstart, dpt, dw = family
-    numerators[:, :] = 0.0
-    denominators[:, :] = 0.0
-    for k in range(nw.shape[0]):
-        fill_form(points, npt[k], p, nw[k], n0[k], numerators[k])
-    for g in range(d0.shape[0]):
-        for i in range(3):
-            denominators[g, i] = d0[g]
-        for e in range(dstart[g], dstart[g + 1]):
-            fill_form(points, dpt[e], p, dw[e], 0.0, denominators[g])
 
 
 @kernel

@@ -1,8 +1,11 @@
-"""The one decorator of the kernels."""
+"""The one decorator of the kernels, and the cache behind it."""
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from numba import njit
@@ -11,5 +14,28 @@ __all__ = ["kernel"]
 
 
 def kernel(function: Callable[..., Any]) -> Any:
-    """Return the function compiled on first use, cached on disk, following IEEE rules on division by zero."""
-    return njit(cache=True, error_model="numpy", nogil=True)(function)
+    """Return the function compiled on first use, cached on disk, following IEEE rules on division by zero.
+
+    Where no folder can hold a cache (a read-only installation without a home), it is compiled in every
+    process.
+    """
+    try:
+        dispatcher = njit(cache=True, error_model="numpy", nogil=True)(function)
+    except RuntimeError:  # numba's word for "no locator available"
+        return njit(error_model="numpy", nogil=True)(function)
+    _drop_outdated(dispatcher.stats.cache_path)
+    return dispatcher
+
+
+@cache
+def _drop_outdated(cache_path: str) -> None:
+    """Delete cached kernels older than the newest kernel source.
+
+    A cached kernel holds the code of those it calls, but numba compares only the file of the kernel itself.
+    """
+    sources = Path(__file__).parent.glob("*.py")
+    newest = max(source.stat().st_mtime for source in sources)
+    for index in Path(cache_path).glob("*.nbi"):
+        with contextlib.suppress(OSError):
+            if index.stat().st_mtime < newest:
+                index.unlink()

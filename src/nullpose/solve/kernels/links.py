@@ -111,7 +111,9 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
     """
     points, n0, nw, npt, den, d0, dstart, dpt, dw = family
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
-    hess[:, :] = 0.0
+    for i in range(6):
+        for k in range(6):
+            hess[i, k] = 0.0
     gradient = np.empty(6)
     form = np.empty((6, 6))
     for g in range(d0.shape[0]):

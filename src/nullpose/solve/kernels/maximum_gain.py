@@ -12,7 +12,8 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.axis import best_axis_of_forms, bilinear, fill_forms, form_value
+from nullpose.solve.kernels.axis import best_axis_of_forms
+from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.symmetric import tangents

@@ -12,16 +12,20 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.axis import best_axis
+from nullpose.solve.kernels.chart import axis_at
+from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
+from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.links import min_log_ratio
-from nullpose.solve.kernels.polish import axis_at, polish
+from nullpose.solve.kernels.polish import polish
+from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = ["search"]
 
 _MU_START = 0.1
 _MAX_STEPS = 200
 _SAME = 1e-9
+_ROUGH = 1e-2
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -64,11 +68,41 @@ def push_out(p, low, high, keep_points, keep_radius):
 
 
 @kernel
+def likely_axis(family, p, axis):
+    """Fill the axis that the relaxation of the best axis suggests at a position (one shared denominator).
+
+    The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
+    start.
+    """
+    ratios = family[1].shape[0]
+    numerators, denominators = np.empty((ratios, 6)), np.empty((1, 6))
+    fill_forms(family, p, numerators, denominators)
+    back, forms = np.empty((3, 3)), np.empty((ratios, 6))
+    inverse_factor(denominators[0], back)
+    level = math.inf
+    for k in range(ratios):
+        congruence(numerators[k], back, forms[k])
+        level = min(level, (forms[k, 0] + forms[k, 1] + forms[k, 2]) / 3.0)
+    start, matrix, v, multipliers = np.zeros(6), np.empty(6), np.empty(3), np.empty(ratios)
+    for i in range(3):
+        start[i] = 1.0 / 3.0
+    dual_multipliers(forms, ratios, 0, level, math.inf, _ROUGH, start, multipliers, matrix)
+    top_eigenvector(matrix, v)
+    norm = 0.0
+    for i in range(3):
+        axis[i] = back[i, 0] * v[0] + back[i, 1] * v[1] + back[i, 2] * v[2]
+        norm += axis[i] ** 2
+    for i in range(3):
+        axis[i] /= math.sqrt(norm)
+
+
+@kernel
 def start_axis(family, axis_field, p, u, logs, f):
-    """Fill the axis to start with at a position, the best or the field's; return the smallest log ratio."""
+    """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
     if axis_field[0] == 0:
-        return best_axis(family, p, u)
-    axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+        likely_axis(family, p, u)
+    else:
+        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
     return min_log_ratio(family, p, u, logs, f)
 
 
@@ -84,7 +118,9 @@ def draw(shift, number, box_low, box_high, p):
 
 
 @kernel
-def search(family, domain, axis_field, landmarks, shift, coarse, polished, rounds, patience, best_p, best_u):
+def search(
+    family, domain, axis_field, landmarks, shift, coarse, polished, rounds, patience, best_p, best_u, best_z
+):
     """Fill the best pose found; return its smallest log ratio, the polished starts and the evaluations made.
 
     Args:
@@ -99,10 +135,12 @@ def search(family, domain, axis_field, landmarks, shift, coarse, polished, round
         patience: rounds without improvement after which to stop.
         best_p: output, (3,).
         best_u: output, (3,).
+        best_z: output, (ratios,): the ratios' multipliers at that pose.
     """
     low, high, keep_points, keep_radius = domain
     f = np.empty(family[1].shape[0])
     logs = np.empty(family[5].shape[0])
+    z = np.empty(f.shape[0])
     p, u = np.empty(3), np.empty(3)
     best = -math.inf
     starts = 0
@@ -140,11 +178,12 @@ def search(family, domain, axis_field, landmarks, shift, coarse, polished, round
             pool[c] = -math.inf
             for i in range(3):
                 p[i], u[i] = pool_p[c, i], pool_u[c, i]
-            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS)
+            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS, z)
             if value > best:
                 best = value
                 for i in range(3):
                     best_p[i], best_u[i] = p[i], u[i]
+                copy_into(z, best_z)
             starts += 1
             evaluations += steps
         if turn > 0:

@@ -6,7 +6,7 @@ import math
 
 from nullpose.solve.kernels.jit import kernel
 
-__all__ = ["cholesky_factor", "cholesky_solve", "eigen3", "gauss_solve", "tangents"]
+__all__ = ["cholesky_factor", "cholesky_solve", "copy_into", "eigen3", "gauss_solve", "tangents"]
 
 _SWEEPS = 30
 
@@ -128,6 +128,13 @@ def gauss_solve(a, b, n):
     for i in range(n):
         finite = finite and math.isfinite(b[i])
     return finite
+
+
+@kernel
+def copy_into(source, target):
+    """Overwrite a vector with another."""
+    for i in range(source.shape[0]):
+        target[i] = source[i]
 
 
 @kernel

@@ -1,0 +1,136 @@
+"""The search variables of a pose, and the constraints on its position.
+
+The pose is an affine function of the search variables: a step in position, scaled by the distance to the
+nearest
+node; for a free axis a step in its tangent plane and a part that turns with the position (see ``turning``),
+the axis being renormalised after every step.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.symmetric import tangents
+
+__all__ = ["axis_at", "chart", "domain_slacks", "move", "nearest_node", "reduce_hessian", "turning"]
+
+
+@kernel
+def axis_at(field, offset, matrix, p, u):
+    """Overwrite ``u`` with the axis that an affine field gives at p; leave a free axis as it is."""
+    if field == 1:
+        for i in range(3):
+            u[i] = offset[i] + matrix[i, 0] * p[0] + matrix[i, 1] * p[1] + matrix[i, 2] * p[2]
+
+
+@kernel
+def nearest_node(family, p):
+    """Return the distance to the nearest numerator point."""
+    points, npt = family[0], family[3]
+    nearest = math.inf
+    for k in range(npt.shape[0]):
+        d = 0.0
+        for i in range(3):
+            d += (points[npt[k], i] - p[i]) ** 2
+        nearest = min(nearest, d)
+    return math.sqrt(nearest)
+
+
+@kernel
+def turning(family, p, u):
+    """Return the rate, per metre and with its sign, at which the axis should turn with a step in position.
+
+    A straight step ``(dp, -dp / rho)`` keeps an axis that points at the strongest interferer on it exactly,
+    where a step in the tangent plane alone leaves it at second order, times that interferer's power.
+    """
+    points, dpt, dw = family[0], family[7], family[8]
+    strongest = 0.0
+    rate = 0.0
+    for e in range(dw.shape[0]):
+        x, y, z = points[dpt[e], 0] - p[0], points[dpt[e], 1] - p[1], points[dpt[e], 2] - p[2]
+        rho2 = x * x + y * y + z * z
+        if dw[e] / rho2 > strongest:
+            strongest = dw[e] / rho2
+            along = u[0] * x + u[1] * y + u[2] * z
+            rate = math.copysign(1.0 / math.sqrt(rho2), -along)
+    return rate
+
+
+@kernel
+def chart(field, matrix, rate, u, free, length, jacobian):
+    """Fill the Jacobian (6, n) of (p, u) in the search variables; return n."""
+    for i in range(6):
+        for m in range(5):
+            jacobian[i, m] = 0.0
+    n = 0
+    for i in range(3):
+        if free[i]:
+            jacobian[i, n] = length
+            if field == 1:
+                for m in range(3):
+                    jacobian[3 + m, n] = length * matrix[m, i]
+            else:
+                jacobian[3 + i, n] = length * rate
+            n += 1
+    if field == 0:
+        a, b = np.empty(3), np.empty(3)
+        tangents(u, a, b)
+        for i in range(3):
+            jacobian[3 + i, n] = a[i]
+            jacobian[3 + i, n + 1] = b[i]
+        n += 2
+    return n
+
+
+@kernel
+def move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u):
+    """Fill the pose reached by ``scale * step`` in the search variables."""
+    field, offset, matrix = axis_field
+    for i in range(3):
+        new_p[i] = p[i]
+        new_u[i] = u[i]
+        for m in range(n):
+            new_p[i] += scale * jacobian[i, m] * step[m]
+            if field == 0:
+                new_u[i] += scale * jacobian[3 + i, m] * step[m]
+    if field == 0:
+        norm = math.sqrt(new_u[0] ** 2 + new_u[1] ** 2 + new_u[2] ** 2)
+        for i in range(3):
+            new_u[i] /= norm
+    else:
+        axis_at(field, offset, matrix, new_p, new_u)
+
+
+@kernel
+def reduce_hessian(hess, jacobian, n, out):
+    """Fill ``J^T H J`` for the (6, n) Jacobian."""
+    half = np.zeros((6, 5))
+    for i in range(6):
+        for m in range(n):
+            s = 0.0
+            for k in range(6):
+                s += hess[i, k] * jacobian[k, m]
+            half[i, m] = s
+    for a in range(n):
+        for b in range(n):
+            s = 0.0
+            for i in range(6):
+                s += jacobian[i, a] * half[i, b]
+            out[a, b] = s
+
+
+@kernel
+def domain_slacks(p, domain, out):
+    """Fill the slacks of the position's constraints: low faces, high faces, keep-out balls (as squares)."""
+    low, high, keep_points, keep_radius = domain
+    for i in range(3):
+        out[i] = p[i] - low[i]
+        out[3 + i] = high[i] - p[i]
+    for q in range(keep_points.shape[0]):
+        d = 0.0
+        for i in range(3):
+            d += (p[i] - keep_points[q, i]) ** 2
+        out[6 + q] = d - keep_radius * keep_radius

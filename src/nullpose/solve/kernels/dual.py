@@ -1,0 +1,217 @@
+"""Multipliers that make a weighted sum of forms as negative as they can.
+
+``min over lambda in the simplex of lambda_max(sum_k lambda_k A_k)`` is the dual of
+``max over U psd, tr U = 1, of min_k <A_k, U>``, which has six unknowns whatever the number of forms: an
+interior-point
+method there costs a few small products per form and step, and its slacks give the multipliers. Any
+multipliers give a valid bound; these give nearly the best.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve
+
+__all__ = ["dual_multipliers", "top_eigenvector"]
+
+_R2 = 0.7071067811865476
+_R6 = 0.4082482904638631
+
+
+@kernel
+def top_eigenvector(a, v):
+    """Fill the eigenvector of the largest eigenvalue of a form; return that eigenvalue (closed form)."""
+    mean = (a[0] + a[1] + a[2]) / 3.0
+    x, y, z = a[0] - mean, a[1] - mean, a[2] - mean
+    off = a[3] * a[3] + a[4] * a[4] + a[5] * a[5]
+    spread = math.sqrt((x * x + y * y + z * z + 2.0 * off) / 6.0)
+    v[0], v[1], v[2] = 0.0, 0.0, 1.0
+    if spread == 0.0:
+        return mean
+    det = x * (y * z - a[5] * a[5]) - a[3] * (a[3] * z - a[5] * a[4]) + a[4] * (a[3] * a[5] - y * a[4])
+    cosine = max(-1.0, min(1.0, det / (2.0 * spread * spread * spread)))
+    top = mean + 2.0 * spread * math.cos(math.acos(cosine) / 3.0)
+    x, y, z = a[0] - top, a[1] - top, a[2] - top
+    # the null vector of A - top I is the longest cross product of two of its rows
+    longest = 0.0
+    for k in range(3):
+        if k == 0:
+            p, q, r = a[3] * a[5] - a[4] * y, a[4] * a[3] - x * a[5], x * y - a[3] * a[3]
+        elif k == 1:
+            p, q, r = a[3] * z - a[4] * a[5], a[4] * a[4] - x * z, x * a[5] - a[3] * a[4]
+        else:
+            p, q, r = y * z - a[5] * a[5], a[5] * a[4] - a[3] * z, a[3] * a[5] - y * a[4]
+        length = p * p + q * q + r * r
+        if length > longest:
+            longest = length
+            v[0], v[1], v[2] = p, q, r
+    if longest > 0.0:
+        norm = math.sqrt(longest)
+        for i in range(3):
+            v[i] /= norm
+    return top
+
+
+@kernel
+def inverse(u, w):
+    """Fill the inverse of a symmetric matrix kept as six numbers; return its determinant."""
+    w[0] = u[1] * u[2] - u[5] * u[5]
+    w[1] = u[0] * u[2] - u[4] * u[4]
+    w[2] = u[0] * u[1] - u[3] * u[3]
+    w[3] = u[4] * u[5] - u[3] * u[2]
+    w[4] = u[3] * u[5] - u[4] * u[1]
+    w[5] = u[3] * u[4] - u[0] * u[5]
+    det = u[0] * w[0] + u[3] * w[3] + u[4] * w[4]
+    for i in range(6):
+        w[i] /= det
+    return det
+
+
+@kernel
+def positive_definite(u):
+    """Return whether a form is positive definite, by its leading minors."""
+    minor = u[0] * u[1] - u[3] * u[3]
+    det = u[2] * minor - u[0] * u[5] * u[5] - u[1] * u[4] * u[4] + 2.0 * u[3] * u[4] * u[5]
+    return u[0] > 0.0 and minor > 0.0 and det > 0.0
+
+
+@kernel
+def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, matrix):
+    """Fill the multipliers of ``count`` forms, summing to one, and of the ``sides`` constraints after them.
+
+    Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
+    largest eigenvalue below it.
+
+    Args:
+        forms: (count + sides, 6); the last ``sides`` are the constraints ``<Q, U> >= 0``.
+        count: how many are maximised over.
+        sides: how many are constraints.
+        level: the size of the values that are of interest.
+        stop: the primal value at which to stop.
+        gap: relative accuracy, in units of the level.
+        start: (6,) positive definite matrix of unit trace that meets the constraints strictly.
+        multipliers: output, (count + sides,).
+        matrix: output, (6,): the primal matrix U.
+
+    Returns:
+        The primal value ``min_k <A_k, U>``.
+    """
+    total = count + sides
+    rows = np.empty((total, 6))
+    value = np.empty(total)
+    slacks = np.empty(total)
+    changes = np.empty(total)
+    w = np.empty(6)
+    p = np.empty((5, 3, 3))
+    hess = np.empty((6, 6))
+    grad = np.empty(6)
+    trial = np.empty(6)
+    for k in range(total):
+        a = forms[k]
+        rows[k, 0] = (a[0] - a[1]) * _R2
+        rows[k, 1] = (a[0] + a[1] - 2.0 * a[2]) * _R6
+        rows[k, 2] = 2.0 * a[3] * _R2
+        rows[k, 3] = 2.0 * a[4] * _R2
+        rows[k, 4] = 2.0 * a[5] * _R2
+        rows[k, 5] = -1.0 if k < count else 0.0
+    for i in range(6):
+        matrix[i] = start[i]
+    smallest = math.inf
+    for k in range(total):
+        a = forms[k]
+        value[k] = a[0] * matrix[0] + a[1] * matrix[1] + a[2] * matrix[2]
+        value[k] += 2.0 * (a[3] * matrix[3] + a[4] * matrix[4] + a[5] * matrix[5])
+        if k < count:
+            smallest = min(smallest, value[k])
+    mu = 0.3 * max(abs(level), abs(smallest))
+    end = gap * abs(level) / (total + 3)
+    s = smallest - mu * count
+    for _ in range(60):
+        inverse(matrix, w)
+        # P_i = U^-1 B_i for the five trace-free basis matrices
+        for r in range(3):
+            w0 = w[0] if r == 0 else (w[3] if r == 1 else w[4])
+            w1 = w[3] if r == 0 else (w[1] if r == 1 else w[5])
+            w2 = w[4] if r == 0 else (w[5] if r == 1 else w[2])
+            p[0, r, 0], p[0, r, 1], p[0, r, 2] = w0 * _R2, -w1 * _R2, 0.0
+            p[1, r, 0], p[1, r, 1], p[1, r, 2] = w0 * _R6, w1 * _R6, -2.0 * w2 * _R6
+            p[2, r, 0], p[2, r, 1], p[2, r, 2] = w1 * _R2, w0 * _R2, 0.0
+            p[3, r, 0], p[3, r, 1], p[3, r, 2] = w2 * _R2, 0.0, w0 * _R2
+            p[4, r, 0], p[4, r, 1], p[4, r, 2] = 0.0, w2 * _R2, w1 * _R2
+        for i in range(5):
+            grad[i] = mu * (p[i, 0, 0] + p[i, 1, 1] + p[i, 2, 2])
+            for j in range(i + 1):
+                trace = 0.0
+                for a in range(3):
+                    for b in range(3):
+                        trace += p[i, a, b] * p[j, b, a]
+                hess[i, j] = mu * trace
+        for j in range(6):
+            hess[5, j] = 0.0
+        grad[5] = 1.0
+        for k in range(total):
+            slacks[k] = value[k] - (s if k < count else 0.0)
+            first = mu / slacks[k]
+            second = first / slacks[k]
+            for i in range(6):
+                grad[i] += first * rows[k, i]
+                for j in range(i + 1):
+                    hess[i, j] += second * rows[k, i] * rows[k, j]
+        decrement = 0.0
+        for i in range(6):
+            trial[i] = grad[i]
+        if not cholesky_factor(hess, 6):
+            break
+        cholesky_solve(hess, 6, grad)
+        for i in range(6):
+            decrement += trial[i] * grad[i]
+        for k in range(total):
+            changes[k] = 0.0
+            for i in range(6):
+                changes[k] += rows[k, i] * grad[i]
+        step = 1.0
+        for _ in range(40):
+            y0, y1 = step * grad[0] * _R2, step * grad[1] * _R6
+            trial[0] = matrix[0] + y0 + y1
+            trial[1] = matrix[1] - y0 + y1
+            trial[2] = matrix[2] - 2.0 * y1
+            trial[3] = matrix[3] + step * grad[2] * _R2
+            trial[4] = matrix[4] + step * grad[3] * _R2
+            trial[5] = matrix[5] + step * grad[4] * _R2
+            fits = positive_definite(trial)
+            for k in range(total):
+                if not fits:
+                    break
+                fits = step * changes[k] > -0.95 * slacks[k]
+            if fits:
+                break
+            step *= 0.6
+        if not fits:
+            break
+        smallest = math.inf
+        for k in range(total):
+            for i in range(5):
+                value[k] += step * rows[k, i] * grad[i]
+            if k < count:
+                smallest = min(smallest, value[k])
+        for i in range(6):
+            matrix[i] = trial[i]
+        s += step * grad[5]
+        if smallest > stop:
+            break
+        if decrement <= 0.3 * mu:
+            if mu <= end:
+                break
+            mu = max(0.1 * mu, 0.999 * end)
+    weight = 0.0
+    for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
+        multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
+        if k < count:
+            weight += multipliers[k]
+    for k in range(total):
+        multipliers[k] /= weight
+    return smallest

@@ -1,0 +1,95 @@
+"""Symmetric 3x3 forms kept as (xx, yy, zz, xy, xz, yz), and those of a family at a position."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import kernel
+
+__all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor"]
+
+
+@kernel
+def form_value(forms, k, v):
+    """Return ``v^T A_k v``."""
+    a = forms[k]
+    return (
+        a[0] * v[0] * v[0]
+        + a[1] * v[1] * v[1]
+        + a[2] * v[2] * v[2]
+        + 2.0 * (a[3] * v[0] * v[1] + a[4] * v[0] * v[2] + a[5] * v[1] * v[2])
+    )
+
+
+@kernel
+def bilinear(a, x, y):
+    """Return ``x^T A y``."""
+    return (
+        a[0] * x[0] * y[0]
+        + a[1] * x[1] * y[1]
+        + a[2] * x[2] * y[2]
+        + a[3] * (x[0] * y[1] + x[1] * y[0])
+        + a[4] * (x[0] * y[2] + x[2] * y[0])
+        + a[5] * (x[1] * y[2] + x[2] * y[1])
+    )
+
+
+@kernel
+def congruence(form, basis, out):
+    """Fill ``R^T A R`` for a form and a 3x3 matrix."""
+    half = np.empty((3, 3))
+    for m in range(3):
+        x, y, z = basis[0, m], basis[1, m], basis[2, m]
+        half[0, m] = form[0] * x + form[3] * y + form[4] * z
+        half[1, m] = form[3] * x + form[1] * y + form[5] * z
+        half[2, m] = form[4] * x + form[5] * y + form[2] * z
+    for k in range(6):
+        i = k if k < 3 else (0 if k < 5 else 1)
+        j = k if k < 3 else (1 if k == 3 else 2)
+        out[k] = basis[0, i] * half[0, j] + basis[1, i] * half[1, j] + basis[2, i] * half[2, j]
+
+
+@kernel
+def inverse_factor(a, out):
+    """Fill the transposed inverse of the Cholesky factor of a positive definite form: ``C^T A C = I``."""
+    l00 = math.sqrt(a[0])
+    l10, l20 = a[3] / l00, a[4] / l00
+    l11 = math.sqrt(a[1] - l10 * l10)
+    l21 = (a[5] - l20 * l10) / l11
+    l22 = math.sqrt(a[2] - l20 * l20 - l21 * l21)
+    out[:, :] = 0.0
+    out[0, 0], out[1, 1], out[2, 2] = 1.0 / l00, 1.0 / l11, 1.0 / l22
+    out[0, 1] = -l10 / (l00 * l11)
+    out[1, 2] = -l21 / (l11 * l22)
+    out[0, 2] = (l10 * l21 / l11 - l20) / (l00 * l22)
+
+
+@kernel
+def fill_form(points, j, p, weight, isotropic, out):
+    """Add ``weight * T(q_j - p)`` and ``isotropic * I`` to a form of six numbers."""
+    x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
+    rho2 = x * x + y * y + z * z
+    s = weight / (rho2 * rho2)
+    out[0] += isotropic + s * (y * y + z * z)
+    out[1] += isotropic + s * (x * x + z * z)
+    out[2] += isotropic + s * (x * x + y * y)
+    out[3] -= s * x * y
+    out[4] -= s * x * z
+    out[5] -= s * y * z
+
+
+@kernel
+def fill_forms(family, p, numerators, denominators):
+    """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
+    points, n0, nw, npt, _, d0, dstart, dpt, dw = family
+    numerators[:, :] = 0.0
+    denominators[:, :] = 0.0
+    for k in range(nw.shape[0]):
+        fill_form(points, npt[k], p, nw[k], n0[k], numerators[k])
+    for g in range(d0.shape[0]):
+        for i in range(3):
+            denominators[g, i] = d0[g]
+        for e in range(dstart[g], dstart[g + 1]):
+            fill_form(points, dpt[e], p, dw[e], 0.0, denominators[g])
