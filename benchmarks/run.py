@@ -1,0 +1,69 @@
+"""A run: workloads measured, stored, and read back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.machine import describe_machine, load_average
+from benchmarks.metric import Metric
+from benchmarks.workload import Progress, Row, Workload
+
+__all__ = ["Run", "measure"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """What was measured, and on what.
+
+    Args:
+        quick: whether the sample was the small one, whose figures are no evidence.
+        machine: pairs of name and text.
+        rows: the measurements of each workload that ran, by name.
+    """
+
+    quick: bool
+    machine: Mapping[str, str]
+    rows: Mapping[str, Sequence[Row]]
+
+    def metrics(self, workloads: Sequence[Workload]) -> list[Metric]:
+        """Return the metrics of every workload that ran."""
+        return [
+            m
+            for workload in workloads
+            if workload.name in self.rows
+            for m in workload.metrics(self.rows[workload.name])
+        ]
+
+    def save(self, path: Path) -> None:
+        """Write the run as JSON."""
+        content = {"quick": self.quick, "machine": dict(self.machine), "rows": dict(self.rows)}
+        path.write_text(json.dumps(content), encoding="utf-8")
+
+    @classmethod
+    def load(cls, path: Path) -> Run:
+        """Return a run that was written before."""
+        return cls(**json.loads(path.read_text(encoding="utf-8")))
+
+
+def measure(workloads: Sequence[Workload], *, quick: bool, progress: Progress) -> Run:
+    """Return a run of some workloads, one after the other.
+
+    Args:
+        workloads: what to measure.
+        quick: the small sample.
+        progress: told of every step.
+    """
+    machine = describe_machine()
+    loads = [load_average()]
+    rows: dict[str, Sequence[Row]] = {}
+    for workload in workloads:
+        rows[workload.name] = workload.measure(quick=quick, progress=progress)
+        loads.append(load_average())
+    machine["load"] = (
+        f"{loads[0]:.1f} before and up to {max(loads[1:]):.1f} between workloads, "
+        "as the mean number of processes over a minute, this one included"
+    )
+    return Run(quick=quick, machine=machine, rows=rows)
