@@ -1,0 +1,96 @@
+"""Zero interference: the null on a jammer, and which one."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.optimize import differential_evolution
+
+from nullpose.errors import UsageError
+from nullpose.family import build_family
+from nullpose.physics import antenna_gain, zero_interference_axis, zero_interference_sinr
+from nullpose.scenario import Scenario
+from nullpose.solve import Scheme, solve
+from nullpose.solve.schemes.zero_interference import axis_field, find
+
+
+@pytest.fixture(scope="module")
+def three_jammers(scene: Callable) -> Scenario:
+    """Returns a scene of two nodes and three jammers of unlike powers."""
+    return scene(
+        [(0, 0, 0), (0, 50, 0)],
+        [(17, 15, 4), (-25, 40, 1), (30, 30, 0)],
+        jammer_powers_w=[0.3, 5.0, 1.0],
+    )
+
+
+def test_the_field_points_at_the_jammer(paper: Callable) -> None:
+    """The affine field is the axis of eq. 3.1, its length left out."""
+    jammer = paper(1.0).jammer_positions_m[0]
+    _, offset, matrix = axis_field(jammer).arrays
+    for position in np.random.default_rng(1).uniform([-30.0, 0.0, 8.0], [30.0, 50.0, 30.0], (20, 3)):
+        axis = offset + matrix @ position
+        np.testing.assert_allclose(
+            axis / np.linalg.norm(axis), zero_interference_axis(position, jammer), atol=1e-15
+        )
+
+
+def test_the_paper_by_differential_evolution(paper: Callable) -> None:
+    """Differential evolution on eq. 3.2 comes to the same value, and the null is on the jammer."""
+    one = paper(100.0)
+    solution = solve(one, Scheme.ZERO_INTERFERENCE)
+    searched = differential_evolution(
+        lambda positions: -np.min(zero_interference_sinr(one, positions.T), axis=-1),
+        [(-30.0, 30.0), (0.0, 50.0), (8.0, 30.0)],
+        seed=2,
+        vectorized=True,
+        updating="deferred",
+        maxiter=400,
+        tol=1e-12,
+    )
+    assert solution.objective.value == pytest.approx(-searched.fun, rel=1e-9)
+    assert solution.note == "null on jammer M1"
+    gain = antenna_gain(solution.pose.position_m, solution.pose.antenna_axis, one.jammer_positions_m)
+    assert gain[0] < 1e-30
+
+
+def test_each_jammer_is_tried(three_jammers: Scenario) -> None:
+    """Without a name each jammer is tried and the best kept; the note says which, the counts are of all."""
+    named = {
+        name: solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
+        for name in three_jammers.jammer_names
+    }
+    best = solve(three_jammers, Scheme.ZERO_INTERFERENCE)
+    winner = max(named, key=lambda name: named[name].objective.value)
+    assert best.objective == named[winner].objective
+    assert best.pose == named[winner].pose
+    assert best.note == f"null on jammer {winner}, the best of 3"
+    assert best.stats.starts == sum(solution.stats.starts for solution in named.values())
+    assert best.stats.evaluations == sum(solution.stats.evaluations for solution in named.values())
+    assert len({solution.objective.value for solution in named.values()}) == 3
+
+
+@pytest.mark.parametrize("name", ["M1", "M2", "M3"])
+def test_the_null_is_on_the_one_named(name: str, three_jammers: Scenario) -> None:
+    """A jammer named has the null on it, and the note names it."""
+    solution = solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
+    gains = antenna_gain(
+        solution.pose.position_m, solution.pose.antenna_axis, three_jammers.jammer_positions_m
+    )
+    index = three_jammers.jammer_names.index(name)
+    assert gains[index] < 1e-30
+    assert np.all(np.delete(gains, index) > 1e-6)
+    assert solution.note == f"null on jammer {name}"
+
+
+def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
+    """Another name is refused, with those there are."""
+    with pytest.raises(UsageError, match="given 'X'; the scenario's jammers are M1, M2, M3"):
+        find(three_jammers, seed=0, null_jammer="X")
+
+
+def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
+    """The field's axis at the position found is the axis found, of the length of the way to the jammer."""
+    found = find(three_jammers, seed=0, null_jammer="M2")
+    np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
+    assert build_family(three_jammers).low_m[2] <= found.position_m[2]

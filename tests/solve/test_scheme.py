@@ -1,0 +1,61 @@
+"""The schemes: names, order, and where they have no meaning."""
+
+from collections.abc import Callable
+
+import pytest
+
+from nullpose.errors import UsageError
+from nullpose.solve import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
+
+
+def test_names_are_a_contract() -> None:
+    """The schemes' names are what files and command lines say."""
+    assert [scheme.value for scheme in Scheme] == [
+        "optimum",
+        "zero-interference",
+        "maximum-gain",
+        "vertical",
+        "maximum-gain-printed",
+    ]
+    assert tuple(Scheme)[:4] == PAPER_SCHEMES
+    assert len({scheme.label for scheme in Scheme}) == len(Scheme)
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+def test_a_scheme_is_found_by_name(scheme: Scheme) -> None:
+    """A scheme is found by its name and by itself."""
+    assert as_scheme(scheme.value) is scheme
+    assert as_scheme(scheme) is scheme
+
+
+@pytest.mark.parametrize("name", ["best", "Optimum", "", "zero_interference"])
+def test_an_unknown_name_is_refused(name: str) -> None:
+    """Another name is refused with what was given and every name that is allowed."""
+    with pytest.raises(UsageError) as raised:
+        as_scheme(name)
+    assert repr(name) in str(raised.value)
+    for scheme in Scheme:
+        assert scheme.value in str(raised.value)
+
+
+def test_zero_interference_needs_a_jammer(scene: Callable) -> None:
+    """Without a jammer there is nothing to point the null at; with any number there is."""
+    nodes = [(0, 0, 0), (0, 50, 0)]
+    assert "needs a jammer" in not_applicable(scene(nodes), Scheme.ZERO_INTERFERENCE)
+    for jammers in ([(9, 9, 1)], [(9, 9, 1), (20, 9, 1)]):
+        assert not_applicable(scene(nodes, jammers), Scheme.ZERO_INTERFERENCE) is None
+
+
+@pytest.mark.parametrize("nodes", [1, 2, 3])
+def test_the_printed_form_needs_two_nodes(nodes: int, scene: Callable) -> None:
+    """Eq. 3.5 as printed is for two nodes; the reason says how many there are."""
+    places = [(0, 0, 0), (0, 50, 0), (30, 0, 0)][:nodes]
+    reason = not_applicable(scene(places, [(9, 9, 1)]), Scheme.MAXIMUM_GAIN_PRINTED)
+    assert reason is None if nodes == 2 else f"has {nodes}" in reason
+
+
+@pytest.mark.parametrize("scheme", [Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL])
+def test_the_others_always_apply(scheme: Scheme, scene: Callable) -> None:
+    """Optimum, maximum gain and vertical have a meaning for any number of nodes and jammers."""
+    assert not_applicable(scene([(0, 0, 0)]), scheme) is None
+    assert not_applicable(scene([(0, 0, 0), (5, 0, 0), (9, 9, 0)], [(1, 1, 1)]), scheme) is None

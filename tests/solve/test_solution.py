@@ -1,0 +1,114 @@
+"""The solution as data: the JSON contract, and a value that is the pose's."""
+
+import copy
+import dataclasses
+import json
+import math
+from collections.abc import Callable
+
+import pytest
+
+from nullpose.physics import Link, Pose, evaluate
+from nullpose.scenario import Scenario
+from nullpose.solve import Objective, Scheme, Solution, Stats, Status, solve
+
+
+@pytest.fixture(scope="module")
+def solution(paper: Callable) -> Solution:
+    """Returns the paper's solution at P_M/P = 1."""
+    return solve(paper(1.0))
+
+
+def test_the_json_object_is_the_contract(solution: Solution) -> None:
+    """The JSON object has the keys that files and programs rely on, in order, and nothing else."""
+    data = solution.to_dict()
+    assert list(data) == [
+        "scenario",
+        "scheme",
+        "status",
+        "objective",
+        "pose",
+        "links",
+        "stats",
+        "provenance",
+        "note",
+    ]
+    assert list(data["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
+    assert list(data["pose"]) == ["position_m", "roll_rad", "pitch_rad", "yaw_rad", "antenna_axis"]
+    assert [list(link) for link in data["links"]] == [["node", "sinr", "sinr_db"]] * 2
+    assert list(data["stats"]) == ["wall_s", "starts", "evaluations"]
+    assert {"nullpose", "seed"} <= set(data["provenance"])
+
+
+def test_the_json_object_survives_json(solution: Solution) -> None:
+    """The object goes through strict JSON unchanged, and its scenario loads as the one that was solved."""
+    data = solution.to_dict()
+    assert json.loads(json.dumps(data, allow_nan=False)) == data
+    assert Scenario.from_dict(data["scenario"]) == solution.scenario
+    assert (data["scheme"], data["status"], data["objective"]["name"]) == (
+        "optimum",
+        "best-found",
+        "min_sinr",
+    )
+
+
+def test_nothing_is_proved_yet(solution: Solution) -> None:
+    """A multistart claims no bound: upper bound and gap are null, and the status says so in a sentence."""
+    assert solution.status is Status.BEST_FOUND
+    assert "not proved" in Status.BEST_FOUND.message
+    assert solution.to_dict()["objective"]["upper_bound"] is None
+    assert solution.to_dict()["objective"]["relative_gap"] is None
+
+
+def test_the_value_is_that_of_the_reported_angles(solution: Solution) -> None:
+    """From the numbers of the JSON object alone, roll, pitch and yaw, the physics gives the value again."""
+    data = solution.to_dict()
+    pose = Pose(
+        data["pose"]["position_m"], *(data["pose"][angle] for angle in ("roll_rad", "pitch_rad", "yaw_rad"))
+    )
+    links = evaluate(Scenario.from_dict(data["scenario"]), pose)
+    assert [link.sinr for link in links] == [link["sinr"] for link in data["links"]]
+    assert min(link.sinr for link in links) == data["objective"]["value"]
+    assert data["objective"]["value_db"] == pytest.approx(10.0 * math.log10(data["objective"]["value"]))
+    assert data["pose"]["antenna_axis"] == list(pose.antenna_axis)
+    assert data["pose"]["yaw_rad"] == 0.0
+
+
+def test_a_number_that_json_lacks_is_null(solution: Solution) -> None:
+    """A link in the null is minus infinity in dB, which JSON cannot hold: it becomes null."""
+    silent = dataclasses.replace(
+        solution,
+        objective=Objective(name="min_sinr", value=0.0, value_db=-math.inf),
+        links=(Link(node="S1", sinr=0.0, sinr_db=-math.inf), solution.links[1]),
+    )
+    data = json.loads(json.dumps(silent.to_dict(), allow_nan=False))
+    assert data["objective"]["value_db"] is None
+    assert data["links"][0]["sinr_db"] is None
+
+
+def test_a_solution_is_frozen(solution: Solution) -> None:
+    """Neither fields nor provenance can be set, and what to_dict returns is a copy."""
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        solution.note = "other"
+    with pytest.raises(TypeError):
+        solution.provenance["seed"] = 9
+    before = copy.deepcopy(solution.to_dict())
+    data = solution.to_dict()
+    data["provenance"]["seed"] = 9
+    data["links"][0]["sinr"] = 0.0
+    assert solution.to_dict() == before
+
+
+def test_the_binding_node_has_the_smallest_ratio(solution: Solution) -> None:
+    """The binding node is the one with the smallest SINR, the first of equals."""
+    links = tuple(
+        Link(node=name, sinr=ratio, sinr_db=0.0) for name, ratio in zip("abc", (2.0, 1.0, 1.0), strict=True)
+    )
+    assert dataclasses.replace(solution, links=links).binding_node == "b"
+
+
+def test_parts_are_values() -> None:
+    """Objectives and stats with equal numbers are equal."""
+    assert Stats(wall_s=1.0, starts=2, evaluations=3) == Stats(wall_s=1.0, starts=2, evaluations=3)
+    assert Objective(name="min_sinr", value=1.0, value_db=0.0).upper_bound is None
+    assert Scheme.OPTIMUM == "optimum"
