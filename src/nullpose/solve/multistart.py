@@ -14,6 +14,11 @@ from nullpose.solve.found import Found
 __all__ = ["SearchSettings", "multistart"]
 
 
+_CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)  # barrier weights
+_CLIMB_STEPS = 300
+_SAME = 1e-12
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
     """How hard the multistart tries.
@@ -59,6 +64,7 @@ def multistart(
     Raises:
         SolveError: no position of the domain gave every ratio a positive value.
     """
+    from nullpose.solve.kernels.polish import polish
     from nullpose.solve.kernels.search import search
 
     settings = settings or SearchSettings()
@@ -83,6 +89,21 @@ def multistart(
         raise SolveError(
             "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
         )
+    for mu in _CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
+        before = log_value
+        log_value, steps = polish(
+            family.arrays,
+            family.domain,
+            axis_field.arrays,
+            position_m,
+            axis,
+            mu,
+            _CLIMB_STEPS,
+            multipliers,
+        )
+        evaluations += steps
+        if steps < _CLIMB_STEPS and log_value <= before + _SAME:
+            break
     return Found(
         position_m=position_m,
         axis=axis,

@@ -200,7 +200,7 @@ def test_polishing_an_end_never_loses_it(random_scene: Callable) -> None:
         best_axis(family.arrays, p, u)
         value, p, u = polished(family, AxisField.free(), p, u)
         again = polished(family, AxisField.free(), p, u)[0]
-        assert again >= value
+        assert again >= value - 1e-12
         moved += again > value + 1e-10
     assert moved <= 5
 

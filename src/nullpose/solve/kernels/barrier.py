@@ -7,7 +7,7 @@ import math
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve
 
-__all__ = ["barrier_value", "best_level", "newton_step", "residual", "update_duals"]
+__all__ = ["barrier_value", "bent_step", "best_level", "newton_step", "residual", "update_duals"]
 
 
 @kernel
@@ -119,6 +119,27 @@ def newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, facto
     for m in range(n):
         slope += gradient[m] * step[m]
     return slope
+
+
+@kernel
+def bent_step(f, t, new_f, slopes, z, factor, n, scale, step, out):
+    """Fill a step that allows for the curvature met: Newton's, with the linearisation's errors put in.
+
+    A ridge of equal ratios is curved, and a straight step leaves it; the ratios at its end tell by how much.
+    """
+    for i in range(n + 1):
+        out[i] = 0.0
+    for k in range(f.shape[0]):
+        predicted = f[k]
+        for m in range(n):
+            predicted += scale * slopes[k, m] * step[m]
+        pull = z[k] / (f[k] - t) * (predicted - new_f[k])
+        for m in range(n):
+            out[m] += pull * slopes[k, m]
+        out[n] -= pull
+    cholesky_solve(factor, n + 1, out)
+    for i in range(n + 1):
+        out[i] += scale * step[i]
 
 
 @kernel

@@ -12,7 +12,14 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.barrier import barrier_value, best_level, newton_step, residual, update_duals
+from nullpose.solve.kernels.barrier import (
+    barrier_value,
+    bent_step,
+    best_level,
+    newton_step,
+    residual,
+    update_duals,
+)
 from nullpose.solve.kernels.chart import (
     axis_at,
     chart,
@@ -32,6 +39,7 @@ __all__ = ["polish"]
 _MU_END = 1e-12
 _LONGEST = 0.7
 _INSIDE = 0.995
+_ATTEMPTS = 31
 
 
 @kernel
@@ -92,6 +100,35 @@ def longest_scale(rows, slacks, used, step, n):
 
 
 @kernel
+def line_search(family, domain, axis_field, here, there, model, way):
+    """Return the share of a step that climbs the barrier enough, and the level there; fill the pose reached.
+
+    Before the step is shortened it is bent once, to follow a curved ridge. A share of zero: none climbs.
+    """
+    p, u, f, t, slacks = here
+    new_p, new_u, new_f, new_slacks, logs = there
+    jacobian, slopes, rows, used, z, factor, n, mu = model
+    step, slope, scale = way
+    floor = barrier_value(f, t, slacks, used, mu)
+    bent = np.empty(6)
+    for attempt in range(_ATTEMPTS):
+        if attempt == 1:
+            bent_step(f, t, new_f, slopes, z, factor, n, scale, step, bent)
+            share = longest_scale(rows, slacks, used, bent, n)[0]
+            move(axis_field, p, u, jacobian, n, bent, share, new_p, new_u)
+        else:
+            scale *= 0.5 if attempt > 1 else 1.0
+            move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u)
+        log_ratios(family, new_p, new_u, logs, new_f)
+        domain_slacks(new_p, domain, new_slacks)
+        new_t = best_level(new_f, mu)
+        value = barrier_value(new_f, new_t, new_slacks, used, mu)
+        if value >= floor + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(floor)):
+            return scale, new_t
+    return 0.0, t
+
+
+@kernel
 def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     """Improve a pose in place to a local maximum; return its smallest log ratio and the steps taken.
 
@@ -115,8 +152,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     for k in range(ratios):
         multipliers[k] = 1.0 / ratios
     for c in range(6, sides):
-        if not slacks[c] > 0.0:
-            return -math.inf, 0
+        best = best if slacks[c] > 0.0 else -math.inf
     if not best > -math.inf:
         return best, 0
     best_p, best_u = p.copy(), u.copy()
@@ -152,21 +188,17 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         if math.isnan(slope):
             break
         scale, largest = longest_scale(rows, slacks, used, step, n)
-        here = barrier_value(f, t, slacks, used, mu)
         dual_scale = scale
-        accepted = False
-        new_t = t
-        for _ in range(30):
-            move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u)
-            log_ratios(family, new_p, new_u, logs, new_f)
-            domain_slacks(new_p, domain, new_slacks)
-            new_t = best_level(new_f, mu)
-            there = barrier_value(new_f, new_t, new_slacks, used, mu)
-            if there >= here + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(here)):
-                accepted = True
-                break
-            scale *= 0.5
-        if not accepted:
+        scale, new_t = line_search(
+            family,
+            domain,
+            axis_field,
+            (p, u, f, t, slacks),
+            (new_p, new_u, new_f, new_slacks, logs),
+            (jacobian, slopes, rows, used, z, factor, n, mu),
+            (step, slope, scale),
+        )
+        if not scale > 0.0:
             stalled += 3
             continue
         stalled = stalled + 1 if scale * largest < 1e-13 else 0
@@ -178,10 +210,8 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         update_duals(gaps, new_gaps, slopes, every, step, n + 1, dual_scale, mu, z)
         update_duals(slacks, new_slacks, rows, used, step, n, dual_scale, mu, zs)
         t = new_t
-        copy_into(new_f, f)
-        copy_into(new_slacks, slacks)
-        copy_into(new_p, p)
-        copy_into(new_u, u)
+        for source, target in ((new_f, f), (new_slacks, slacks), (new_p, p), (new_u, u)):
+            copy_into(source, target)
         if smallest > best:
             best = smallest
             copy_into(p, best_p)

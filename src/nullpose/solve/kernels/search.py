@@ -23,7 +23,7 @@ from nullpose.solve.kernels.symmetric import copy_into
 __all__ = ["search"]
 
 _MU_START = 0.1
-_MAX_STEPS = 200
+_MAX_STEPS = 100
 _SAME = 1e-9
 _ROUGH = 1e-2
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
