@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from numba import config, njit
+from numba import njit
 
 __all__ = ["kernel"]
 
@@ -19,13 +19,12 @@ def kernel(function: Callable[..., Any]) -> Any:
     Where no folder can hold a cache (a read-only installation without a home), it is compiled in every
     process.
     """
-    if config.DISABLE_JIT:  # for debugging: numba would hand the function back, without a cache to look at
-        return function
     try:
         dispatcher = njit(cache=True, error_model="numpy", nogil=True)(function)
     except RuntimeError:  # numba's word for "no locator available"
         return njit(error_model="numpy", nogil=True)(function)
-    _drop_outdated(dispatcher.stats.cache_path)
+    if dispatcher is not function:  # numba hands it back as it is where NUMBA_DISABLE_JIT is set
+        _drop_outdated(dispatcher.stats.cache_path)
     return dispatcher
 
 
