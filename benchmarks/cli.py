@@ -102,9 +102,7 @@ def _run(options: argparse.Namespace, chosen: Sequence[Workload]) -> Run:
     if options.render:
         return Run.load(options.render)
     with _progress() as progress:
-        run = measure(chosen, quick=options.quick, progress=progress)
-    run.save(SCRATCH / "results.json")
-    return run
+        return measure(chosen, quick=options.quick, progress=progress, store=SCRATCH / "results.json")
 
 
 @contextmanager

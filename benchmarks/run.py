@@ -48,22 +48,22 @@ class Run:
         return cls(**json.loads(path.read_text(encoding="utf-8")))
 
 
-def measure(workloads: Sequence[Workload], *, quick: bool, progress: Progress) -> Run:
-    """Return a run of some workloads, one after the other.
+def measure(workloads: Sequence[Workload], *, quick: bool, progress: Progress, store: Path) -> Run:
+    """Return a run of some workloads, the last first, which is the shortest.
 
     Args:
-        workloads: what to measure.
+        workloads: what to measure, in the order of the report.
         quick: the small sample.
         progress: told of every step.
+        store: file that the run is written to after each workload, so that a fault loses no more than one.
     """
     machine = describe_machine()
     loads = [load_average()]
     rows: dict[str, Sequence[Row]] = {}
-    for workload in workloads:
+    for workload in reversed(workloads):
         rows[workload.name] = workload.measure(quick=quick, progress=progress)
         loads.append(load_average())
-    machine["load"] = (
-        f"{loads[0]:.1f} before and up to {max(loads[1:]):.1f} between workloads, "
-        "as the mean number of processes over a minute, this one included"
-    )
-    return Run(quick=quick, machine=machine, rows=rows)
+        load = f"{loads[0]:.1f} before, at most {max(loads[1:]):.1f} after a workload, which itself makes 1"
+        run = Run(quick=quick, machine={**machine, "processes at work": load}, rows=rows)
+        run.save(store)
+    return run

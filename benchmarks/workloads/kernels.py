@@ -57,8 +57,9 @@ def turn_all(family, ps, us):
 @njit(error_model="numpy")
 def polish_all(family, domain, axis_field, ps, us, mu_start, max_steps):
     """Polish every pose, on copies."""
+    multipliers = np.empty(family[1].shape[0])
     for m in range(ps.shape[0]):
-        polish(family, domain, axis_field, ps[m].copy(), us[m].copy(), mu_start, max_steps)
+        polish(family, domain, axis_field, ps[m].copy(), us[m].copy(), mu_start, max_steps, multipliers)
 
 
 class Kernels:
