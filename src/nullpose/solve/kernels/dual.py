@@ -14,12 +14,13 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.jit import kernel
-from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve
+from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, copy_into
 
 __all__ = ["dual_multipliers", "top_eigenvector"]
 
 _R2 = 0.7071067811865476
 _R6 = 0.4082482904638631
+_MOST_STEPS = 60
 
 
 @kernel
@@ -80,37 +81,9 @@ def positive_definite(u):
 
 
 @kernel
-def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, matrix):
-    """Fill the multipliers of ``count`` forms, summing to one, and of the ``sides`` constraints after them.
-
-    Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
-    largest eigenvalue below it.
-
-    Args:
-        forms: (count + sides, 6); the last ``sides`` are the constraints ``<Q, U> >= 0``.
-        count: how many are maximised over.
-        sides: how many are constraints.
-        level: the size of the values that are of interest.
-        stop: the primal value at which to stop.
-        gap: relative accuracy, in units of the level.
-        start: (6,) positive definite matrix of unit trace that meets the constraints strictly.
-        multipliers: output, (count + sides,).
-        matrix: output, (6,): the primal matrix U.
-
-    Returns:
-        The primal value ``min_k <A_k, U>``.
-    """
-    total = count + sides
-    rows = np.empty((total, 6))
-    value = np.empty(total)
-    slacks = np.empty(total)
-    changes = np.empty(total)
-    w = np.empty(6)
-    p = np.empty((5, 3, 3))
-    hess = np.empty((6, 6))
-    grad = np.empty(6)
-    trial = np.empty(6)
-    for k in range(total):
+def fill_rows(forms, count, matrix, rows, value):
+    """Fill each form's coordinates in the trace-free basis, its share in the level, and its value."""
+    for k in range(forms.shape[0]):
         a = forms[k]
         rows[k, 0] = (a[0] - a[1]) * _R2
         rows[k, 1] = (a[0] + a[1] - 2.0 * a[2]) * _R6
@@ -118,94 +91,125 @@ def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, 
         rows[k, 3] = 2.0 * a[4] * _R2
         rows[k, 4] = 2.0 * a[5] * _R2
         rows[k, 5] = -1.0 if k < count else 0.0
-    for i in range(6):
-        matrix[i] = start[i]
-    smallest = math.inf
-    for k in range(total):
-        a = forms[k]
         value[k] = a[0] * matrix[0] + a[1] * matrix[1] + a[2] * matrix[2]
         value[k] += 2.0 * (a[3] * matrix[3] + a[4] * matrix[4] + a[5] * matrix[5])
-        if k < count:
-            smallest = min(smallest, value[k])
+
+
+@kernel
+def barrier_derivatives(matrix, rows, slacks, mu, grad, hess):
+    """Fill the gradient and the lower half of minus the Hessian of ``s + mu (log det U + sum log slack)``."""
+    w, p = np.empty(6), np.empty((5, 3, 3))
+    inverse(matrix, w)
+    for r in range(3):  # P_i = U^-1 B_i for the five trace-free basis matrices
+        w0 = w[0] if r == 0 else (w[3] if r == 1 else w[4])
+        w1 = w[3] if r == 0 else (w[1] if r == 1 else w[5])
+        w2 = w[4] if r == 0 else (w[5] if r == 1 else w[2])
+        p[0, r, 0], p[0, r, 1], p[0, r, 2] = w0 * _R2, -w1 * _R2, 0.0
+        p[1, r, 0], p[1, r, 1], p[1, r, 2] = w0 * _R6, w1 * _R6, -2.0 * w2 * _R6
+        p[2, r, 0], p[2, r, 1], p[2, r, 2] = w1 * _R2, w0 * _R2, 0.0
+        p[3, r, 0], p[3, r, 1], p[3, r, 2] = w2 * _R2, 0.0, w0 * _R2
+        p[4, r, 0], p[4, r, 1], p[4, r, 2] = 0.0, w2 * _R2, w1 * _R2
+    for i in range(5):
+        grad[i] = mu * (p[i, 0, 0] + p[i, 1, 1] + p[i, 2, 2])
+        for j in range(i + 1):
+            trace = 0.0
+            for a in range(3):
+                for b in range(3):
+                    trace += p[i, a, b] * p[j, b, a]
+            hess[i, j] = mu * trace
+    for j in range(6):
+        hess[5, j] = 0.0
+    grad[5] = 1.0
+    for k in range(rows.shape[0]):
+        first = mu / slacks[k]
+        second = first / slacks[k]
+        for i in range(6):
+            grad[i] += first * rows[k, i]
+            for j in range(i + 1):
+                hess[i, j] += second * rows[k, i] * rows[k, j]
+
+
+@kernel
+def feasible_step(matrix, slacks, changes, way, trial):
+    """Return the largest tried share of a step that stays inside; fill the matrix there. Zero: none does."""
+    step = 1.0
+    for _ in range(40):
+        y0, y1 = step * way[0] * _R2, step * way[1] * _R6
+        trial[0] = matrix[0] + y0 + y1
+        trial[1] = matrix[1] - y0 + y1
+        trial[2] = matrix[2] - 2.0 * y1
+        for i in range(3):
+            trial[3 + i] = matrix[3 + i] + step * way[2 + i] * _R2
+        fits = positive_definite(trial)
+        for k in range(slacks.shape[0]):
+            fits = fits and step * changes[k] > -0.95 * slacks[k]
+        if fits:
+            return step
+        step *= 0.6
+    return 0.0
+
+
+@kernel
+def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, matrix):
+    """Fill the multipliers of ``count`` forms, summing to one, and of the ``sides`` constraints after them.
+
+    Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
+    largest eigenvalue below it.
+
+    Args:
+        forms: (count + sides, 6) or more; the ``sides`` are the constraints ``<Q, U> >= 0``.
+        count: how many are maximised over.
+        sides: how many are constraints.
+        level: the size of the values that are of interest.
+        stop: the primal value at which to stop.
+        gap: relative accuracy, in units of the level.
+        start: (6,) positive definite matrix of unit trace that meets the constraints strictly.
+        multipliers: output, (count + sides,) or more.
+        matrix: output, (6,): the primal matrix U.
+
+    Returns:
+        The primal value ``min_k <A_k, U>``.
+    """
+    total = count + sides
+    rows, value, slacks, changes = np.empty((total, 6)), np.empty(total), np.empty(total), np.zeros(total)
+    hess, way, grad, trial = np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6)
+    for i in range(6):
+        matrix[i] = start[i]
+    fill_rows(forms[:total], count, matrix, rows, value)
+    smallest = value[0]
+    for k in range(count):
+        smallest = min(smallest, value[k])
     mu = 0.3 * max(abs(level), abs(smallest))
     end = gap * abs(level) / (total + 3)
     s = smallest - mu * count
-    for _ in range(60):
-        inverse(matrix, w)
-        # P_i = U^-1 B_i for the five trace-free basis matrices
-        for r in range(3):
-            w0 = w[0] if r == 0 else (w[3] if r == 1 else w[4])
-            w1 = w[3] if r == 0 else (w[1] if r == 1 else w[5])
-            w2 = w[4] if r == 0 else (w[5] if r == 1 else w[2])
-            p[0, r, 0], p[0, r, 1], p[0, r, 2] = w0 * _R2, -w1 * _R2, 0.0
-            p[1, r, 0], p[1, r, 1], p[1, r, 2] = w0 * _R6, w1 * _R6, -2.0 * w2 * _R6
-            p[2, r, 0], p[2, r, 1], p[2, r, 2] = w1 * _R2, w0 * _R2, 0.0
-            p[3, r, 0], p[3, r, 1], p[3, r, 2] = w2 * _R2, 0.0, w0 * _R2
-            p[4, r, 0], p[4, r, 1], p[4, r, 2] = 0.0, w2 * _R2, w1 * _R2
-        for i in range(5):
-            grad[i] = mu * (p[i, 0, 0] + p[i, 1, 1] + p[i, 2, 2])
-            for j in range(i + 1):
-                trace = 0.0
-                for a in range(3):
-                    for b in range(3):
-                        trace += p[i, a, b] * p[j, b, a]
-                hess[i, j] = mu * trace
-        for j in range(6):
-            hess[5, j] = 0.0
-        grad[5] = 1.0
+    for _ in range(_MOST_STEPS):
         for k in range(total):
-            slacks[k] = value[k] - (s if k < count else 0.0)
-            first = mu / slacks[k]
-            second = first / slacks[k]
-            for i in range(6):
-                grad[i] += first * rows[k, i]
-                for j in range(i + 1):
-                    hess[i, j] += second * rows[k, i] * rows[k, j]
-        decrement = 0.0
-        for i in range(6):
-            trial[i] = grad[i]
+            slacks[k] = value[k] + s * rows[k, 5]
+        barrier_derivatives(matrix, rows, slacks, mu, grad, hess)
         if not cholesky_factor(hess, 6):
             break
-        cholesky_solve(hess, 6, grad)
+        copy_into(grad, way)
+        cholesky_solve(hess, 6, way)
+        decrement = 0.0
         for i in range(6):
-            decrement += trial[i] * grad[i]
+            decrement += grad[i] * way[i]
         for k in range(total):
             changes[k] = 0.0
             for i in range(6):
-                changes[k] += rows[k, i] * grad[i]
-        step = 1.0
-        for _ in range(40):
-            y0, y1 = step * grad[0] * _R2, step * grad[1] * _R6
-            trial[0] = matrix[0] + y0 + y1
-            trial[1] = matrix[1] - y0 + y1
-            trial[2] = matrix[2] - 2.0 * y1
-            trial[3] = matrix[3] + step * grad[2] * _R2
-            trial[4] = matrix[4] + step * grad[3] * _R2
-            trial[5] = matrix[5] + step * grad[4] * _R2
-            fits = positive_definite(trial)
-            for k in range(total):
-                if not fits:
-                    break
-                fits = step * changes[k] > -0.95 * slacks[k]
-            if fits:
-                break
-            step *= 0.6
-        if not fits:
+                changes[k] += rows[k, i] * way[i]
+        step = feasible_step(matrix, slacks, changes, way, trial)
+        if not step > 0.0:
             break
+        copy_into(trial, matrix)
+        s += step * way[5]
         smallest = math.inf
         for k in range(total):
-            for i in range(5):
-                value[k] += step * rows[k, i] * grad[i]
+            value[k] += step * (changes[k] - rows[k, 5] * way[5])
             if k < count:
                 smallest = min(smallest, value[k])
-        for i in range(6):
-            matrix[i] = trial[i]
-        s += step * grad[5]
-        if smallest > stop:
+        if smallest > stop or (decrement <= 0.3 * mu and mu <= end):
             break
         if decrement <= 0.3 * mu:
-            if mu <= end:
-                break
             mu = max(0.1 * mu, 0.999 * end)
     weight = 0.0
     for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
