@@ -2,10 +2,7 @@
 
 import json
 import math
-import os
 import subprocess
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
