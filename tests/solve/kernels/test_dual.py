@@ -76,7 +76,7 @@ def test_a_side_only_lowers_the_bound() -> None:
 
 
 def test_top_eigenvector() -> None:
-    """The closed form's value agrees with the general solver; its vector, a guide to axes, nearly reaches it."""
+    """The closed form's value agrees with the general solver; its vector nearly reaches it."""
     rng = np.random.default_rng(7)
     for form in [*random_forms(rng, 100), *rng.normal(size=(100, 6)), ISOTROPIC]:
         v = np.empty(3)

@@ -50,10 +50,24 @@ def top_eigenvector(a, v):
         if length > longest:
             longest = length
             v[0], v[1], v[2] = p, q, r
-    if longest > 0.0:
+    if longest > 1e-12 * spread**4:
         norm = math.sqrt(longest)
         for i in range(3):
             v[i] /= norm
+        return top
+    # a double eigenvalue: A - top I has rank one, and any vector across its longest row will do
+    p, q, r = x, a[3], a[4]
+    if a[3] * a[3] + y * y + a[5] * a[5] > p * p + q * q + r * r:
+        p, q, r = a[3], y, a[5]
+    if a[4] * a[4] + a[5] * a[5] + z * z > p * p + q * q + r * r:
+        p, q, r = a[4], a[5], z
+    if abs(p) <= abs(q):
+        v[0], v[1], v[2] = 0.0, r, -q
+    else:
+        v[0], v[1], v[2] = -r, 0.0, p
+    norm = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
+    for i in range(3):
+        v[i] /= norm
     return top
 
 
