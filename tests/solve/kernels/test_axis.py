@@ -209,6 +209,23 @@ def test_nodes_at_equal_distances(nodes: int, jamming_w: float, tremor_m: float,
     assert best >= value * (1.0 - 1e-7)
 
 
+@pytest.mark.parametrize("nodes", [3, 4, 5])
+@pytest.mark.parametrize("tremor_m", [0.0, 1e-9])
+def test_unlike_nodes_at_equal_distances(nodes: int, tremor_m: float, scene: Callable) -> None:
+    """At equal distances and powers the cones are pairs of planes; on a sphere of any directions too."""
+    rng = np.random.default_rng(nodes)
+    for jamming_w in (0.0, 0.0, 0.0, 1.0, 10.0, 1e4):
+        around = rng.normal(size=(nodes, 3))
+        around /= np.linalg.norm(around, axis=1, keepdims=True)
+        places = ABOVE + 20.0 * around + tremor_m * rng.normal(size=(nodes, 3))
+        jammers = [(3.0, 1.0, -30.0)] if jamming_w else []
+        family = build_family(scene(places, jammers, jammer_powers_w=jamming_w or 1.0))
+        value, _ = found(family, ABOVE)
+        best = searched(family, ABOVE, rng)
+        assert best <= value * (1.0 + 1e-10)  # a cone that is flat to 1e-10 is taken for two planes
+        assert best >= value * (1.0 - 1e-7)
+
+
 @given(seed=SEEDS, nodes=st.integers(1, 5))
 def test_nodes_in_line_with_the_position(seed: int, nodes: int, scene: Callable) -> None:
     """Nodes on one line through the position share their null: the farthest, broadside, is the value."""
