@@ -73,3 +73,10 @@ def test_nodes_at_both_sides_are_served_from_the_middle(scene: Callable) -> None
     solution = solve(scene([(0, 0, 0), (12, 0, 0)]))
     assert solution.objective.value == pytest.approx(1e3 / (36.0 + 64.0), rel=1e-9)
     np.testing.assert_allclose(solution.pose.position_m, [6.0, 0.0, 8.0], atol=1e-5)
+
+
+@pytest.mark.parametrize("altitude_m", [(8.0, 30.0), (0.0, 30.0), (8.0, 8.0)])
+def test_one_node_alone_is_closed_form(altitude_m: tuple[float, float], scene: Callable) -> None:
+    """One node and no jammer: broadside, from as near as floor and keep-out allow, P / (sigma^2 d^2)."""
+    value = solve(scene([(0, 0, 0)], altitude_m=altitude_m)).objective.value
+    assert value == pytest.approx(1e3 / max(altitude_m[0], 1.0) ** 2, rel=1e-9)

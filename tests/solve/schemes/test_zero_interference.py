@@ -8,7 +8,7 @@ from scipy.optimize import differential_evolution
 
 from nullpose.errors import UsageError
 from nullpose.family import build_family
-from nullpose.physics import antenna_gain, zero_interference_axis, zero_interference_sinr
+from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
 from nullpose.scenario import Scenario
 from nullpose.solve import Scheme, solve
 from nullpose.solve.schemes.zero_interference import axis_field, find
@@ -94,3 +94,20 @@ def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
     found = find(three_jammers, seed=0, null_jammer="M2")
     np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
     assert build_family(three_jammers).low_m[2] <= found.position_m[2]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_end_on_a_ball_and_the_floor_is_exact(seed: int, scene: Callable) -> None:
+    """Where the keep-out ball and the floor both hold the position, the value is the best of their circle."""
+    one = scene(
+        [(0, 0, 0)],
+        [(20, 10, 0), (0, -20, 4)],
+        jammer_powers_w=0.09331957,
+        altitude_m=(0.0, 20.0),
+        keep_out_m=0.5,
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    circle = 0.5 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)])
+    along = np.min(sinr(one, circle, zero_interference_axis(circle, one.jammer_positions_m[1])), axis=1)
+    solution = solve(one, Scheme.ZERO_INTERFERENCE, seed=seed, null_jammer="M2")
+    assert solution.objective.value == pytest.approx(along.max(), rel=1e-9)
