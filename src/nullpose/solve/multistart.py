@@ -108,6 +108,7 @@ def multistart(
         position_m=position_m,
         axis=axis,
         log_value=log_value,
+        multipliers=multipliers,
         starts=int(starts),
         evaluations=int(evaluations),
     )

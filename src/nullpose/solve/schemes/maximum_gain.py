@@ -57,6 +57,7 @@ def _find_for_any_number(family: Family, *, seed: int) -> Found:
         position_m=position_m,
         axis=axis,
         log_value=log_value,
+        multipliers=np.full(len(family.numerator_point), 1.0 / len(family.numerator_point)),
         starts=starts,
         evaluations=evaluations,
         note=f"{len(family.numerator_point)} node(s), where eq. 3.4 is for two: the axis maximises "

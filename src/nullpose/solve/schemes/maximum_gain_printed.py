@@ -32,6 +32,7 @@ def find(scenario: Scenario, *, seed: int) -> Found:
         position_m=position_m,
         axis=maximum_gain_axis(scenario, position_m),
         log_value=log_value,
+        multipliers=np.full(2, 0.5),
         starts=starts,
         evaluations=evaluations,
         note="the value is that of eq. 3.5 as printed, whose axis is not a unit vector: "

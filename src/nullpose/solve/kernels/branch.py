@@ -1,0 +1,184 @@
+"""Branch and bound: boxes of positions, and where multipliers alone cannot decide, cells of axes.
+
+Depth first at one fixed level: a node is excluded (see ``exclusion``), or split across the longest side of
+its box, or,
+where the gap between the dual and what one axis reaches outweighs the size of the box, split into cells of
+axes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.exclusion import excludes, expand_denominator, out_of_reach
+from nullpose.solve.kernels.expansion import ABOUT_LINE, TOWARDS_POINT, WORLD, min_distance, set_frame
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.multipliers import fixed_multipliers, free_multipliers
+from nullpose.solve.kernels.node import (
+    ANCHOR,
+    CENTRE,
+    COLUMNS,
+    COUNT,
+    FACE,
+    HALF,
+    KIND,
+    LEVEL,
+    split_axis,
+    split_position,
+)
+
+__all__ = ["BETTER", "DONE", "FULL", "LIMIT", "branch"]
+
+DONE = 0
+LIMIT = 1
+FULL = 2
+BETTER = 3
+
+_EXCLUDED = 0
+_BY_POSITION = 1
+_BY_AXIS = 2
+_BETTER = 3
+
+_COARSENESS = 8.0  # how far a duality gap must outweigh a box's size before axes are split
+_STRONG = 0.5  # an interferer this strong, in units of the noise, is worth a frame that turns with it
+_CLOSE = 0.2  # boxes nearer to a point than this share of their radius are split unseen
+_BEATS = 1e-9
+
+
+@kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, and how strongly."""
+    points, dpt, dw = family[0], family[7], family[8]
+    strongest = 0.0
+    anchor = -1
+    for e in range(dw.shape[0]):
+        d = 0.0
+        for i in range(3):
+            d += (points[dpt[e], i] - centre[i]) ** 2
+        if dw[e] > strongest * d:
+            strongest, anchor = dw[e] / d, dpt[e]
+    return anchor, strongest
+
+
+@kernel
+def is_pose(domain, centre):
+    """Return whether a box's centre is a position of the domain."""
+    low, high, keep_points, keep_radius = domain
+    inside = True
+    for i in range(3):
+        inside = inside and low[i] <= centre[i] <= high[i]
+    for q in range(keep_points.shape[0]):
+        d = 0.0
+        for i in range(3):
+            d += (keep_points[q, i] - centre[i]) ** 2
+        inside = inside and d >= keep_radius * keep_radius
+    return inside
+
+
+@kernel
+def examine(family, domain, frame, best, favourite, row, weights, axis):
+    """Return what becomes of a node; fill its kind, its multipliers, and an axis if it beats the best."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    kind = out_of_reach(family, domain[2], domain[3], row)
+    if kind >= 0:
+        row[KIND] = kind
+        return _EXCLUDED, 0
+    fixed, kind, anchor, other = frame[0] == 1, frame[1], frame[2], frame[3]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    basis = np.empty((3, 3))
+    if kind == ABOUT_LINE:  # on the line itself the frame has no third axis: there, any axis is allowed for
+        _, rho_min = set_frame(family[0], kind, anchor, other, centre, half, basis)
+        fixed = rho_min > _CLOSE * radius
+    if not fixed:
+        anchor, strength = strongest_point(family, centre)
+        kind = TOWARDS_POINT if strength > _STRONG * family[5][0] else WORLD
+    rho, rho_min = set_frame(family[0], kind, anchor, other, centre, half, basis)
+    nearest = rho_min
+    for j in range(family[0].shape[0]):
+        nearest = min(nearest, min_distance(family[0], j, centre, half))
+    if not nearest > _CLOSE * radius:
+        return _BY_POSITION, 0
+    view = (kind, anchor, basis, rho, rho_min)
+    denominator, slopes = np.empty(6), np.empty((3, 6))
+    rests = expand_denominator(family, fixed, row[LEVEL], view, centre, half, denominator, slopes)
+    row[KIND], row[ANCHOR] = kind, anchor
+    below = (denominator, slopes, rests)
+    if excludes(family, fixed, view, row, below):
+        return _EXCLUDED, 0
+    if row[FACE] < 0.0:
+        for m in range(COUNT, COLUMNS):
+            row[m] = favourite[m]
+        if excludes(family, fixed, view, row, below):
+            return _EXCLUDED, 0
+    gap = 0.0
+    if fixed:
+        reached = fixed_multipliers(family, view, row, below, weights)
+        for i in range(3):
+            axis[i] = basis[i, 2]
+    else:
+        coarseness = _COARSENESS * radius / nearest
+        primal, reached = free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
+        gap = primal - reached - coarseness
+    if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, centre):
+        return _BETTER, 1
+    if excludes(family, fixed, view, row, below):
+        return _EXCLUDED, 1
+    # two forms have no duality gap (Brickman), unless a cell is in force
+    split_axes = gap > 0.0 and (family[1].shape[0] > 2 or row[FACE] >= 0.0)
+    return (_BY_AXIS if split_axes else _BY_POSITION), 1
+
+
+@kernel
+def branch(
+    family, domain, frame, level, best, favourite, stack, top, leaves, filled, most, better_p, better_u
+):
+    """Work off the stack at one level until it is empty or a limit is met.
+
+    Args:
+        family: arrays of the family; one shared denominator.
+        domain: (low, high, keep-out points, keep-out radius).
+        frame: (0 free axis or 1 fixed; kind; anchor; other) of the axis field.
+        level: the ratio to exclude.
+        best: the incumbent's smallest ratio; a centre that beats it ends the call.
+        favourite: (COLUMNS,) a row whose multipliers are tried on every box: those at the incumbent.
+        stack: (s, COLUMNS) nodes still to do.
+        top: how many there are.
+        leaves: (l, COLUMNS) output, excluded nodes.
+        filled: how many leaves there are already.
+        most: nodes to work off at most.
+        better_p: output, (3,): position of a pose that beats the incumbent.
+        better_u: output, (3,): its axis.
+
+    Returns:
+        (code, top, filled, nodes worked off, nodes in which new multipliers were sought).
+    """
+    row, axis = np.empty(COLUMNS), np.empty(3)
+    weights = np.empty(family[1].shape[0] + 2)
+    nodes = sought = 0
+    while top > 0:
+        if nodes >= most:
+            return LIMIT, top, filled, nodes, sought
+        if top + 3 > stack.shape[0] or filled >= leaves.shape[0]:
+            return FULL, top, filled, nodes, sought
+        nodes += 1
+        top -= 1
+        for m in range(COLUMNS):
+            row[m] = stack[top, m]
+        row[LEVEL] = level
+        verdict, new = examine(family, domain, frame, best, favourite, row, weights, axis)
+        sought += new
+        if verdict == _EXCLUDED:
+            for m in range(COLUMNS):
+                leaves[filled, m] = row[m]
+            filled += 1
+        elif verdict == _BETTER:
+            for i in range(3):
+                better_p[i], better_u[i] = row[CENTRE + i], axis[i]
+            return BETTER, top + 1, filled, nodes, sought
+        elif verdict == _BY_AXIS:
+            top = split_axis(row, stack, top)
+        else:
+            top = split_position(row, stack, top)
+    return DONE, top, filled, nodes, sought

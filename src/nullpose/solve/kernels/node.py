@@ -1,0 +1,125 @@
+"""A node of the tree as a row of numbers: its columns, and how it is split.
+
+Cells of axes are rectangles on the faces of a cube, ``u = (1, y, z)`` up to a cyclic permutation, sign and
+length, in the world frame; face -1 is every axis.
+"""
+
+from __future__ import annotations
+
+from nullpose.solve.kernels.jit import kernel
+
+__all__ = [
+    "ANCHOR",
+    "CELL",
+    "CENTRE",
+    "COLUMNS",
+    "COUNT",
+    "FACE",
+    "FAR",
+    "HALF",
+    "INDEX",
+    "KEPT_OUT",
+    "KIND",
+    "LEVEL",
+    "SIDE",
+    "SUPPORT",
+    "WEIGHT",
+    "cell_side",
+    "keep_largest",
+    "split_axis",
+    "split_position",
+]
+
+CENTRE = 0  # the box's centre, m
+HALF = 3  # its half sides, m
+LEVEL = 6  # the ratio that was excluded
+KIND = 7  # the frame of the test, or FAR or KEPT_OUT
+ANCHOR = 8  # the point that a frame turns towards
+FACE = 9  # the cell of axes: its face, or -1
+CELL = 10  # and its rectangle: low and high of two coordinates
+SIDE = 14  # multipliers of the cell's two sides
+COUNT = 16  # how many ratios have a multiplier
+INDEX = 17  # which they are
+SUPPORT = 8
+WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
+COLUMNS = WEIGHT + SUPPORT
+
+FAR = 3
+KEPT_OUT = 4
+
+
+@kernel
+def cell_side(face, cell, side, out):
+    """Fill the form ``(v - low a)(high a - v)`` of a cell's side, a being the face's axis, v the side's."""
+    a = face
+    v = (face + 1 + side) % 3
+    low, high = cell[2 * side], cell[2 * side + 1]
+    for i in range(6):
+        out[i] = 0.0
+    out[v] = -1.0
+    out[a] = -low * high
+    pair = 3 if a + v == 1 else (4 if a + v == 2 else 5)
+    out[pair] = 0.5 * (low + high)
+
+
+@kernel
+def keep_largest(weights, total, row):
+    """Put the largest multipliers, scaled to sum to one, into a row."""
+    chosen = 0
+    gathered = 0.0
+    for s in range(min(SUPPORT, total)):
+        lead = 0
+        for k in range(1, total):
+            if weights[k] > weights[lead]:
+                lead = k
+        if not weights[lead] > 1e-4 * max(gathered, 1e-300):
+            break
+        row[INDEX + s] = lead
+        row[WEIGHT + s] = weights[lead]
+        gathered += weights[lead]
+        weights[lead] = 0.0
+        chosen += 1
+    row[COUNT] = chosen
+    for s in range(chosen):
+        row[WEIGHT + s] /= gathered
+    for side in range(2):
+        row[SIDE + side] /= gathered
+
+
+@kernel
+def split_position(row, stack, top):
+    """Push the halves of a box, cut across its longest side; return the new top."""
+    side = 0
+    for i in range(1, 3):
+        if row[HALF + i] > row[HALF + side]:
+            side = i
+    for child in range(2):
+        for m in range(COLUMNS):
+            stack[top, m] = row[m]
+        stack[top, HALF + side] = 0.5 * row[HALF + side]
+        stack[top, CENTRE + side] += (0.5 if child else -0.5) * row[HALF + side]
+        top += 1
+    return top
+
+
+@kernel
+def split_axis(row, stack, top):
+    """Push the parts of a cell of axes, three faces or two halves; return the new top."""
+    if row[FACE] < 0.0:
+        for face in range(3):
+            for m in range(COLUMNS):
+                stack[top, m] = row[m]
+            stack[top, FACE] = face
+            for side in range(2):
+                stack[top, CELL + 2 * side], stack[top, CELL + 2 * side + 1] = -1.0, 1.0
+                stack[top, SIDE + side] = 0.0
+            top += 1
+        return top
+    side = 0 if row[CELL + 1] - row[CELL] >= row[CELL + 3] - row[CELL + 2] else 1
+    middle = 0.5 * (row[CELL + 2 * side] + row[CELL + 2 * side + 1])
+    for child in range(2):
+        for m in range(COLUMNS):
+            stack[top, m] = row[m]
+        stack[top, CELL + 2 * side + (0 if child else 1)] = middle
+        top += 1
+    return top

@@ -1,0 +1,50 @@
+"""How far a proof is to go."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from nullpose.errors import UsageError
+
+__all__ = ["Limits", "default_gap"]
+
+_TIME_LIMIT_S = 60.0
+_NODE_LIMIT = 10**9
+
+
+def default_gap(n_nodes: int) -> float:
+    """Return the relative gap asked for unless another is given: 1e-6 to 3 nodes, 1e-4 to 20, then 1e-3.
+
+    Args:
+        n_nodes: how many nodes the scenario has.
+    """
+    if n_nodes <= 3:
+        return 1e-6
+    return 1e-4 if n_nodes <= 20 else 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """The target of a proof and what it may cost.
+
+    Args:
+        gap: relative gap between bound and value at which it is done.
+        time_limit_s: seconds after which it stops with the bound reached.
+        node_limit: nodes after which it stops.
+
+    Raises:
+        UsageError: a limit that cannot be met.
+    """
+
+    gap: float
+    time_limit_s: float = _TIME_LIMIT_S
+    node_limit: int = _NODE_LIMIT
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.gap) and 1e-9 <= self.gap <= 10.0):
+            raise UsageError(f"gap: given {self.gap!r}; allowed: 1e-9 to 10, relative")
+        if math.isnan(self.time_limit_s) or not self.time_limit_s > 0.0:
+            raise UsageError(f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds")
+        if isinstance(self.node_limit, bool) or not isinstance(self.node_limit, int) or self.node_limit < 1:
+            raise UsageError(f"node limit: given {self.node_limit!r}; allowed: a whole number of at least 1")

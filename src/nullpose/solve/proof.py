@@ -1,0 +1,236 @@
+"""The branch and bound run: from an incumbent to a bound, anytime."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.family import AxisField, Family
+from nullpose.solve.found import Found
+from nullpose.solve.frame import Frame
+from nullpose.solve.limits import Limits
+
+__all__ = ["Proof", "prove"]
+
+FloatArray = NDArray[np.float64]
+
+_DIRECT_NODES = 20_000  # a first try at the target; most problems of the paper's size need a few hundred
+_STAGE = 0.25  # each stage's gap, as a share of the one before
+_FIRST_CHUNK = 512
+_CHUNK_S = 0.05
+_MOST_LEAVES = 700_000
+_WIDEST_GAP = 1e6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Proof:
+    """What the branch and bound run showed.
+
+    Args:
+        found: the incumbent, perhaps better than the one it began with.
+        upper_bound: no pose of the domain has its smallest ratio above this.
+        leaves: (l, columns) the excluded nodes, in the kernels' layout: together with the distance cut they
+        cover the
+            domain. Empty if the run stopped before its first stage was done.
+        reason: why the target gap was not reached; empty if it was.
+        nodes: nodes examined.
+    """
+
+    found: Found
+    upper_bound: float
+    leaves: FloatArray
+    reason: str
+    nodes: int
+
+
+class _Run:
+    """The state of one run: arrays that the kernels write, and the clock."""
+
+    def __init__(
+        self,
+        family: Family,
+        axis_field: AxisField,
+        frame: Frame,
+        found: Found,
+        limits: Limits,
+        on_progress: Callable[[float, int], None] | None,
+    ) -> None:
+        from nullpose.solve.kernels import branch, node
+
+        self.family, self.axis_field, self.frame = family, axis_field, frame
+        self.kernel, self.node = branch, node
+        self.found, self.limits, self.on_progress = found, limits, on_progress
+        self.deadline = time.perf_counter() + limits.time_limit_s
+        self.nodes = 0
+        self.chunk = _FIRST_CHUNK
+        self.proved = _reach(family)
+        self.favourite = self._favourite()
+
+    @property
+    def value(self) -> float:
+        return math.exp(self.found.log_value)
+
+    def _favourite(self) -> FloatArray:
+        row = np.zeros(self.node.COLUMNS)
+        weights = self.found.multipliers.copy()
+        self.node.keep_largest(weights, len(weights), row)
+        return row
+
+    def root(self) -> FloatArray:
+        """Return the box outside which no pose reaches the incumbent, as a first stack."""
+        from nullpose.solve.kernels.search import cut_box
+
+        low, high = np.empty(3), np.empty(3)
+        # a hair wider than the cut itself, which is rounded
+        level = self.found.log_value - 1e-9
+        cut_box(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
+        row = self.favourite.copy()
+        row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
+        row[self.node.HALF : self.node.LEVEL] = 0.5 * (high - low) * (1.0 + 1e-12)
+        row[self.node.FACE] = -1.0
+        return row[None]
+
+    def stage(self, gap: float, start: FloatArray, most: int) -> tuple[FloatArray, str]:
+        """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
+        top = len(start)
+        stack = np.empty((max(256, 2 * top), self.node.COLUMNS))
+        stack[:top] = start
+        leaves = np.empty((max(1024, 2 * top), self.node.COLUMNS))
+        filled = 0
+        position_m, axis = np.empty(3), np.empty(3)
+        until = self.nodes + most
+        while True:
+            began = time.perf_counter()
+            budget = min(self.chunk, until - self.nodes)
+            code, top, filled, done, _ = self.kernel.branch(
+                self.family.arrays,
+                self.family.domain,
+                self.frame.numbers,
+                self.value * (1.0 + gap),
+                self.value,
+                self.favourite,
+                stack,
+                top,
+                leaves,
+                filled,
+                budget,
+                position_m,
+                axis,
+            )
+            self.nodes += done
+            if code == self.kernel.DONE:
+                self.proved = min(self.proved, self.value * (1.0 + gap))
+                return leaves[:filled], ""
+            if code == self.kernel.BETTER:
+                self._improve(position_m, axis)
+            elif code == self.kernel.FULL:
+                stack, leaves = _grown(stack, top, 16), _grown(leaves, filled, 1)
+                if filled > _MOST_LEAVES:
+                    return leaves[:0], f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
+            now = time.perf_counter()
+            if self.on_progress is not None:
+                self.on_progress(self.proved / self.value - 1.0, self.nodes)
+            if now > self.deadline:
+                return leaves[:0], f"the time limit of {self.limits.time_limit_s:g} s"
+            if self.nodes >= until:
+                return leaves[:0], f"the node limit of {most}"
+            if code == self.kernel.LIMIT and now - began < 0.5 * _CHUNK_S:
+                self.chunk *= 2
+
+    def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
+        from nullpose.solve.kernels.links import min_log_ratio
+        from nullpose.solve.kernels.polish import polish
+
+        ratios = len(self.family.numerator_point)
+        multipliers = np.empty(ratios)
+        start_value = float(
+            min_log_ratio(self.family.arrays, position_m, axis, np.empty(1), np.empty(ratios))
+        )
+        p, u = position_m.copy(), axis.copy()
+        value, steps = polish(
+            self.family.arrays, self.family.domain, self.axis_field.arrays, p, u, 0.01, 100, multipliers
+        )
+        if value < start_value:
+            value, p, u = start_value, position_m.copy(), axis.copy()
+        if value > self.found.log_value:
+            self.found = replace(
+                self.found,
+                position_m=p,
+                axis=u,
+                log_value=value,
+                multipliers=multipliers,
+                starts=self.found.starts + 1,
+                evaluations=self.found.evaluations + steps,
+            )
+            self.favourite = self._favourite()
+
+
+def prove(
+    family: Family,
+    axis_field: AxisField,
+    frame: Frame,
+    found: Found,
+    limits: Limits,
+    on_progress: Callable[[float, int], None] | None = None,
+) -> Proof:
+    """Return a bound on the best pose, and a better pose if one turns up on the way.
+
+    First the target gap is tried directly. If that takes too many nodes, the gap is closed in stages, each
+    refining
+    the leaves of the one before, so that a limit leaves the bound of the last stage that was finished.
+
+    Args:
+        family: the ratios and their domain.
+        axis_field: which axes are allowed.
+        frame: the frame field that goes with them.
+        found: the incumbent.
+        limits: target gap, time and nodes.
+        on_progress: called now and then with the gap proved so far and the nodes examined; a
+        KeyboardInterrupt
+            during the run ends it with the bound reached.
+    """
+    run = _Run(family, axis_field, frame, found, limits, on_progress)
+    leaves = np.empty((0, run.node.COLUMNS))
+    gap = limits.gap
+    reason = ""
+    try:
+        direct = min(_DIRECT_NODES, limits.node_limit)
+        leaves, reason = run.stage(gap, run.root(), direct)
+        if reason and run.nodes < limits.node_limit and time.perf_counter() < run.deadline:
+            start, gap = run.root(), min(_WIDEST_GAP, run.proved / run.value - 1.0)
+            while True:
+                gap = max(limits.gap, _STAGE * gap)
+                done, reason = run.stage(gap, start, limits.node_limit - run.nodes)
+                if reason:
+                    break
+                leaves = start = done
+                if gap <= limits.gap:
+                    break
+    except KeyboardInterrupt:
+        reason = "an interrupt"
+    return Proof(
+        found=run.found, upper_bound=max(run.proved, run.value), leaves=leaves, reason=reason, nodes=run.nodes
+    )
+
+
+def _reach(family: Family) -> float:
+    """Return a bound from distances alone: the ratio of the node that the domain keeps farthest."""
+    points = family.points_m[family.numerator_point]
+    nearest = np.clip(points, family.low_m, family.high_m)
+    distance_m = np.maximum(np.linalg.norm(points - nearest, axis=1), family.keep_out_m)
+    isotropic = family.denominator_isotropic[family.denominator_of]
+    return float(np.min((family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic))
+
+
+def _grown(array: FloatArray, used: int, spare: int) -> FloatArray:
+    """Return the array, twice as long if its used part leaves fewer than ``spare`` rows."""
+    if used + spare < len(array):
+        return array
+    larger = np.empty((2 * len(array), array.shape[1]))
+    larger[:used] = array[:used]
+    return larger
