@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
 from nullpose.solve.found import Found
 
-__all__ = ["SearchSettings", "multistart"]
+__all__ = ["SearchSettings", "landmarks", "multistart"]
+
+FloatArray = NDArray[np.float64]
 
 
 _CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)  # barrier weights
 _CLIMB_STEPS = 300
 _SAME = 1e-12
+_PAIRED = 4  # interferers whose lines are looked at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,16 +41,30 @@ class SearchSettings:
     patience: int = 2
 
 
-def landmarks(family: Family, most: int = 16) -> np.ndarray:
-    """Return positions worth a start of their own, (m, 3): over the points' centres and over each interferer.
+def landmarks(family: Family, most: int = 16) -> FloatArray:
+    """Return positions worth a start of their own, (m, 3), some of which no grid would hit.
 
-    The vertical case under strong jamming is a needle straight above the jammer that no grid would hit.
+    Over the points' centre and over each interferer: the vertical case under strong jamming is a needle
+    straight
+    above the jammer, which begins at its keep-out ball. On the line of each two interferers, beside their
+    balls: there one axis is deaf to both.
+
+    Args:
+        family: the ratios and their domain.
+        most: points of a kind that are taken at most.
     """
     nodes = family.points_m[family.numerator_point]
-    interferers = family.points_m[np.unique(family.denominator_point)]
-    places = np.vstack([nodes.mean(axis=0)[None], interferers[:most], nodes[:most]])
-    places[:, 2] = family.low_m[2]
-    return np.asarray(places)
+    interferers = family.points_m[np.unique(family.denominator_point)][:most]
+    clear_m = 1.02 * family.keep_out_m
+    over = np.vstack([nodes.mean(axis=0)[None], interferers, nodes[:most]])
+    over[1:, 2] += clear_m
+    over[:, 2] = np.maximum(family.low_m[2], over[:, 2])
+    over[0, 2] = family.low_m[2]
+    beside = []
+    for first, second in permutations(interferers[:_PAIRED], 2):
+        way = (second - first) / np.linalg.norm(second - first)
+        beside += [first + clear_m * way, first - clear_m * way]
+    return np.vstack([over, *beside])
 
 
 def multistart(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any
@@ -93,6 +93,10 @@ class Solution:
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
 
+    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Solution], tuple[dict[str, Any]]]:
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return _rebuilt, (state | {"provenance": dict(self.provenance)},)
+
     @property
     def binding_node(self) -> str:
         """Name of the node with the smallest SINR (the first, if several share it to the last digit)."""
@@ -131,6 +135,10 @@ class Solution:
             "provenance": dict(self.provenance),
             "note": self.note,
         }
+
+
+def _rebuilt(state: dict[str, Any]) -> Solution:
+    return Solution(**state)
 
 
 def _finite(value: float) -> float | None:

@@ -202,16 +202,14 @@ def best_axis_of_forms(forms, axis):
     working = np.empty(total, np.int64)
     candidates = np.empty((_MAX_CANDIDATES, 3))
     values = np.empty(_MAX_CANDIDATES)
-    scale = 0.0
     worst = 0
     lowest = math.inf
     for k in range(total):
         top = largest_eigenvalue(forms[k])
-        scale = max(scale, abs(top))
         if top < lowest:
             lowest, worst = top, k
     best = spread_axis(forms, axis)  # a first level prunes most candidates of the early working sets
-    tolerance = 1e-14 * scale
+    tolerance = 1e-14 * abs(lowest)
     count = np.int64(0)
     members = 0
     new = worst
@@ -312,8 +310,9 @@ def best_axis(family, p, axis):
     for _ in range(60):
         level = math.exp(best)
         for k in range(ratios):
+            below = form_value(denominators, family[4][k], axis)  # without it the iteration is only linear
             for m in range(6):
-                forms[k, m] = numerators[k, m] - level * denominators[family[4][k], m]
+                forms[k, m] = (numerators[k, m] - level * denominators[family[4][k], m]) / below
         best_axis_of_forms(forms, v)
         value = min_log_ratio(family, p, v, logs, f)
         if not value > best + 1e-15 * abs(best):

@@ -61,6 +61,16 @@ def enter(domain, p, free, used):
 
 
 @kernel
+def value_in_domain(family, domain, p, u, slacks, logs, f):
+    """Return the smallest log ratio, minus infinity outside the domain; fill the slacks."""
+    domain_slacks(p, domain, slacks)
+    for c in range(slacks.shape[0]):
+        if slacks[c] < 0.0 or (c >= 6 and slacks[c] == 0.0):
+            return -math.inf
+    return min_log_ratio(family, p, u, logs, f)
+
+
+@kernel
 def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
     """Fill the slopes of ratios and constraints in the search variables; add the balls' curvature."""
     keep_points = domain[2]
@@ -144,18 +154,23 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     """
     ratios, groups, sides = family[1].shape[0], family[5].shape[0], 6 + domain[2].shape[0]
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
-    enter(domain, p, free, used)
-    axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
-    domain_slacks(p, domain, slacks)
-    best = min_log_ratio(family, p, u, logs, f)
+    best_p, best_u = np.empty(3), np.empty(3)
     for k in range(ratios):
         multipliers[k] = 1.0 / ratios
-    for c in range(6, sides):
-        best = best if slacks[c] > 0.0 else -math.inf
-    if not best > -math.inf:
+    best = -math.inf
+    for turn in range(2):  # the start itself is the first incumbent; then it moves inside
+        if turn == 1:
+            enter(domain, p, free, used)
+        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+        value = value_in_domain(family, domain, p, u, slacks, logs, f)
+        if turn == 0 or value > best:
+            best = value
+            copy_into(p, best_p)
+            copy_into(u, best_u)
+    if not value > -math.inf:
+        copy_into(best_p, p)
         return best, 0
-    best_p, best_u = p.copy(), u.copy()
     grads, hess, work = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((groups, 50))
     jacobian, h = np.empty((6, 5)), np.empty((5, 5))
     slopes, rows = np.empty((ratios, 6)), np.zeros((sides, 6))

@@ -59,8 +59,11 @@ def push_out(p, low, high, keep_points, keep_radius):
             d = math.sqrt(d)
             if d < margin:
                 clear = False
+                rises = high[2] - keep_points[q, 2] > margin
                 for i in range(3):
-                    way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else (1.0 if i == 2 else 0.0)
+                    way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else 0.0
+                    if d <= 1e-9 and i == (2 if rises else 0):
+                        way = 1.0
                     p[i] = min(max(keep_points[q, i] + way * 1.02 * margin, low[i]), high[i])
         if clear:
             return True
@@ -75,7 +78,7 @@ def likely_axis(family, p, axis):
     start.
     """
     ratios = family[1].shape[0]
-    numerators, denominators = np.empty((ratios, 6)), np.empty((1, 6))
+    numerators, denominators = np.empty((ratios, 6)), np.empty((family[5].shape[0], 6))
     fill_forms(family, p, numerators, denominators)
     back, forms = np.empty((3, 3)), np.empty((ratios, 6))
     inverse_factor(denominators[0], back)
@@ -104,6 +107,19 @@ def start_axis(family, axis_field, p, u, logs, f):
     else:
         axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
     return min_log_ratio(family, p, u, logs, f)
+
+
+@kernel
+def surround(points, margin, box_low, box_high):
+    """Replace the infinite faces of a box by those of a box around the points: where to look first."""
+    for i in range(3):
+        least, most = points[0, i], points[0, i]
+        for j in range(points.shape[0]):
+            least, most = min(least, points[j, i]), max(most, points[j, i])
+        if not math.isfinite(box_low[i]):
+            box_low[i] = least - margin
+        if not math.isfinite(box_high[i]):
+            box_high[i] = most + margin
 
 
 @kernel
@@ -154,6 +170,8 @@ def search(
     for turn in range(rounds + 1):  # the first turn is the landmarks'
         judged = landmarks.shape[0] if turn == 0 else coarse
         cut_box(family, low, high, best - 1e-12, box_low, box_high)
+        if not best > -math.inf:
+            surround(family[0], high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
         for c in range(judged):
             if turn == 0:
                 for i in range(3):
@@ -186,10 +204,8 @@ def search(
                 copy_into(z, best_z)
             starts += 1
             evaluations += steps
-        if turn > 0:
+        if turn > 0 and best > -math.inf:
             idle = 0 if best > before + _SAME else idle + 1
             if idle >= patience:
                 break
-        elif not best > -math.inf:
-            break
     return best, starts, evaluations

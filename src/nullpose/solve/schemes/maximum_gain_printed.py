@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import build_family
-from nullpose.physics import maximum_gain_axis, maximum_gain_sinr_as_printed
+from nullpose.physics import maximum_gain_sinr_as_printed
 from nullpose.scenario import Scenario
 from nullpose.solve.found import Found
 from nullpose.solve.position_search import search_positions
@@ -23,14 +23,21 @@ def find(scenario: Scenario, *, seed: int) -> Found:
     """
 
     def objective(position: NDArray[np.float64]) -> float:
-        return float(np.log(np.min(maximum_gain_sinr_as_printed(scenario, position))))
+        with np.errstate(divide="ignore", invalid="ignore"):  # nothing is received from a node on the axis
+            value = float(np.log(np.min(maximum_gain_sinr_as_printed(scenario, position))))
+        return value if np.isfinite(value) else -np.inf
 
     position_m, log_value, starts, evaluations = search_positions(
         objective, build_family(scenario), seed=seed
     )
+    first_m, second_m = scenario.node_positions_m - position_m
+    axis = np.cross(first_m, second_m)
+    if not np.linalg.norm(axis) > 1e-9 * np.linalg.norm(first_m) * np.linalg.norm(second_m):
+        # in line with both nodes eq. 3.4 names no axis: any across the line is broadside to both
+        axis = np.cross(first_m, np.eye(3)[np.argmin(np.abs(first_m))])
     return Found(
         position_m=position_m,
-        axis=maximum_gain_axis(scenario, position_m),
+        axis=axis,
         log_value=log_value,
         multipliers=np.full(2, 0.5),
         starts=starts,
