@@ -20,7 +20,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     process.
     """
     try:
-        dispatcher = njit(cache=True, error_model="numpy", nogil=True)(function)
+        dispatcher = njit(cache=True, error_model="numpy", nogil=True, no_cfunc_wrapper=True)(function)
     except RuntimeError:  # numba's word for "no locator available"
         return njit(error_model="numpy", nogil=True)(function)
     if dispatcher is not function:  # numba hands it back as it is where NUMBA_DISABLE_JIT is set

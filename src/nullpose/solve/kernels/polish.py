@@ -71,6 +71,23 @@ def value_in_domain(family, domain, p, u, slacks, logs, f):
 
 
 @kernel
+def begin(family, domain, axis_field, p, u, work, best_p, best_u):
+    """Move a pose strictly inside; fill the better of it and the start, return both values."""
+    free, used, slacks, logs, f = work
+    best = value = -math.inf
+    for turn in range(2):  # the start itself is the first incumbent
+        if turn == 1:
+            enter(domain, p, free, used)
+        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+        value = value_in_domain(family, domain, p, u, slacks, logs, f)
+        if turn == 0 or value > best:
+            best = value
+            copy_into(p, best_p)
+            copy_into(u, best_u)
+    return best, value
+
+
+@kernel
 def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
     """Fill the slopes of ratios and constraints in the search variables; add the balls' curvature."""
     keep_points = domain[2]
@@ -156,18 +173,9 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
     best_p, best_u = np.empty(3), np.empty(3)
+    best, value = begin(family, domain, axis_field, p, u, (free, used, slacks, logs, f), best_p, best_u)
     for k in range(ratios):
         multipliers[k] = 1.0 / ratios
-    best = -math.inf
-    for turn in range(2):  # the start itself is the first incumbent; then it moves inside
-        if turn == 1:
-            enter(domain, p, free, used)
-        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
-        value = value_in_domain(family, domain, p, u, slacks, logs, f)
-        if turn == 0 or value > best:
-            best = value
-            copy_into(p, best_p)
-            copy_into(u, best_u)
     if not value > -math.inf:
         copy_into(best_p, p)
         return best, 0
@@ -200,10 +208,9 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             mu = max(_MU_END, min(0.1 * mu, mu**1.5))
             t = best_level(f, mu)
         slope = newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, factor, step)
+        dual_scale, largest = longest_scale(rows, slacks, used, step, n)
         if math.isnan(slope):
             break
-        scale, largest = longest_scale(rows, slacks, used, step, n)
-        dual_scale = scale
         scale, new_t = line_search(
             family,
             domain,
@@ -211,7 +218,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             (p, u, f, t, slacks),
             (new_p, new_u, new_f, new_slacks, logs),
             (jacobian, slopes, rows, used, z, factor, n, mu),
-            (step, slope, scale),
+            (step, slope, dual_scale),
         )
         if not scale > 0.0:
             stalled += 3
