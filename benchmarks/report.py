@@ -108,4 +108,5 @@ def _bar(metric: Metric) -> str:
 
 
 def _number(value: float, unit: str) -> str:
-    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+    digits = f"{value:,.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"
+    return digits if unit == "1" else f"{digits} {unit}"

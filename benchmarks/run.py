@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks.machine import describe_machine, load_average
 from benchmarks.metric import Metric
+from benchmarks.summaries import median
 from benchmarks.workload import Progress, Row, Workload
 
 __all__ = ["Run", "measure"]
@@ -58,12 +59,36 @@ def measure(workloads: Sequence[Workload], *, quick: bool, progress: Progress, s
         store: file that the run is written to after each workload, so that a fault loses no more than one.
     """
     machine = describe_machine()
-    loads = [load_average()]
+    watched = _Watched(progress)
     rows: dict[str, Sequence[Row]] = {}
     for workload in reversed(workloads):
-        rows[workload.name] = workload.measure(quick=quick, progress=progress)
-        loads.append(load_average())
-        load = f"{loads[0]:.1f} before, at most {max(loads[1:]):.1f} after a workload, which itself makes 1"
-        run = Run(quick=quick, machine={**machine, "processes at work": load}, rows=rows)
+        rows[workload.name] = workload.measure(quick=quick, progress=watched)
+        run = Run(quick=quick, machine={**machine, "processes at work": watched.account()}, rows=rows)
         run.save(store)
     return run
+
+
+class _Watched:
+    """Progress that notes at every step how busy the machine is: other work makes times longer."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._before = load_average()
+        self._loads: list[float] = []
+
+    def begin(self, total: int) -> None:
+        """Pass on how many steps there are."""
+        self._progress.begin(total)
+
+    def step(self, doing: str) -> None:
+        """Pass on a step, and note the load."""
+        self._loads.append(load_average())
+        self._progress.step(doing)
+
+    def account(self) -> str:
+        """Return what was noted, in words."""
+        usual, most = median(self._loads), max(self._loads)
+        return (
+            f"{self._before:.1f} before the run; during it {usual:.1f} in the median and at most {most:.1f}, "
+            "the benchmark's own included"
+        )

@@ -20,7 +20,7 @@ from benchmarks.workloads.fields.standing import (
     nullpose_standing,
     standings,
 )
-from benchmarks.workloads.fields.wording import LIMITATIONS, READING, SETTINGS, opening, verdict
+from benchmarks.workloads.fields.wording import LIMITATIONS, READING, SETTINGS, duration, opening, verdict
 
 __all__ = ["section"]
 
@@ -62,9 +62,9 @@ def _overall(found: Sequence[Standing]) -> str:
             s.stage,
             f"{s.hits} of {s.scenes} ({100 * s.hit_rate:.1f} %)",
             str(s.failures),
-            _time(s.median_s),
-            _time(s.p95_s),
-            _time(s.mean_s),
+            duration(s.median_s),
+            duration(s.p95_s),
+            duration(s.mean_s),
             _shortfall(s.worst_shortfall),
             f"{s.median_s / ours.median_s:.1f}",
         )
@@ -88,7 +88,7 @@ def _by_nodes(records: Sequence[Record]) -> str:
 def _in_short(standing: Standing | None) -> str:
     if standing is None or standing.failures == standing.scenes:
         return "no answer"
-    return f"{100 * standing.hit_rate:.0f} %, {_time(standing.median_s)}"
+    return f"{100 * standing.hit_rate:.0f} %, {duration(standing.median_s)}"
 
 
 def _misses(records: Sequence[Record]) -> str:
@@ -141,9 +141,5 @@ def _best_of_others(records: Iterable[Record], scene: Scene) -> float:
     return max(r.value for r in records if r.scene == scene and r.method not in (REFERENCE, UNBOXED))
 
 
-def _time(seconds: float) -> str:
-    return f"{1e3 * seconds:.1f} ms" if seconds < 0.1 else f"{seconds:.2f} s"
-
-
 def _shortfall(value: float) -> str:
-    return "0" if value <= 1e-12 else f"{value:.1e}"
+    return "0" if value <= 1e-12 else f"{value:.1e}".replace("e-0", "e-")

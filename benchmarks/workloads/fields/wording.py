@@ -11,7 +11,7 @@ from benchmarks.workloads.fields.running import FULL, QUICK
 from benchmarks.workloads.fields.scenes import MARGIN_M, SIDE_M
 from benchmarks.workloads.fields.standing import HIT, SHIFT_S, Standing, nearest_rival, nullpose_standing
 
-__all__ = ["LIMITATIONS", "READING", "SETTINGS", "opening", "verdict"]
+__all__ = ["LIMITATIONS", "READING", "SETTINGS", "duration", "opening", "verdict"]
 
 LIMITATIONS = (
     "The best value known of a scene is the best that any method found there: none of the values is proved.",
@@ -59,8 +59,8 @@ def opening(records: Sequence[Record]) -> str:
         "The peers minimise, over (x, y, z, roll, pitch) scaled to the unit cube, the compiled function that "
         "nullpose maximises, on one thread, after a warm-up, and each may end with the same polish: a local "
         "search on the epigraph form, which kinks do not stop. Times are wall times; nullpose's is that of "
-        f"the whole Python call. A *hit* is a pose whose smallest SINR is within {HIT:g}, relative, of the "
-        "best that any method found in that scene, evaluated for all by the same plain code."
+        f"the whole Python call. A *hit* is a pose whose smallest SINR is within {_power(HIT)}, relative, of "
+        "the best that any method found in that scene, evaluated for all by the same plain code."
     )
 
 
@@ -68,20 +68,31 @@ def verdict(found: Sequence[Standing]) -> str:
     """Return how nullpose compares with the fastest peers that hit as often, general and tailored."""
     ours = nullpose_standing(found)
     return (
-        f"**nullpose hits in {ours.hits} of {ours.scenes} scenes, median {1e3 * ours.median_s:.1f} ms.** "
+        f"**nullpose hits in {ours.hits} of {ours.scenes} scenes, median {duration(ours.median_s)}.** "
         f"{_against('general-purpose solver', nearest_rival(found, GENERAL_PURPOSE), ours)} "
-        f"{_against('multistart made for this problem', nearest_rival(found, TAILORED), ours)}"
+        f"{_against('solver made for this problem', nearest_rival(found, TAILORED), ours)}"
     )
 
 
 def _against(kind: str, rival: Standing, ours: Standing) -> str:
     theirs = (
-        f"{LABELS[rival.method]} ({rival.stage}): {rival.hits} hits, median {1e3 * rival.median_s:.0f} ms, "
+        f"{LABELS[rival.method]} ({rival.stage}): {rival.hits} hits, median {duration(rival.median_s)}, "
         f"{rival.median_s / ours.median_s:.1f} times nullpose's."
     )
     if rival.hit_rate >= ours.hit_rate:
         return f"The fastest {kind} that hits as often is {theirs}"
     return f"No {kind} hits as often; of those that hit most often the fastest is {theirs}"
+
+
+def duration(seconds: float) -> str:
+    """Return a time with its unit, milliseconds up to a second."""
+    if seconds >= 1.0:
+        return f"{seconds:.2f} s"
+    return f"{1e3 * seconds:.1f} ms" if seconds < 0.1 else f"{1e3 * seconds:.0f} ms"
+
+
+def _power(value: float) -> str:
+    return f"{value:g}".replace("e-0", "e-")
 
 
 def _listed(values: Iterable[float]) -> str:
