@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
 from nullpose.solve.found import Found
+from nullpose.solve.warming import warm_kernels
 
 __all__ = ["SearchSettings", "landmarks", "multistart"]
 
@@ -87,6 +88,7 @@ def multistart(
     from nullpose.solve.kernels.search import search
 
     settings = settings or SearchSettings()
+    warm_kernels(family, axis_field)
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
     multipliers = np.empty(len(family.numerator_point))
     shift = np.random.default_rng(seed).uniform(size=3)

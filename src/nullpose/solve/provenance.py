@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from functools import cache
 from importlib.metadata import version
 
 __all__ = ["provenance"]
@@ -14,6 +15,11 @@ def provenance(seed: int) -> dict[str, object]:
     Args:
         seed: the seed of the search.
     """
+    return _versions() | {"seed": seed}
+
+
+@cache
+def _versions() -> dict[str, object]:
     return {
         "nullpose": version("nullpose"),
         "python": platform.python_version(),
@@ -21,5 +27,4 @@ def provenance(seed: int) -> dict[str, object]:
         "numba": version("numba"),
         "machine": platform.machine(),
         "system": platform.system(),
-        "seed": seed,
     }

@@ -124,7 +124,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
             gradient[3 + i] = 2.0 * d0[g] * u[i]
             form[3 + i, 3 + i] = 2.0 * d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            value += add_form(points, dpt[e], dw[e], p, u, gradient, form, True)
+            value += add_form(points, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
         work[g, 0] = value
         work[g, 43] = 0.0
         for i in range(6):

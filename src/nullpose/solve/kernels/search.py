@@ -196,7 +196,7 @@ def search(
             pool[c] = -math.inf
             for i in range(3):
                 p[i], u[i] = pool_p[c, i], pool_u[c, i]
-            value, steps = polish(family, domain, axis_field, p, u, _MU_START, _MAX_STEPS, z)
+            value, steps = polish(family, domain, axis_field, p, u, _MU_START, np.int64(_MAX_STEPS), z)
             if value > best:
                 best = value
                 for i in range(3):

@@ -1,0 +1,87 @@
+"""The first compilation, shared between two processes.
+
+The search is compiled from two halves of about equal weight that do not call each other: the choice of a
+starting axis and the polish. A second process fills the cache with the one while this one compiles the other.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from types import FunctionType
+
+from nullpose.family import AxisField, Family
+
+__all__ = ["warm_kernels"]
+
+_WAIT_S = 60.0
+
+
+def warm_kernels(family: Family, axis_field: AxisField) -> None:
+    """Compile the kernels of the search in two processes if the cache has none.
+
+    Without a second process, or without a cache, the search compiles everything by itself: nothing depends
+    on this but time.
+
+    Args:
+        family: any family: its arrays give the kernels their types.
+        axis_field: any axis field.
+    """
+    from nullpose.solve.kernels.search import search
+
+    if isinstance(search, FunctionType) or search.signatures:  # not to be compiled, or compiled already
+        return
+    cache_path = search.stats.cache_path
+    if cache_path is None or any(Path(cache_path).glob("search.search-*.nbi")):
+        return
+    program = "from nullpose.solve.warming import compile_starting_axis as c; c()"
+    try:
+        other = subprocess.Popen(
+            [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+    except OSError:
+        return
+    try:
+        compile_polish(family, axis_field)
+        other.wait(_WAIT_S)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        other.kill()
+        other.wait()
+
+
+def compile_polish(family: Family, axis_field: AxisField) -> None:
+    """Compile the polish by running no step of it."""
+    import numpy as np
+
+    from nullpose.solve.kernels.polish import polish
+
+    ratios = len(family.numerator_point)
+    position_m, axis = np.full(3, 1e3), np.array([0.0, 0.0, 1.0])
+    polish(family.arrays, family.domain, axis_field.arrays, position_m, axis, 0.1, 0, np.empty(ratios))
+
+
+def compile_starting_axis() -> None:
+    """Compile the choice of a starting axis, on a family of one point; run by the second process."""
+    import numpy as np
+
+    from nullpose.solve.kernels.search import likely_axis
+
+    family = Family(
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=np.zeros(3),
+        high_m=np.ones(3),
+        keep_out_points_m=np.zeros((0, 3)),
+        keep_out_m=1.0,
+    )
+    likely_axis(family.arrays, np.array([0.0, 0.0, 10.0]), np.empty(3))
