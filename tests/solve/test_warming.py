@@ -14,7 +14,7 @@ from nullpose.solve.warming import compile_polish, compile_starting_axis, warm_k
 
 
 def test_both_halves_are_what_the_search_calls(paper: Callable) -> None:
-    """Compiled by hand, each half has the types with which the search calls it: neither is compiled again."""
+    """Compiled by hand, each half serves a search that compiles after it; from a cache this holds anyway."""
     family = build_family(paper(1.0))
     compile_polish(family, AxisField.free())
     compile_starting_axis()

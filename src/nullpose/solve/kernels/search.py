@@ -1,9 +1,8 @@
-"""Multistart: coarse positions judged by their best axis, the promising ones polished.
+"""Multistart: coarse positions judged by a likely axis, the promising ones polished.
 
 A pose at least as good as one already known lies within a known distance of every node, since a ratio falls
-with the
-square of it (design note, domain cut); the starts fill that box, which shrinks as the incumbent improves, so
-that an unbounded horizontal domain needs no box of its own.
+with the square of it; the starts fill that box, which shrinks as the incumbent improves, so that an unbounded
+horizontal domain needs no box of its own.
 """
 
 from __future__ import annotations
