@@ -6,7 +6,6 @@ import pytest
 
 from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solve.frame import Frame
 from nullpose.solve.kernels import node
 from nullpose.solve.kernels.axis import best_axis
 from nullpose.solve.kernels.links import min_log_ratio
@@ -18,10 +17,10 @@ from nullpose.solve.schemes import vertical, zero_interference
 PAPER = "examples/paper.toml"
 
 
-def proof_of(family: Family, axis_field: AxisField, frame: Frame, **limits: float) -> Proof:
+def proof_of(family: Family, axis_field: AxisField, **limits: float) -> Proof:
     """Return a proof from a multistart's incumbent."""
     found = multistart(family, axis_field, seed=1)
-    return prove(family, axis_field, frame, found, Limits(**limits))
+    return prove(family, axis_field, found, Limits(**limits))
 
 
 def boxes(proof: Proof) -> tuple[np.ndarray, np.ndarray]:
@@ -40,7 +39,7 @@ def value_at(family: Family, p: np.ndarray) -> float:
 def test_the_papers_optimum_is_closed(power_w: float) -> None:
     """The bound is within the gap above the value, and the leaves cover the box of the distance cut."""
     family = build_family(apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"]))
-    proof = proof_of(family, AxisField.free(), Frame.free(), gap=1e-6)
+    proof = proof_of(family, AxisField.free(), gap=1e-6)
     value = np.exp(proof.found.log_value)
     assert proof.reason == ""
     assert value <= proof.upper_bound <= value * (1.0 + 1.001e-6)
@@ -54,7 +53,7 @@ def test_no_pose_of_a_leaf_reaches_its_level(random_scene: Callable) -> None:
     rng = np.random.default_rng(4)
     for n_nodes, n_jammers in ((1, 1), (2, 0), (3, 1), (5, 2), (8, 3)):
         family = build_family(random_scene(rng, n_nodes, n_jammers, 10.0))
-        proof = proof_of(family, AxisField.free(), Frame.free(), gap=1e-2)
+        proof = proof_of(family, AxisField.free(), gap=1e-2)
         assert proof.reason == ""
         whole_sphere = proof.leaves[proof.leaves[:, node.FACE] < 0.0]
         chosen = whole_sphere[rng.integers(len(whole_sphere), size=200)]
@@ -69,7 +68,7 @@ def test_no_search_beats_the_bound(random_scene: Callable) -> None:
     for n_nodes in (2, 3, 5, 7):
         for n_jammers in (1, 3):
             family = build_family(random_scene(rng, n_nodes, n_jammers, 30.0))
-            proof = proof_of(family, AxisField.free(), Frame.free(), gap=1e-3)
+            proof = proof_of(family, AxisField.free(), gap=1e-3)
             assert proof.reason == ""
             for seed in range(5):
                 other = multistart(family, AxisField.free(), seed=100 + seed)
@@ -82,11 +81,11 @@ def test_fixed_axes_are_closed() -> None:
         scenario = apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"])
         family = build_family(scenario)
         fields = (
-            (zero_interference.axis_field(scenario.jammer_positions_m[0]), Frame.towards(2)),
-            (vertical.axis_field(), Frame.vertical()),
+            zero_interference.axis_field(scenario.jammer_positions_m[0]),
+            vertical.axis_field(),
         )
-        for axis_field, frame in fields:
-            proof = proof_of(family, axis_field, frame, gap=1e-6)
+        for axis_field in fields:
+            proof = proof_of(family, axis_field, gap=1e-6)
             value = np.exp(proof.found.log_value)
             assert proof.reason == ""
             assert proof.upper_bound <= value * (1.0 + 1.001e-6)
@@ -97,11 +96,11 @@ def test_a_limit_leaves_a_valid_bound(random_scene: Callable) -> None:
     rng = np.random.default_rng(6)
     scenario: Scenario = random_scene(rng, 12, 3, 30.0)
     family = build_family(scenario)
-    full = proof_of(family, AxisField.free(), Frame.free(), gap=1e-2)
-    short = proof_of(family, AxisField.free(), Frame.free(), gap=1e-6, node_limit=300)
+    full = proof_of(family, AxisField.free(), gap=1e-2)
+    short = proof_of(family, AxisField.free(), gap=1e-6, node_limit=300)
     assert "node limit" in short.reason
     assert short.upper_bound >= np.exp(full.found.log_value)
-    hasty = proof_of(family, AxisField.free(), Frame.free(), gap=1e-9, time_limit_s=1e-3)
+    hasty = proof_of(family, AxisField.free(), gap=1e-9, time_limit_s=1e-3)
     assert "time limit" in hasty.reason
     assert hasty.upper_bound >= np.exp(full.found.log_value)
 
@@ -115,7 +114,7 @@ def test_a_poor_incumbent_is_improved() -> None:
     poor = type(best)(
         position_m=p, axis=axis, log_value=poor_value, multipliers=np.full(2, 0.5), starts=0, evaluations=0
     )
-    proof = prove(family, AxisField.free(), Frame.free(), poor, Limits(gap=1e-6))
+    proof = prove(family, AxisField.free(), poor, Limits(gap=1e-6))
     assert proof.reason == ""
     assert proof.found.log_value == pytest.approx(best.log_value, rel=1e-6)
 
@@ -126,7 +125,7 @@ def test_progress_is_told(random_scene: Callable) -> None:
     family = build_family(random_scene(np.random.default_rng(7), 6, 2, 30.0))
     found = multistart(family, AxisField.free(), seed=1)
     prove(
-        family, AxisField.free(), Frame.free(), found, Limits(gap=1e-3), lambda gap, n: seen.append((gap, n))
+        family, AxisField.free(), found, Limits(gap=1e-3), lambda gap, n: seen.append((gap, n))
     )
     gaps, nodes = zip(*seen, strict=True)
     assert list(nodes) == sorted(nodes)

@@ -56,6 +56,33 @@ class AxisField:
             is_free=False, offset=np.asarray(offset, dtype=float), matrix=np.asarray(matrix, dtype=float)
         )
 
+    @classmethod
+    def vertical(cls) -> AxisField:
+        """Return the field that is vertical everywhere (paper section 4, case 4)."""
+        return cls.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))
+
+    @classmethod
+    def towards(cls, point_m: ArrayLike) -> AxisField:
+        """Return the field ``u(p) = q - p``, a null on q (paper eq. 3.1, its length left out).
+
+        Args:
+            point_m: ``q``, shape ``(3,)``, metres.
+        """
+        return cls.affine(point_m, -np.eye(3))
+
+    @classmethod
+    def broadside(cls, first_m: ArrayLike, second_m: ArrayLike) -> AxisField:
+        """Return the field ``(s1 - p) x (s2 - p) = s1 x s2 + (s2 - s1) x p`` (paper eq. 3.4, any length).
+
+        Args:
+            first_m: ``s1``, shape ``(3,)``, metres.
+            second_m: ``s2``, shape ``(3,)``, metres.
+        """
+        first, second = np.asarray(first_m, dtype=float), np.asarray(second_m, dtype=float)
+        x, y, z = second - first
+        matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        return cls.affine(np.cross(first, second), matrix)
+
     @property
     def arrays(self) -> AxisFieldArrays:
         """The field as the kernels take it: (0 free or 1 affine, offset, matrix)."""

@@ -2,6 +2,7 @@
 
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.compiling import announce_compiling
+from nullpose.solve.limits import default_gap
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
@@ -16,6 +17,7 @@ __all__ = [
     "as_scheme",
     "best_axis",
     "compare",
+    "default_gap",
     "not_applicable",
     "solve",
 ]

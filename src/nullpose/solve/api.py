@@ -12,10 +12,13 @@ from nullpose.errors import UsageError
 from nullpose.family import build_family
 from nullpose.physics import Link, Pose, evaluate, maximum_gain_sinr_as_printed, to_db
 from nullpose.scenario import Scenario
-from nullpose.solve.found import Found
+from nullpose.solve.effort import Effort
+from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap
+from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable, require_applicable
 from nullpose.solve.schemes import maximum_gain, maximum_gain_printed, optimum, vertical, zero_interference
+from nullpose.solve.settle import Settled
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
 __all__ = ["best_axis", "compare", "solve"]
@@ -25,22 +28,35 @@ def solve(
     scenario: Scenario,
     scheme: Scheme | str = Scheme.OPTIMUM,
     *,
+    gap: float | None = None,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
     seed: int = 0,
     null_jammer: str | None = None,
+    on_progress: Callable[[float, int], None] | None = None,
 ) -> Solution:
-    """Return the best pose found for a scenario under a scheme.
+    """Return the best pose for a scenario under a scheme, and a bound that no pose exceeds.
 
     Maximises the smallest SINR over the nodes (paper eq. 2.2) with the axes that the scheme allows. The
-    value is re-evaluated by :mod:`nullpose.physics` from the pose that is reported.
+    value is re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from a
+    branch and bound over positions and axes. On a limit or an interrupt the best pose and the best bound so
+    far are returned, and the status says so.
 
     Args:
         scenario: nodes, jammers, receiver and airspace.
         scheme: one of :class:`Scheme`, or its name.
+        gap: relative gap between bound and value at which the proof is done; without it
+            :func:`default_gap` of the number of nodes.
+        time_limit_s: seconds after which the proof stops.
+        node_limit: boxes after which the proof stops.
+        certify: whether to prove anything; without it the search alone is run, more thoroughly.
         seed: seed of the multistart, a whole number of at least 0; equal seeds give equal answers.
         null_jammer: zero interference only: the jammer to null; without it, each is tried.
+        on_progress: called now and then during the proof with the gap so far and the boxes examined.
 
     Raises:
-        UsageError: unknown scheme, one that has no meaning here, an unknown jammer, or a bad seed.
+        UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
     scheme = as_scheme(scheme)
@@ -52,47 +68,87 @@ def solve(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; "
             "it goes with zero-interference only"
         )
+    target = default_gap(len(scenario.nodes)) if gap is None else gap
+    limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
+    effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
     began = time.perf_counter()
-    found = _find(scenario, scheme, seed, null_jammer)
-    pose = Pose.from_axis(found.position_m, found.axis)
+    settled = _settle(scenario, scheme, effort, null_jammer)
+    pose = Pose.from_axis(settled.found.position_m, settled.found.axis)
     links = _links(scenario, scheme, pose)
     value = min(link.sinr for link in links)
+    bound = settled.upper_bound
+    relative_gap = None if bound is None else bound / value - 1.0
+    status = _status(settled)
     return Solution(
         scenario=scenario,
         scheme=scheme,
-        status=Status.BEST_FOUND,
-        objective=Objective(name="min_sinr", value=value, value_db=float(to_db(value))),
+        status=status,
+        reason=settled.reason if status is not Status.CERTIFIED else "",
+        objective=Objective(
+            name="min_sinr",
+            value=value,
+            value_db=float(to_db(value)),
+            upper_bound=bound,
+            relative_gap=relative_gap,
+        ),
         pose=pose,
         links=links,
-        stats=Stats(wall_s=time.perf_counter() - began, starts=found.starts, evaluations=found.evaluations),
-        provenance=provenance(seed),
-        note=found.note,
+        stats=Stats(
+            wall_s=time.perf_counter() - began,
+            starts=settled.found.starts,
+            evaluations=settled.found.evaluations,
+            boxes=settled.nodes,
+        ),
+        provenance=provenance(seed) | ({"gap": target} if certify else {}),
+        note=settled.found.note,
+        null_jammer=null_jammer,
+        proofs=settled.proofs,
     )
 
 
 def compare(
     scenario: Scenario,
     *,
-    seed: int = 0,
     schemes: Sequence[Scheme | str] = PAPER_SCHEMES,
+    gap: float | None = None,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
+    seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Solution, ...]:
     """Return the solutions of several schemes for one scenario, those without meaning here left out.
 
+    After an interrupt during a proof the remaining schemes are solved without one.
+
     Args:
         scenario: nodes, jammers, receiver and airspace.
-        seed: seed of each multistart.
         schemes: the schemes, in order.
+        gap: as for :func:`solve`.
+        time_limit_s: seconds after which each proof stops.
+        node_limit: boxes after which each proof stops.
+        certify: whether to prove anything.
+        seed: seed of each multistart.
         on_progress: called with how many are done and how many there are.
 
     Raises:
-        UsageError: an unknown scheme.
+        UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
     applicable = [s for s in map(as_scheme, schemes) if not_applicable(scenario, s) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
-        solutions.append(solve(scenario, scheme, seed=seed))
+        solution = solve(
+            scenario,
+            scheme,
+            gap=gap,
+            time_limit_s=time_limit_s,
+            node_limit=node_limit,
+            certify=certify,
+            seed=seed,
+        )
+        solutions.append(solution)
+        certify = certify and solution.reason != INTERRUPT
         if on_progress is not None:
             on_progress(done, len(applicable))
     return tuple(solutions)
@@ -128,16 +184,22 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     return Pose.from_axis(position, axis)
 
 
-def _find(scenario: Scenario, scheme: Scheme, seed: int, null_jammer: str | None) -> Found:
+def _settle(scenario: Scenario, scheme: Scheme, effort: Effort, null_jammer: str | None) -> Settled:
     if scheme is Scheme.ZERO_INTERFERENCE:
-        return zero_interference.find(scenario, seed=seed, null_jammer=null_jammer)
+        return zero_interference.find(scenario, effort, null_jammer=null_jammer)
     finders = {
         Scheme.OPTIMUM: optimum.find,
         Scheme.MAXIMUM_GAIN: maximum_gain.find,
         Scheme.VERTICAL: vertical.find,
         Scheme.MAXIMUM_GAIN_PRINTED: maximum_gain_printed.find,
     }
-    return finders[scheme](scenario, seed=seed)
+    return finders[scheme](scenario, effort)
+
+
+def _status(settled: Settled) -> Status:
+    if settled.upper_bound is None:
+        return Status.BEST_FOUND
+    return Status.GAP_NOT_REACHED if settled.reason else Status.CERTIFIED
 
 
 def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:

@@ -18,8 +18,8 @@ class Found:
         position_m: (3,) metres.
         axis: (3,) antenna axis, of any length.
         log_value: the logarithm of the smallest ratio there, as the search saw it.
-        multipliers: (r,) multipliers of the ratios at the optimum, summing to one; equal where they are not
-        known. starts: local searches run.
+        multipliers: (r,) multipliers of the ratios at the optimum, summing to one; equal where not known.
+        starts: local searches run.
         evaluations: poses evaluated.
         note: a sentence for the solution; may be empty.
     """

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from nullpose.errors import UsageError
 
-__all__ = ["Limits", "default_gap"]
+__all__ = ["NODE_LIMIT", "TIME_LIMIT_S", "Limits", "default_gap"]
 
-_TIME_LIMIT_S = 60.0
-_NODE_LIMIT = 10**9
+TIME_LIMIT_S = 60.0
+NODE_LIMIT = 10**9
 
 
 def default_gap(n_nodes: int) -> float:
@@ -38,8 +38,8 @@ class Limits:
     """
 
     gap: float
-    time_limit_s: float = _TIME_LIMIT_S
-    node_limit: int = _NODE_LIMIT
+    time_limit_s: float = TIME_LIMIT_S
+    node_limit: int = NODE_LIMIT
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.gap) and 1e-9 <= self.gap <= 10.0):

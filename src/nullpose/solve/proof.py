@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.found import Found
-from nullpose.solve.frame import Frame
 from nullpose.solve.limits import Limits
 
-__all__ = ["Proof", "prove"]
+__all__ = ["INTERRUPT", "Proof", "Spent", "prove"]
 
 FloatArray = NDArray[np.float64]
 
@@ -25,6 +24,10 @@ _FIRST_CHUNK = 512
 _CHUNK_S = 0.05
 _MOST_LEAVES = 700_000
 _WIDEST_GAP = 1e6
+_INSIDE = 1.0 - 1e-4  # the gap that is aimed at, of the gap that is asked for: value and bound are rounded
+
+INTERRUPT = "an interrupt"
+"""The reason of a run that was ended by Ctrl-C."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,18 +37,31 @@ class Proof:
     Args:
         found: the incumbent, perhaps better than the one it began with.
         upper_bound: no pose of the domain has its smallest ratio above this.
-        leaves: (l, columns) the excluded nodes, in the kernels' layout: together with the distance cut they
-        cover the
-            domain. Empty if the run stopped before its first stage was done.
+        root: (2, 3) lowest and highest corner of a box outside which no pose reaches the incumbent.
+        leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box.
         reason: why the target gap was not reached; empty if it was.
         nodes: nodes examined.
     """
 
     found: Found
     upper_bound: float
+    root: FloatArray
     leaves: FloatArray
     reason: str
     nodes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spent:
+    """What was spent of the limits before a run began.
+
+    Args:
+        seconds: time.
+        nodes: nodes examined.
+    """
+
+    seconds: float = 0.0
+    nodes: int = 0
 
 
 class _Run:
@@ -55,20 +71,22 @@ class _Run:
         self,
         family: Family,
         axis_field: AxisField,
-        frame: Frame,
         found: Found,
         limits: Limits,
         on_progress: Callable[[float, int], None] | None,
+        spent: Spent,
     ) -> None:
         from nullpose.solve.kernels import branch, node
 
-        self.family, self.axis_field, self.frame = family, axis_field, frame
+        self.family, self.axis_field = family, axis_field
         self.kernel, self.node = branch, node
         self.found, self.limits, self.on_progress = found, limits, on_progress
-        self.deadline = time.perf_counter() + limits.time_limit_s
+        self.deadline = time.perf_counter() + limits.time_limit_s - spent.seconds
+        self.node_limit = max(1, limits.node_limit - spent.nodes)
         self.nodes = 0
         self.chunk = _FIRST_CHUNK
-        self.proved = _reach(family)
+        self.proved, self.farthest = _reach(family)
+        self.doubt = 0.0
         self.favourite = self._favourite()
 
     @property
@@ -110,9 +128,9 @@ class _Run:
             code, top, filled, done, _ = self.kernel.branch(
                 self.family.arrays,
                 self.family.domain,
-                self.frame.numbers,
+                self.axis_field.arrays,
                 self.value * (1.0 + gap),
-                self.value,
+                self.value * (1.0 + self.doubt),
                 self.favourite,
                 stack,
                 top,
@@ -138,7 +156,7 @@ class _Run:
             if now > self.deadline:
                 return leaves[:0], f"the time limit of {self.limits.time_limit_s:g} s"
             if self.nodes >= until:
-                return leaves[:0], f"the node limit of {most}"
+                return leaves[:0], f"the node limit of {self.limits.node_limit}"
             if code == self.kernel.LIMIT and now - began < 0.5 * _CHUNK_S:
                 self.chunk *= 2
 
@@ -168,63 +186,82 @@ class _Run:
                 evaluations=self.found.evaluations + steps,
             )
             self.favourite = self._favourite()
+        else:  # the two evaluations differ in their rounding: do not ask again
+            self.doubt = max(1e-9, 10.0 * self.doubt)
+
+    def by_distance(self, root: FloatArray) -> FloatArray:
+        """Return the leaf that shows the bound from distances alone, by which a run begins."""
+        leaf = root.copy()
+        leaf[0, self.node.KIND], leaf[0, self.node.INDEX] = self.node.FAR, self.farthest
+        leaf[0, self.node.LEVEL] = self.proved
+        return leaf
 
 
 def prove(
     family: Family,
     axis_field: AxisField,
-    frame: Frame,
     found: Found,
     limits: Limits,
+    *,
     on_progress: Callable[[float, int], None] | None = None,
+    spent: Spent | None = None,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
     First the target gap is tried directly. If that takes too many nodes, the gap is closed in stages, each
-    refining
-    the leaves of the one before, so that a limit leaves the bound of the last stage that was finished.
+    refining the leaves of the one before, so that a limit leaves the bound of the last stage finished.
 
     Args:
         family: the ratios and their domain.
         axis_field: which axes are allowed.
-        frame: the frame field that goes with them.
         found: the incumbent.
         limits: target gap, time and nodes.
         on_progress: called now and then with the gap proved so far and the nodes examined; a
-        KeyboardInterrupt
-            during the run ends it with the bound reached.
+            KeyboardInterrupt during the run ends it with the bound reached.
+        spent: what was spent of the limits before.
     """
-    run = _Run(family, axis_field, frame, found, limits, on_progress)
-    leaves = np.empty((0, run.node.COLUMNS))
-    gap = limits.gap
+    run = _Run(family, axis_field, found, limits, on_progress, spent or Spent())
+    root = run.root()
+    leaves = run.by_distance(root)
+    target = _INSIDE * limits.gap
     reason = ""
     try:
-        direct = min(_DIRECT_NODES, limits.node_limit)
-        leaves, reason = run.stage(gap, run.root(), direct)
-        if reason and run.nodes < limits.node_limit and time.perf_counter() < run.deadline:
-            start, gap = run.root(), min(_WIDEST_GAP, run.proved / run.value - 1.0)
-            while True:
-                gap = max(limits.gap, _STAGE * gap)
-                done, reason = run.stage(gap, start, limits.node_limit - run.nodes)
+        done, reason = run.stage(target, root, min(_DIRECT_NODES, run.node_limit))
+        if not reason:
+            leaves = done
+        elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
+            start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
+            while gap > target:
+                gap = max(target, _STAGE * gap)
+                done, reason = run.stage(gap, start, run.node_limit - run.nodes)
                 if reason:
                     break
                 leaves = start = done
-                if gap <= limits.gap:
-                    break
     except KeyboardInterrupt:
-        reason = "an interrupt"
+        reason = INTERRUPT
     return Proof(
-        found=run.found, upper_bound=max(run.proved, run.value), leaves=leaves, reason=reason, nodes=run.nodes
+        found=run.found,
+        upper_bound=max(run.proved, run.value),
+        root=_corners(root, run.node.CENTRE, run.node.HALF),
+        leaves=leaves,
+        reason=reason,
+        nodes=run.nodes,
     )
 
 
-def _reach(family: Family) -> float:
-    """Return a bound from distances alone: the ratio of the node that the domain keeps farthest."""
+def _corners(root: FloatArray, centre: int, half: int) -> FloatArray:
+    middle, side = root[0, centre : centre + 3], root[0, half : half + 3]
+    return np.array([middle - side, middle + side])
+
+
+def _reach(family: Family) -> tuple[float, int]:
+    """Return a bound from distances alone, and the ratio that it is from: the most distant node's."""
     points = family.points_m[family.numerator_point]
     nearest = np.clip(points, family.low_m, family.high_m)
     distance_m = np.maximum(np.linalg.norm(points - nearest, axis=1), family.keep_out_m)
     isotropic = family.denominator_isotropic[family.denominator_of]
-    return float(np.min((family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic))
+    ratios = (family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic
+    return float(np.min(ratios)) * (1.0 + 1e-9), int(np.argmin(ratios))
 
 
 def _grown(array: FloatArray, used: int, spare: int) -> FloatArray:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any
 
 from nullpose.physics import Link, Pose
 from nullpose.scenario import Scenario
+from nullpose.solve.proof import Proof
 from nullpose.solve.scheme import Scheme
 
 __all__ = ["Objective", "Solution", "Stats", "Status"]
@@ -19,6 +20,8 @@ __all__ = ["Objective", "Solution", "Stats", "Status"]
 class Status(StrEnum):
     """How a solve ended."""
 
+    CERTIFIED = "certified"
+    GAP_NOT_REACHED = "gap-not-reached"
     BEST_FOUND = "best-found"
 
     @property
@@ -27,7 +30,11 @@ class Status(StrEnum):
         return _MESSAGES[self]
 
 
-_MESSAGES = {Status.BEST_FOUND: "the best of many local optima; not proved to be the global one"}
+_MESSAGES = {
+    Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",
+    Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
+    Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,11 +64,13 @@ class Stats:
         wall_s: wall-clock time, seconds.
         starts: local searches run.
         evaluations: poses evaluated.
+        boxes: boxes of positions examined by the proof; 0 without one.
     """
 
     wall_s: float
     starts: int
     evaluations: int
+    boxes: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,6 +87,9 @@ class Solution:
         stats: time and counts.
         provenance: versions, seed and settings that produced it.
         note: a sentence on what the scheme did here, such as which jammer the null points at; may be empty.
+        reason: what kept the gap from being reached, or the pose from being certified; empty if nothing did.
+        null_jammer: the jammer that was asked to be nulled, if one was.
+        proofs: what the branch and bound showed, for each axis field of the scheme.
     """
 
     scenario: Scenario
@@ -89,12 +101,15 @@ class Solution:
     stats: Stats
     provenance: Mapping[str, Any]
     note: str = ""
+    reason: str = ""
+    null_jammer: str | None = None
+    proofs: tuple[Proof, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Solution], tuple[dict[str, Any]]]:
-        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        state = {one.name: getattr(self, one.name) for one in fields(self)}
         return _rebuilt, (state | {"provenance": dict(self.provenance)},)
 
     @property
@@ -109,6 +124,7 @@ class Solution:
             "scenario": self.scenario.to_dict(),
             "scheme": self.scheme.value,
             "status": self.status.value,
+            "reason": self.reason,
             "objective": {
                 "name": self.objective.name,
                 "value": self.objective.value,
@@ -131,6 +147,7 @@ class Solution:
                 "wall_s": self.stats.wall_s,
                 "starts": self.stats.starts,
                 "evaluations": self.stats.evaluations,
+                "boxes": self.stats.boxes,
             },
             "provenance": dict(self.provenance),
             "note": self.note,

@@ -1,9 +1,8 @@
 """Branch and bound: boxes of positions, and where multipliers alone cannot decide, cells of axes.
 
-Depth first at one fixed level: a node is excluded (see ``exclusion``), or split across the longest side of
-its box, or,
-where the gap between the dual and what one axis reaches outweighs the size of the box, split into cells of
-axes.
+Depth first at one fixed level: a node is excluded (see ``exclusion`` and ``curved``), or its box is halved,
+or, where the gap between the dual and what one axis reaches outweighs the size of the box, it is split into
+cells of axes.
 """
 
 from __future__ import annotations
@@ -12,19 +11,25 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
+from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, expand_denominator, out_of_reach
-from nullpose.solve.kernels.expansion import ABOUT_LINE, TOWARDS_POINT, WORLD, min_distance, set_frame
+from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
 from nullpose.solve.kernels.jit import kernel
-from nullpose.solve.kernels.multipliers import fixed_multipliers, free_multipliers
+from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
+    AFFINE,
     ANCHOR,
     CENTRE,
     COLUMNS,
     COUNT,
     FACE,
     HALF,
+    INDEX,
     KIND,
     LEVEL,
+    WEIGHT,
+    longest_side,
     split_axis,
     split_position,
 )
@@ -44,6 +49,7 @@ _BETTER = 3
 _COARSENESS = 8.0  # how far a duality gap must outweigh a box's size before axes are split
 _STRONG = 0.5  # an interferer this strong, in units of the noise, is worth a frame that turns with it
 _CLOSE = 0.2  # boxes nearer to a point than this share of their radius are split unseen
+_CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 
 
@@ -78,68 +84,114 @@ def is_pose(domain, centre):
 
 
 @kernel
-def examine(family, domain, frame, best, favourite, row, weights, axis):
-    """Return what becomes of a node; fill its kind, its multipliers, and an axis if it beats the best."""
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+def examine(family, domain, axis_field, best, favourite, row, weights, axis):
+    """Return (what becomes of a node, the side to split, whether multipliers were sought).
+
+    Fills the node's kind, its multipliers, and an axis if it beats the best.
+    """
+    side = longest_side(row)
     kind = out_of_reach(family, domain[2], domain[3], row)
     if kind >= 0:
         row[KIND] = kind
-        return _EXCLUDED, 0
-    fixed, kind, anchor, other = frame[0] == 1, frame[1], frame[2], frame[3]
+        return _EXCLUDED, side, 0
+    half = row[HALF:LEVEL]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    nearest = math.inf
+    for j in range(family[0].shape[0]):
+        nearest = min(nearest, min_distance(family[0], j, row[CENTRE:HALF], half))
+    if not nearest > _CLOSE * radius:
+        return _BY_POSITION, side, 0
+    if axis_field[0] == 1:
+        length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
+        if length > _CLEAR * change:  # where it may vanish any axis is allowed for
+            return examine_affine(family, domain, axis_field, best, favourite, row, weights, axis)
+    verdict, sought = examine_free(
+        family, domain, best, favourite, row, nearest, weights, axis, axis_field[0] == 0
+    )
+    return verdict, side, sought
+
+
+@kernel
+def examine_free(family, domain, best, favourite, row, nearest, weights, axis, is_free):
+    """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = np.empty((3, 3))
-    if kind == ABOUT_LINE:  # on the line itself the frame has no third axis: there, any axis is allowed for
-        _, rho_min = set_frame(family[0], kind, anchor, other, centre, half, basis)
-        fixed = rho_min > _CLOSE * radius
-    if not fixed:
-        anchor, strength = strongest_point(family, centre)
-        kind = TOWARDS_POINT if strength > _STRONG * family[5][0] else WORLD
-    rho, rho_min = set_frame(family[0], kind, anchor, other, centre, half, basis)
-    nearest = rho_min
-    for j in range(family[0].shape[0]):
-        nearest = min(nearest, min_distance(family[0], j, centre, half))
-    if not nearest > _CLOSE * radius:
-        return _BY_POSITION, 0
+    anchor, strength = strongest_point(family, centre)
+    kind = TOWARDS_POINT if strength > _STRONG * family[5][0] else WORLD
+    rho, rho_min = set_frame(family[0], kind, anchor, centre, half, basis)
     view = (kind, anchor, basis, rho, rho_min)
     denominator, slopes = np.empty(6), np.empty((3, 6))
-    rests = expand_denominator(family, fixed, row[LEVEL], view, centre, half, denominator, slopes)
+    rests = expand_denominator(family, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, fixed, view, row, below):
+    if excludes(family, view, row, below):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
         for m in range(COUNT, COLUMNS):
             row[m] = favourite[m]
-        if excludes(family, fixed, view, row, below):
+        if excludes(family, view, row, below):
             return _EXCLUDED, 0
-    gap = 0.0
-    if fixed:
-        reached = fixed_multipliers(family, view, row, below, weights)
-        for i in range(3):
-            axis[i] = basis[i, 2]
-    else:
-        coarseness = _COARSENESS * radius / nearest
-        primal, reached = free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
-        gap = primal - reached - coarseness
-    if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, centre):
+    coarseness = _COARSENESS * radius / nearest
+    primal, reached = free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
+    if is_free and reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, centre):
         return _BETTER, 1
-    if excludes(family, fixed, view, row, below):
+    if excludes(family, view, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell is in force
-    split_axes = gap > 0.0 and (family[1].shape[0] > 2 or row[FACE] >= 0.0)
-    return (_BY_AXIS if split_axes else _BY_POSITION), 1
+    split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0)
+    return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
+
+
+@kernel
+def lone_ratio(family, row, denominator):
+    """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
+    points, n0, nw, npt = family[:4]
+    for k in range(nw.shape[0]):
+        a = min_distance(points, npt[k], row[CENTRE:HALF], row[HALF:LEVEL])
+        if n0[k] + nw[k] / (a * a) < -denominator * (1.0 - 1e-13):
+            row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
+            return True
+    return False
+
+
+@kernel
+def examine_affine(family, domain, axis_field, best, favourite, row, weights, axis):
+    """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
+    half = row[HALF:LEVEL]
+    jet, below, total = np.empty(JET), np.empty(JET), np.empty(JET)
+    size = denominator_jet(family, axis_field, row, jet, below)
+    row[KIND] = AFFINE
+    if lone_ratio(family, row, below[17]):
+        return _EXCLUDED, 0, 0
+    if excludes_curved(family, axis_field, row, below, size, jet, total):
+        return _EXCLUDED, 0, 0
+    for m in range(COUNT, COLUMNS):
+        row[m] = favourite[m]
+    if excludes_curved(family, axis_field, row, below, size, jet, total):
+        return _EXCLUDED, 0, 0
+    reached = curved_multipliers(family, axis_field, row, below, jet, weights)
+    if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
+        for m in range(3):
+            axis[m] = axis_field[1][m]
+            for i in range(3):
+                axis[m] += axis_field[2][m, i] * row[CENTRE + i]
+        return _BETTER, 0, 1
+    if excludes_curved(family, axis_field, row, below, size, jet, total):
+        return _EXCLUDED, 0, 1
+    return _BY_POSITION, impact(total, half), 1
 
 
 @kernel
 def branch(
-    family, domain, frame, level, best, favourite, stack, top, leaves, filled, most, better_p, better_u
+    family, domain, axis_field, level, best, favourite, stack, top, leaves, filled, most, better_p, better_u
 ):
     """Work off the stack at one level until it is empty or a limit is met.
 
     Args:
         family: arrays of the family; one shared denominator.
         domain: (low, high, keep-out points, keep-out radius).
-        frame: (0 free axis or 1 fixed; kind; anchor; other) of the axis field.
+        axis_field: (0 free, 1 affine; offset; matrix).
         level: the ratio to exclude.
         best: the incumbent's smallest ratio; a centre that beats it ends the call.
         favourite: (COLUMNS,) a row whose multipliers are tried on every box: those at the incumbent.
@@ -167,7 +219,7 @@ def branch(
         for m in range(COLUMNS):
             row[m] = stack[top, m]
         row[LEVEL] = level
-        verdict, new = examine(family, domain, frame, best, favourite, row, weights, axis)
+        verdict, side, new = examine(family, domain, axis_field, best, favourite, row, weights, axis)
         sought += new
         if verdict == _EXCLUDED:
             for m in range(COLUMNS):
@@ -180,5 +232,5 @@ def branch(
         elif verdict == _BY_AXIS:
             top = split_axis(row, stack, top)
         else:
-            top = split_position(row, stack, top)
+            top = split_position(row, side, stack, top)
     return DONE, top, filled, nodes, sought

@@ -1,11 +1,9 @@
-"""The test that excludes a node: a weighted sum of forms that is negative all over its box and cell.
+"""The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
 
 Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell) exclude a box at
-a level t if
-``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for every position p in it: then
-no pose there
-has all its ratios at t or above. The matrix is bounded by its first-order expansion at the eight corners
-plus a second-order remainder.
+a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for every position
+p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its first-order
+expansion at the eight corners plus a second-order remainder, and a margin that outweighs rounding.
 """
 
 from __future__ import annotations
@@ -14,7 +12,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.expansion import ABOUT_LINE, TOWARDS_POINT, WORLD, expand_point, min_distance
+from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.node import (
@@ -34,23 +32,21 @@ from nullpose.solve.kernels.node import (
 
 __all__ = ["excludes", "expand_denominator", "out_of_reach"]
 
+_ROUNDING = 2e-14  # relative to the terms summed: a hundred units in the last place
+_DEFINITE = 1e-13  # minors, relative to the products that they are made of
+
 
 @kernel
 def negative_definite(a0, a1, a2, a3, a4, a5):
     """Return whether a form is negative definite, by the leading minors of its negative."""
     minor = a0 * a1 - a3 * a3
     det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
-    return a0 < 0.0 and minor > 0.0 and det > 0.0
+    return a0 < 0.0 and minor > _DEFINITE * a0 * a1 and det > -_DEFINITE * a0 * a1 * a2
 
 
 @kernel
-def negative_at_corners(matrix, slopes, half, fixed):
-    """Return whether the linear matrix, or its last entry, is negative at all eight corners."""
-    if fixed:
-        swing = 0.0
-        for i in range(3):
-            swing += half[i] * abs(slopes[i, 2])
-        return matrix[2] + swing < 0.0
+def negative_at_corners(matrix, slopes, half):
+    """Return whether the linear matrix is negative definite at all eight corners."""
     for corner in range(8):
         x = half[0] if corner & 1 else -half[0]
         y = half[1] if corner & 2 else -half[1]
@@ -77,57 +73,8 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
 
 
 @kernel
-def across_axis(points, j, view, centre, half):
-    """Return bounds on the form of point j along the third axis that are sharp at a null.
-
-    The part of ``r`` across the axis has two components, each linear in the position up to a remainder (none
-    in the
-    world frame). Squares lie above their tangents, so that close to a null, where the components are small,
-    so is
-    the remainder of their sum. The first bound is the form's least value in the box; the second bounds its
-    second derivative from below, for use with its value and slopes at the centre.
-    """
-    kind, _, basis, rho, rho_min = view
-    size2 = half[0] ** 2 + half[1] ** 2 + half[2] ** 2
-    far2 = here2 = 0.0
-    along = np.zeros(3)
-    for i in range(3):
-        r = points[j, i] - centre[i]
-        here2 += r * r
-        far2 += (abs(r) + half[i]) ** 2
-        for m in range(3):
-            along[m] += basis[i, m] * r
-    turning = 0.0  # second derivative of the second component, which turns with the frame about the line
-    steepest = 1.0
-    if kind == ABOUT_LINE:
-        turning = 1.1548 * math.hypot(along[1] + rho, along[2]) / (rho_min * rho_min) + 1.0 / rho_min
-        steepest = math.hypot(1.0, along[2] / rho)
-    least = 0.0
-    for m in range(2):
-        swing = 0.5 * size2 * turning if m == 1 else 0.0
-        for i in range(3):
-            slope = -basis[i, m]
-            if kind == ABOUT_LINE and m == 1:
-                slope += along[2] * basis[i, 2] / rho
-            swing += half[i] * abs(slope)
-        least += max(0.0, abs(along[m]) - swing) ** 2
-    near = min_distance(points, j, centre, half)
-    s = math.hypot(along[0], along[1])
-    widest = (s + steepest * math.sqrt(size2)) ** 2 + abs(along[1]) * turning * size2
-    curvature = 8.0 * s * steepest / here2**2.5 + 2.0 * widest / near**6 + abs(along[1]) * turning / near**4
-    # the tangent of 1/|r|^4 must not fall below zero in the box
-    if 4.0 * math.sqrt(size2) / here2**2.5 + 2.0 * size2 / near**6 > 1.0 / here2**2:
-        curvature = math.inf
-    return least / (far2 * far2), -2.0 * curvature
-
-
-@kernel
-def expand_denominator(family, fixed, level, view, centre, half, out, out_slopes):
-    """Fill ``-t D`` and its slopes, or less where that is a sharper bound.
-
-    Returns its remainders, isotropic and on the first two axes, and the denominator along the third at the
-    centre.
-    """
+def expand_denominator(family, level, view, centre, half, out, out_slopes):
+    """Fill ``-t D`` and its slopes; return its remainders, isotropic and on the first two axes."""
     points, _, _, _, _, d0, dstart, dpt, dw = family
     kind, anchor, basis, rho, rho_min = view
     form, slopes = np.empty(6), np.empty((3, 6))
@@ -136,27 +83,18 @@ def expand_denominator(family, fixed, level, view, centre, half, out, out_slopes
         for i in range(3):
             out_slopes[i, m] = 0.0
     everywhere = across = 0.0
-    plain = d0[0]
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    size = d0[0]
     for e in range(dstart[0], dstart[1]):
         j = dpt[e]
         _, down = expand_point(points, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
-        plain += dw[e] * form[2]
-        if fixed and kind != TOWARDS_POINT:
-            least, sharper = across_axis(points, j, view, centre, half)
-            down = max(down, sharper)
-            linear = form[2] + radius * down
-            for i in range(3):
-                linear -= half[i] * abs(slopes[i, 2])
-            if least > linear:
-                out[2] -= level * dw[e] * least
-                continue
         add_scaled(-level * dw[e], form, slopes, out, out_slopes)
         if kind == TOWARDS_POINT and j == anchor:
-            across -= level * dw[e] * down
+            across += level * dw[e] * (_ROUNDING * (form[0] + form[1]) - radius * down)
         else:
-            everywhere -= level * dw[e] * down
-    return everywhere, across, plain
+            size += dw[e] * (form[0] + form[1] + form[2])
+            everywhere -= level * dw[e] * radius * down
+    return everywhere + _ROUNDING * level * size, across
 
 
 @kernel
@@ -182,12 +120,11 @@ def add_side(form, weight, view, matrix, matrix_slopes):
 
 
 @kernel
-def excludes(family, fixed, view, row, below):
+def excludes(family, view, row, below):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
         family: arrays of the family.
-        fixed: whether the axis is the frame's third.
         view: the frame at the box's centre, from ``set_frame``.
         row: the node.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``.
@@ -203,29 +140,28 @@ def excludes(family, fixed, view, row, below):
         matrix[m] = below[0][m]
         for i in range(3):
             slopes[i, m] = below[1][i, m]
-    everywhere, across, _ = below[2]
+    everywhere, across = below[2]
+    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         weight = row[WEIGHT + s]
         up, _ = expand_point(
             points, npt[k], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
         )
-        if fixed and kind == ABOUT_LINE:  # the nodes stay broadside: their form is 1/|a|^2 exactly
-            up = 6.0 / min_distance(points, npt[k], centre, half) ** 4
         add_scaled(weight * nw[k], form, form_slopes, matrix, slopes)
         for m in range(3):
             matrix[m] += weight * n0[k]
-        everywhere += weight * nw[k] * up
+        size = n0[k] + nw[k] * (form[0] + form[1] + form[2])
+        everywhere += weight * (radius * nw[k] * up + _ROUNDING * size)
     if row[FACE] >= 0.0:
         for side in range(2):
             if row[SIDE + side] > 0.0:
                 cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
-                everywhere += add_side(form, row[SIDE + side], view, matrix, slopes)
-    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    matrix[0] += radius * (everywhere + across)
-    matrix[1] += radius * (everywhere + across)
-    matrix[2] += radius * everywhere
-    return negative_at_corners(matrix, slopes, half, fixed)
+                everywhere += radius * add_side(form, row[SIDE + side], view, matrix, slopes)
+    matrix[0] += everywhere + across
+    matrix[1] += everywhere + across
+    matrix[2] += everywhere
+    return negative_at_corners(matrix, slopes, half)
 
 
 @kernel

@@ -1,13 +1,10 @@
-"""Link forms over a box of positions: value, first derivatives and a bound on the second, in a turning frame.
+"""Link forms over a box of positions: value, first derivatives and a bound on the second.
 
-The frame may stand still, turn with the direction to a point (so that the form of that point keeps its null
-along the
-third axis), or turn about the line of two points (so that the third axis stays across both). Along a
-straight line
-through the box's centre the direction to a fixed point turns about a fixed axis, at a rate of at most 1/rho
-and with
-an angular acceleration of at most 1/rho^2; from this the second derivative of ``R^T T R`` is bounded. The
-proof is in the documentation, "The certificate explained" (lemmas 1 and 2).
+The frame may stand still, or turn with the direction to a point, so that the form of that point keeps its
+null along the third axis. Along a straight line through the box's centre that direction turns about a fixed
+axis, at a rate of at most 1/rho and with an angular acceleration of at most 1/rho^2; from this the second
+derivative of ``R^T T R`` is bounded. The proof is in the documentation, "The certificate explained" (lemmas
+1 and 2).
 
 Forms are kept as (xx, yy, zz, xy, xz, yz), in the frame at the box's centre.
 """
@@ -21,11 +18,10 @@ import numpy as np
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.symmetric import tangents
 
-__all__ = ["ABOUT_LINE", "TOWARDS_POINT", "WORLD", "expand_point", "min_distance", "set_frame"]
+__all__ = ["TOWARDS_POINT", "WORLD", "expand_point", "min_distance", "set_frame"]
 
 WORLD = 0
 TOWARDS_POINT = 1
-ABOUT_LINE = 2
 
 
 @kernel
@@ -40,11 +36,10 @@ def min_distance(points, j, centre, half):
 
 
 @kernel
-def set_frame(points, kind, anchor, other, centre, half, basis):
+def set_frame(points, kind, anchor, centre, half, basis):
     """Fill the frame at the centre (columns); return its turning radius there and the least in the box.
 
-    ``kind``: WORLD; TOWARDS_POINT, third column towards ``anchor``; ABOUT_LINE, first column along the line
-    of ``anchor`` and ``other``, third across it and across the way to it.
+    ``kind``: WORLD, or TOWARDS_POINT, third column towards ``anchor``.
     """
     if kind == WORLD:
         for i in range(3):
@@ -53,25 +48,10 @@ def set_frame(points, kind, anchor, other, centre, half, basis):
         return math.inf, math.inf
     a, b, c = np.empty(3), np.empty(3), np.empty(3)
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
-    if kind == TOWARDS_POINT:
-        rho = math.sqrt(x * x + y * y + z * z)
-        c[0], c[1], c[2] = x / rho, y / rho, z / rho
-        tangents(c, a, b)
-        least = min_distance(points, anchor, centre, half)
-    else:
-        for i in range(3):
-            a[i] = points[other, i] - points[anchor, i]
-        norm = math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
-        for i in range(3):
-            a[i] /= norm
-        along = x * a[0] + y * a[1] + z * a[2]
-        x, y, z = along * a[0] - x, along * a[1] - y, along * a[2] - z
-        rho = math.sqrt(x * x + y * y + z * z)
-        b[0], b[1], b[2] = x / rho, y / rho, z / rho
-        c[0] = a[1] * b[2] - a[2] * b[1]
-        c[1] = a[2] * b[0] - a[0] * b[2]
-        c[2] = a[0] * b[1] - a[1] * b[0]
-        least = rho - math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    rho = math.sqrt(x * x + y * y + z * z)
+    c[0], c[1], c[2] = x / rho, y / rho, z / rho
+    tangents(c, a, b)
+    least = min_distance(points, anchor, centre, half)
     for i in range(3):
         basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]
     return rho, least
@@ -82,9 +62,8 @@ def expand_point(points, j, kind, anchor, basis, rho, rho_min, centre, half, for
     """Fill the form of point j at the centre and its derivative along each world axis.
 
     Returns an upper and a lower bound on the second derivative along any unit direction, anywhere in the
-    box. For
-    the anchor of a frame that turns towards it they hold on the first two axes; the third row and column
-    vanish.
+    box. For the anchor of a frame that turns towards it they hold on the first two axes; the third row and
+    column vanish.
     """
     r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
     x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
@@ -104,9 +83,6 @@ def expand_point(points, j, kind, anchor, basis, rho, rho_min, centre, half, for
             u += q0 * z / rho
             v += q1 * z / rho
             w -= (q1 * y + q0 * x) / rho
-        elif kind == ABOUT_LINE:
-            v += q2 * z / rho
-            w -= q2 * y / rho
         dot = x * u + y * v + z * w
         k = 4.0 * dot * i4 * i2
         base = -2.0 * dot * i4

@@ -1,4 +1,4 @@
-"""New multipliers for a node: from the dual at its centre, or by line searches if the axis is fixed."""
+"""New multipliers for a node of a free axis: from the dual at its centre."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
-from nullpose.solve.kernels.expansion import ABOUT_LINE, expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value, inverse_factor
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.node import (
@@ -21,7 +20,7 @@ from nullpose.solve.kernels.node import (
     keep_largest,
 )
 
-__all__ = ["fixed_multipliers", "free_multipliers"]
+__all__ = ["free_multipliers"]
 
 
 @kernel
@@ -160,74 +159,3 @@ def free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
     for i in range(3):
         axis[i] = basis[i, 0] * matrix[0] + basis[i, 1] * matrix[1] + basis[i, 2] * matrix[2]
     return primal / level, reached / level
-
-
-@kernel
-def mixed_value(value, slopes, half):
-    """Return the largest value of a linear function over the box."""
-    return value + half[0] * abs(slopes[0]) + half[1] * abs(slopes[1]) + half[2] * abs(slopes[2])
-
-
-@kernel
-def fixed_multipliers(family, view, row, below, weights):
-    """Fill new multipliers for a fixed axis: the least upper bound of a mix of linear functions.
-
-    Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
-    smallest value at the centre relative to the level.
-    """
-    points, n0, nw, npt = family[:4]
-    kind, anchor, basis, rho, rho_min = view
-    denominator, denominator_slopes, rests = below
-    ratios = nw.shape[0]
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    form, slopes = np.empty(6), np.empty((3, 6))
-    values, gradients = np.empty(ratios), np.empty((ratios, 3))
-    smallest = math.inf
-    base = denominator[2] + radius * rests[0]
-    for k in range(ratios):
-        up, _ = expand_point(points, npt[k], kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
-        if kind == ABOUT_LINE:
-            up = 6.0 / min_distance(points, npt[k], centre, half) ** 4
-        smallest = min(smallest, (n0[k] + nw[k] * form[2]) / (row[LEVEL] * rests[2]))
-        values[k] = base + n0[k] + nw[k] * (form[2] + radius * up)
-        for i in range(3):
-            gradients[k, i] = denominator_slopes[i, 2] + nw[k] * slopes[i, 2]
-    lead = 0
-    for k in range(ratios):
-        weights[k] = 0.0
-        if mixed_value(values[k], gradients[k], half) < mixed_value(values[lead], gradients[lead], half):
-            lead = k
-    weights[lead] = 1.0
-    value = values[lead]
-    gradient = gradients[lead].copy()
-    bound = mixed_value(value, gradient, half)
-    trial = np.empty(3)
-    for _ in range(3):
-        before = bound
-        for k in range(ratios):
-            best_share = 0.0
-            for i in range(4):  # the bound is piecewise linear in the share: its kinks, and the end
-                if i < 3:
-                    change = gradients[k, i] - gradient[i]
-                    share = -gradient[i] / change if change != 0.0 else -1.0
-                else:
-                    share = 1.0
-                if not 0.0 < share <= 1.0:
-                    continue
-                for m in range(3):
-                    trial[m] = gradient[m] + share * (gradients[k, m] - gradient[m])
-                candidate = mixed_value(value + share * (values[k] - value), trial, half)
-                if candidate < bound:
-                    bound, best_share = candidate, share
-            if best_share > 0.0:
-                for m in range(ratios):
-                    weights[m] *= 1.0 - best_share
-                weights[k] += best_share
-                value += best_share * (values[k] - value)
-                for m in range(3):
-                    gradient[m] += best_share * (gradients[k, m] - gradient[m])
-        if bound < 0.0 or bound >= before:
-            break
-    keep_largest(weights, ratios, row)
-    return smallest

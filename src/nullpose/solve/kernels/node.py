@@ -9,6 +9,7 @@ from __future__ import annotations
 from nullpose.solve.kernels.jit import kernel
 
 __all__ = [
+    "AFFINE",
     "ANCHOR",
     "CELL",
     "CENTRE",
@@ -26,6 +27,7 @@ __all__ = [
     "WEIGHT",
     "cell_side",
     "keep_largest",
+    "longest_side",
     "split_axis",
     "split_position",
 ]
@@ -33,7 +35,7 @@ __all__ = [
 CENTRE = 0  # the box's centre, m
 HALF = 3  # its half sides, m
 LEVEL = 6  # the ratio that was excluded
-KIND = 7  # the frame of the test, or FAR or KEPT_OUT
+KIND = 7  # the test: of a free axis (in which frame) or of an affine one, FAR, or KEPT_OUT
 ANCHOR = 8  # the point that a frame turns towards
 FACE = 9  # the cell of axes: its face, or -1
 CELL = 10  # and its rectangle: low and high of two coordinates
@@ -44,6 +46,7 @@ SUPPORT = 8
 WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
 COLUMNS = WEIGHT + SUPPORT
 
+AFFINE = 2
 FAR = 3
 KEPT_OUT = 4
 
@@ -87,12 +90,18 @@ def keep_largest(weights, total, row):
 
 
 @kernel
-def split_position(row, stack, top):
-    """Push the halves of a box, cut across its longest side; return the new top."""
+def longest_side(row):
+    """Return the longest side of a row's box."""
     side = 0
     for i in range(1, 3):
         if row[HALF + i] > row[HALF + side]:
             side = i
+    return side
+
+
+@kernel
+def split_position(row, side, stack, top):
+    """Push the halves of a box, cut across one side; return the new top."""
     for child in range(2):
         for m in range(COLUMNS):
             stack[top, m] = row[m]

@@ -7,39 +7,35 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Scenario
+from nullpose.solve.effort import Effort
 from nullpose.solve.found import Found
-from nullpose.solve.multistart import multistart
 from nullpose.solve.position_search import search_positions
+from nullpose.solve.settle import Settled, settle
 
-__all__ = ["axis_field", "find"]
+__all__ = ["find"]
 
-
-def axis_field(first_m: NDArray[np.float64], second_m: NDArray[np.float64]) -> AxisField:
-    """Return the field ``(s1 - p) x (s2 - p) = s1 x s2 + (s2 - s1) x p`` (paper eq. 3.4, any length).
-
-    Args:
-        first_m: the first node's position, (3,), metres.
-        second_m: the second node's position, (3,), metres.
-    """
-    x, y, z = second_m - first_m
-    matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return AxisField.affine(np.cross(first_m, second_m), matrix)
+_RELAXED = "no proof of its own for other than two nodes: the bound is that of the optimum"
 
 
-def find(scenario: Scenario, *, seed: int) -> Found:
-    """Return the best position found with the axis at maximum gain towards the nodes.
+def find(scenario: Scenario, effort: Effort) -> Settled:
+    """Return the best position with the axis at maximum gain towards the nodes.
 
     For two nodes that is eq. 3.4. For another number the axis maximises the smallest received node power,
-    the jammers ignored; among several such axes, the one that receives least jamming is taken.
+    the jammers ignored; among several such axes, the one that receives least jamming is taken. Its bound is
+    then the optimum's, whose axis is free.
 
     Args:
         scenario: what to solve.
-        seed: seed of the multistart.
+        effort: what it may cost.
     """
     family = build_family(scenario)
     if len(scenario.nodes) == 2:
-        return multistart(family, axis_field(*scenario.node_positions_m), seed=seed)
-    return _find_for_any_number(family, seed=seed)
+        return settle(family, [AxisField.broadside(*scenario.node_positions_m)], effort)
+    found = _find_for_any_number(family, seed=effort.seed)
+    if effort.limits is None:
+        return Settled(found=found)
+    relaxed = settle(family, [AxisField.free()], effort)
+    return Settled(found=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=_RELAXED)
 
 
 def _find_for_any_number(family: Family, *, seed: int) -> Found:

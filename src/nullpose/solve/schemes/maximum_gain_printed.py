@@ -8,18 +8,22 @@ from numpy.typing import NDArray
 from nullpose.family import build_family
 from nullpose.physics import maximum_gain_sinr_as_printed
 from nullpose.scenario import Scenario
+from nullpose.solve.effort import Effort
 from nullpose.solve.found import Found
 from nullpose.solve.position_search import search_positions
+from nullpose.solve.settle import Settled
 
 __all__ = ["find"]
 
+_NO_POSE = "eq. 3.5 as printed is no antenna's, and nothing is proved of it"
 
-def find(scenario: Scenario, *, seed: int) -> Found:
+
+def find(scenario: Scenario, effort: Effort) -> Settled:
     """Return the best position found for eq. 3.5 to the letter.
 
     Args:
         scenario: what to solve; exactly two nodes.
-        seed: seed of the multistart.
+        effort: what it may cost; nothing is proved of this scheme.
     """
 
     def objective(position: NDArray[np.float64]) -> float:
@@ -28,14 +32,14 @@ def find(scenario: Scenario, *, seed: int) -> Found:
         return value if np.isfinite(value) else -np.inf
 
     position_m, log_value, starts, evaluations = search_positions(
-        objective, build_family(scenario), seed=seed
+        objective, build_family(scenario), seed=effort.seed
     )
     first_m, second_m = scenario.node_positions_m - position_m
     axis = np.cross(first_m, second_m)
     if not np.linalg.norm(axis) > 1e-9 * np.linalg.norm(first_m) * np.linalg.norm(second_m):
         # in line with both nodes eq. 3.4 names no axis: any across the line is broadside to both
         axis = np.cross(first_m, np.eye(3)[np.argmin(np.abs(first_m))])
-    return Found(
+    found = Found(
         position_m=position_m,
         axis=axis,
         log_value=log_value,
@@ -45,3 +49,4 @@ def find(scenario: Scenario, *, seed: int) -> Found:
         note="the value is that of eq. 3.5 as printed, whose axis is not a unit vector: "
         "no antenna receives it",
     )
+    return Settled(found=found, reason=_NO_POSE)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve.found import Found
-from nullpose.solve.multistart import multistart
+from nullpose.solve.effort import Effort
+from nullpose.solve.settle import Settled, settle
 
 __all__ = ["find"]
 
 
-def find(scenario: Scenario, *, seed: int) -> Found:
-    """Return the best pose found with the axis free.
+def find(scenario: Scenario, effort: Effort) -> Settled:
+    """Return the best pose with the axis free.
 
     Args:
         scenario: what to solve.
-        seed: seed of the multistart.
+        effort: what it may cost.
     """
-    return multistart(build_family(scenario), AxisField.free(), seed=seed)
+    return settle(build_family(scenario), [AxisField.free()], effort)

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve.found import Found
-from nullpose.solve.multistart import multistart
+from nullpose.solve.effort import Effort
+from nullpose.solve.settle import Settled, settle
 
-__all__ = ["axis_field", "find"]
-
-
-def axis_field() -> AxisField:
-    """Return the field that is vertical everywhere."""
-    return AxisField.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))
+__all__ = ["find"]
 
 
-def find(scenario: Scenario, *, seed: int) -> Found:
-    """Return the best position found with the axis vertical.
+def find(scenario: Scenario, effort: Effort) -> Settled:
+    """Return the best position with the axis vertical.
 
     Args:
         scenario: what to solve.
-        seed: seed of the multistart.
+        effort: what it may cost.
     """
-    return multistart(build_family(scenario), axis_field(), seed=seed)
+    return settle(build_family(scenario), [AxisField.vertical()], effort)

@@ -1,0 +1,237 @@
+"""The test that excludes a box under an affine axis field: a weighted sum that stays negative all over it.
+
+With the axis given by the position, ``G(p) = sum_k lambda_k (N_k(p) - t D(p))`` is a number. Over a box of
+half sides h, ``G <= f + g.x + x^T H x / 2`` with ``|x_i| <= 1`` and every Hessian within bounds. For any
+``mu >= 0`` that makes ``A = diag(mu) - H`` positive definite, ``f + sum(mu) / 2 + g^T A^-1 g / 2`` is an
+upper bound, since ``mu_i (1 - x_i^2) >= 0``: concave directions count in our favour, so that boxes do not
+cluster around a smooth optimum.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.enclosure import JET, link_jet
+from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT, keep_largest
+from nullpose.solve.kernels.symmetric import eigen3
+
+__all__ = ["curved_multipliers", "denominator_jet", "excludes_curved", "impact"]
+
+_SHARES = 5  # sizes of mu that are tried along concave directions
+_LESS = 0.25
+_ROUNDING = 2e-14  # relative to the terms summed: see "The certificate explained"
+
+
+@kernel
+def add_jet(weight, jet, total):
+    """Add a weighted jet to another; radii add up whatever the sign."""
+    for m in range(10):
+        total[m] += weight * jet[m]
+    for m in range(10, 16):
+        total[m] += abs(weight) * jet[m]
+    total[16] += weight * (jet[16] if weight > 0.0 else jet[17])
+    total[17] += weight * (jet[17] if weight > 0.0 else jet[16])
+
+
+@kernel
+def denominator_jet(family, axis_field, row, jet, total):
+    """Fill the jet of ``-t D`` over a row's box; return the size of its terms at the centre."""
+    points, _, _, _, _, d0, dstart, dpt, dw = family
+    for m in range(JET):
+        total[m] = 0.0
+    total[0] = total[16] = total[17] = -row[LEVEL] * d0[0]
+    for e in range(dstart[0], dstart[1]):
+        link_jet(points, dpt[e], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        add_jet(-row[LEVEL] * dw[e], jet, total)
+    return -total[0]
+
+
+@kernel
+def scaled_bound(jet, half, gradient, hessian):
+    """Fill gradient and Hessian in units of the half sides; return the value and the radii's part."""
+    rest = 0.0
+    for i in range(3):
+        gradient[i] = jet[1 + i] * half[i]
+        hessian[i, i] = jet[4 + i] * half[i] * half[i]
+        rest += 0.5 * jet[10 + i] * half[i] * half[i]
+    for e in range(3, 6):
+        i, k = (0 if e < 5 else 1), (1 if e == 3 else 2)
+        hessian[i, k] = hessian[k, i] = jet[4 + e] * half[i] * half[k]
+        rest += jet[10 + e] * half[i] * half[k]
+    return jet[0] + rest
+
+
+@kernel
+def dual_bound(base, gradient, hessian, mu):
+    """Return ``base + sum(mu) / 2 + g^T (diag(mu) - H)^-1 g / 2``, infinity if that is not definite."""
+    a, b, c = mu[0] - hessian[0, 0], mu[1] - hessian[1, 1], mu[2] - hessian[2, 2]
+    d, e, f = -hessian[0, 1], -hessian[0, 2], -hessian[1, 2]
+    minor = a * b - d * d
+    det = c * minor - a * f * f - b * e * e + 2.0 * d * e * f
+    if not (a > 0.0 and minor > 1e-13 * a * b and det > 1e-13 * a * b * c):
+        return math.inf
+    x, y, z = gradient[0], gradient[1], gradient[2]
+    form = x * x * (b * c - f * f) + y * y * (a * c - e * e) + z * z * minor
+    form += 2.0 * (x * y * (e * f - d * c) + x * z * (d * f - b * e) + y * z * (d * e - a * f))
+    return base + 0.5 * (mu[0] + mu[1] + mu[2]) + 0.5 * form / det
+
+
+@kernel
+def box_maximum(jet, half):
+    """Return an upper bound on a jet over its box."""
+    gradient, hessian, mu = np.empty(3), np.empty((3, 3)), np.empty(3)
+    base = scaled_bound(jet, half, gradient, hessian)
+    if not base < 0.0:
+        return base
+    tiny = -1e-6 * base
+    for i in range(3):
+        lean = hessian[i, i]
+        for k in range(3):
+            lean += abs(hessian[i, k]) if k != i else 0.0
+        mu[i] = abs(gradient[i]) + max(0.0, lean) + tiny
+    bound = dual_bound(base, gradient, hessian, mu)
+    if bound < 0.0:
+        return bound
+    # the convex part of the Hessian is paid for in full, the concave part kept
+    values, vectors = np.empty(3), np.empty((3, 3))
+    eigen3(hessian, values, vectors)
+    convex = np.zeros(3)
+    for i in range(3):
+        for k in range(3):
+            part = 0.0
+            for m in range(3):
+                part += max(0.0, values[m]) * vectors[i, m] * vectors[k, m]
+            convex[i] += abs(part)
+    share = 1.0
+    for _ in range(_SHARES):
+        for i in range(3):
+            mu[i] = share * abs(gradient[i]) + convex[i] + tiny
+        bound = min(bound, dual_bound(base, gradient, hessian, mu))
+        if bound < 0.0:
+            break
+        share *= _LESS
+    return bound
+
+
+@kernel
+def excludes_curved(family, axis_field, row, below, size, jet, total):
+    """Return whether the row's multipliers exclude its box; fill the jet of their sum.
+
+    Args:
+        family: arrays of the family.
+        axis_field: (1, offset, matrix).
+        row: the node.
+        below: the jet of ``-t D``.
+        size: the size of its terms.
+        jet: room for a jet.
+        total: output, (JET,).
+    """
+    points, n0, nw, npt = family[:4]
+    if not row[COUNT] > 0.0:
+        return False
+    for m in range(JET):
+        total[m] = below[m]
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        link_jet(points, npt[k], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        total[0], total[17] = total[0] + row[WEIGHT + s] * n0[k], total[17] + row[WEIGHT + s] * n0[k]
+        add_jet(row[WEIGHT + s] * nw[k], jet, total)
+    total[0], total[17] = total[0] + _ROUNDING * size, total[17] + _ROUNDING * size
+    return total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0
+
+
+@kernel
+def impact(total, half):
+    """Return the side whose halving lowers the bound of a sum most."""
+    side = 0
+    most = -1.0
+    for i in range(3):
+        change = abs(total[1 + i]) * half[i] + (abs(total[4 + i]) + total[10 + i]) * half[i] ** 2
+        for e in range(3, 6):
+            j, k = (0 if e < 5 else 1), (1 if e == 3 else 2)
+            if i in (j, k):
+                change += (abs(total[4 + e]) + total[10 + e]) * half[j] * half[k]
+        if change > most:
+            side, most = i, change
+    return side
+
+
+@kernel
+def linear_bound(value, slopes, half):
+    """Return the largest value of a linear function over the box."""
+    return value + half[0] * abs(slopes[0]) + half[1] * abs(slopes[1]) + half[2] * abs(slopes[2])
+
+
+@kernel
+def curved_multipliers(family, axis_field, row, below, jet, weights):
+    """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
+
+    Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
+    smallest ratio at the centre relative to the level.
+    """
+    points, n0, nw, npt = family[:4]
+    ratios = nw.shape[0]
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    values, gradients = np.empty(ratios), np.empty((ratios, 3))
+    smallest = math.inf
+    for k in range(ratios):
+        link_jet(points, npt[k], axis_field, centre, half, jet)
+        smallest = min(smallest, n0[k] + nw[k] * jet[0])
+        values[k] = below[0] + n0[k] + nw[k] * jet[0]
+        for i in range(3):
+            gradients[k, i] = below[1 + i] + nw[k] * jet[1 + i]
+        for e in range(6):
+            i = e if e < 3 else (0 if e < 5 else 1)
+            j = e if e < 3 else (1 if e == 3 else 2)
+            radius = nw[k] * jet[10 + e] + below[10 + e]
+            if i == j:
+                radius = max(0.0, radius + nw[k] * jet[4 + e] + below[4 + e])
+            values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
+    lead = 0
+    for k in range(ratios):
+        weights[k] = 0.0
+        if linear_bound(values[k], gradients[k], half) < linear_bound(values[lead], gradients[lead], half):
+            lead = k
+    weights[lead] = 1.0
+    mix_in(values, gradients, half, lead, weights)
+    keep_largest(weights, ratios, row)
+    return -smallest / below[0]
+
+
+@kernel
+def mix_in(values, gradients, half, lead, weights):
+    """Lower the bound of a mix of linear functions, beginning with one of them, by exact line searches."""
+    ratios = values.shape[0]
+    value = values[lead]
+    gradient = gradients[lead].copy()
+    bound = linear_bound(value, gradient, half)
+    trial = np.empty(3)
+    for _ in range(3):
+        before = bound
+        for k in range(ratios):
+            best_share = 0.0
+            for i in range(4):  # the bound is piecewise linear in the share: its kinks, and the end
+                if i < 3:
+                    change = gradients[k, i] - gradient[i]
+                    share = -gradient[i] / change if change != 0.0 else -1.0
+                else:
+                    share = 1.0
+                if not 0.0 < share <= 1.0:
+                    continue
+                for m in range(3):
+                    trial[m] = gradient[m] + share * (gradients[k, m] - gradient[m])
+                candidate = linear_bound(value + share * (values[k] - value), trial, half)
+                if candidate < bound:
+                    bound, best_share = candidate, share
+            if best_share > 0.0:
+                for m in range(ratios):
+                    weights[m] *= 1.0 - best_share
+                weights[k] += best_share
+                value += best_share * (values[k] - value)
+                for m in range(3):
+                    gradient[m] += best_share * (gradients[k, m] - gradient[m])
+        if bound < 0.0 or bound >= before:
+            break

@@ -1,0 +1,167 @@
+"""A link under an affine axis field over a box of positions: value, gradient, and bounds on the Hessian.
+
+With ``u = o + M p`` and ``r = q - p`` the link is ``f = |u x r|^2 / (|u|^2 |r|^4)``: a quotient of
+polynomials, whose second derivatives are bounded by interval arithmetic. Hessians are kept as
+(xx, yy, zz, xy, xz, yz).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import kernel
+
+__all__ = ["JET", "axis_clearance", "link_jet"]
+
+JET = 18  # value, gradient (3), the Hessian's midpoint (6) and radius (6), least and greatest value
+
+
+@kernel
+def product(a, b):
+    """Return bounds on the product of two numbers of which bounds are given."""
+    w, x, y, z = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
+    return min(min(w, x), min(y, z)), max(max(w, x), max(y, z))
+
+
+@kernel
+def square(a):
+    """Return bounds on the square of a number of which bounds are given."""
+    x, y = a[0] * a[0], a[1] * a[1]
+    return (0.0 if a[0] < 0.0 < a[1] else min(x, y)), max(x, y)
+
+
+@kernel
+def axis_clearance(axis_field, centre, half):
+    """Return the axis field's length at the centre, and by how much it can change in the box."""
+    length = change = 0.0
+    for m in range(3):
+        u, swing = axis_field[1][m], 0.0
+        for i in range(3):
+            u += axis_field[2][m, i] * centre[i]
+            swing += abs(axis_field[2][m, i]) * half[i]
+        length += u * u
+        change += swing * swing
+    return math.sqrt(length), math.sqrt(change)
+
+
+@kernel
+def cross_parts(offset, matrix, r, centre, half, u, c, dc, hc):
+    """Fill the axis at the centre, the three entries of ``u x r``, their gradients and constant Hessians."""
+    for m in range(3):
+        u[m] = offset[m]
+        for i in range(3):
+            u[m] += matrix[m, i] * centre[i]
+    for m in range(3):
+        a, b = (m + 1) % 3, (m + 2) % 3
+        c[m] = u[a] * r[b] - u[b] * r[a]
+        for i in range(3):
+            dc[m, i] = matrix[a, i] * r[b] - matrix[b, i] * r[a]
+        dc[m, b] -= u[a]
+        dc[m, a] += u[b]
+        for i in range(3):
+            for j in range(3):
+                hc[m, i, j] = 0.0
+        for i in range(3):
+            hc[m, i, b] -= matrix[a, i]
+            hc[m, b, i] -= matrix[a, i]
+            hc[m, i, a] += matrix[b, i]
+            hc[m, a, i] += matrix[b, i]
+
+
+@kernel
+def relative_slopes(value, slope, swing, low, high):
+    """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity in [low, high]."""
+    bottom, top = slope - swing, slope + swing
+    return bottom / (high if bottom > 0.0 else low), top / (low if top > 0.0 else high)
+
+
+@kernel
+def link_jet(points, j, axis_field, centre, half, jet):
+    """Fill the jet of point j: value and gradient at the centre, midpoint and radius of the Hessian, bounds.
+
+    Args:
+        points: (m, 3) ground points.
+        j: which of them.
+        axis_field: (1, offset, matrix); not zero in the box.
+        centre: (3,) the box's centre.
+        half: (3,) its half sides; the point is outside the box.
+        jet: output, (JET,).
+    """
+    offset, matrix = axis_field[1], axis_field[2]
+    r, u, c = np.empty(3), np.empty(3), np.empty(3)
+    dc, hc = np.empty((3, 3)), np.empty((3, 3, 3))
+    for i in range(3):
+        r[i] = points[j, i] - centre[i]
+    cross_parts(offset, matrix, r, centre, half, u, c, dc, hc)
+    # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
+    s = s_low = s_high = b = b_low = b_high = 0.0
+    for m in range(3):
+        swing = 0.0
+        for i in range(3):
+            swing += abs(matrix[m, i]) * half[i]
+        low, high = square((r[m] - half[m], r[m] + half[m]))
+        s, s_low, s_high = s + r[m] * r[m], s_low + low, s_high + high
+        low, high = square((u[m] - swing, u[m] + swing))
+        b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
+    sigma, beta, dn = np.empty((3, 2)), np.empty((3, 2)), np.empty((3, 2))
+    boxed = np.empty((3, 4, 2))  # of each entry of u x r: bounds on the value and on the gradient
+    n_low = n_high = n = 0.0
+    for m in range(3):
+        swing = 0.0
+        for i in range(3):
+            bend = 0.0
+            for k in range(3):
+                bend += abs(hc[m, i, k]) * half[k]
+            boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
+            swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
+        boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
+        low, high = square(boxed[m, 0])
+        n, n_low, n_high = n + c[m] * c[m], n_low + low, n_high + high
+    w = 1.0 / (b * s * s)
+    jet[0] = n * w
+    for i in range(3):
+        db = swing = slope = low = high = 0.0
+        for m in range(3):
+            db += 2.0 * matrix[m, i] * u[m]
+            slope += 2.0 * c[m] * dc[m, i]
+            x, y = product(boxed[m, 0], boxed[m, 1 + i])
+            low, high = low + 2.0 * x, high + 2.0 * y
+            for k in range(3):
+                swing += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
+        jet[1 + i] = w * (slope - n * (db / b - 4.0 * r[i] / s))
+        dn[i, 0], dn[i, 1] = low, high
+        sigma[i, 0], sigma[i, 1] = relative_slopes(s, -2.0 * r[i], 2.0 * half[i], s_low, s_high)
+        beta[i, 0], beta[i, 1] = relative_slopes(b, db, swing, b_low, b_high)
+    w_range = (1.0 / (b_high * s_high * s_high), 1.0 / (b_low * s_low * s_low))
+    jet[16], jet[17] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_low)
+    for e in range(6):
+        i = e if e < 3 else (0 if e < 5 else 1)
+        k = e if e < 3 else (1 if e == 3 else 2)
+        first_low = first_high = gram = 0.0
+        for m in range(3):
+            x, y = product(boxed[m, 1 + i], boxed[m, 1 + k]) if i != k else square(boxed[m, 1 + i])
+            first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
+            bent = 2.0 * hc[m, i, k]
+            x, y = bent * boxed[m, 0, 0], bent * boxed[m, 0, 1]
+            first_low, first_high = first_low + min(x, y), first_high + max(x, y)
+            gram += 2.0 * matrix[m, i] * matrix[m, k]
+        slope_i = (-beta[i, 1] - 2.0 * sigma[i, 1], -beta[i, 0] - 2.0 * sigma[i, 0])
+        slope_k = (-beta[k, 1] - 2.0 * sigma[k, 1], -beta[k, 0] - 2.0 * sigma[k, 0])
+        x, y = product(dn[i], slope_k)
+        first_low, first_high = first_low + x, first_high + y
+        x, y = product(dn[k], slope_i)
+        first_low, first_high = first_low + x, first_high + y
+        bb = square(beta[i]) if i == k else product(beta[i], beta[k])
+        ss = square(sigma[i]) if i == k else product(sigma[i], sigma[k])
+        bs, sb = product(beta[i], sigma[k]), product(sigma[i], beta[k])
+        low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
+        high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
+        low -= gram / (b_low if gram > 0.0 else b_high)
+        high -= gram / (b_high if gram > 0.0 else b_low)
+        if i == k:
+            low, high = low - 4.0 / s_low, high - 4.0 / s_high
+        x, y = product((n_low, n_high), (low, high))
+        low, high = product(w_range, (first_low + x, first_high + y))
+        jet[4 + e], jet[10 + e] = 0.5 * (low + high), 0.5 * (high - low)

@@ -1,0 +1,83 @@
+"""Search and proof of one problem: the best pose over one axis field, or over several."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from nullpose.family import AxisField, Family
+from nullpose.solve.effort import Effort
+from nullpose.solve.found import Found
+from nullpose.solve.multistart import multistart
+from nullpose.solve.proof import Proof, Spent, prove
+
+__all__ = ["Settled", "settle"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Settled:
+    """The best pose over all axis fields, and what was proved about each.
+
+    Args:
+        found: the best pose.
+        chosen: index of the axis field that it belongs to.
+        proofs: one for each axis field, in order; empty if none was asked for.
+        upper_bound: no pose under any of the fields exceeds this; None if nothing is proved.
+        reason: why the target gap was not reached, or not aimed at; empty if it was.
+    """
+
+    found: Found
+    chosen: int = 0
+    proofs: tuple[Proof, ...] = ()
+    upper_bound: float | None = None
+    reason: str = ""
+
+    @property
+    def nodes(self) -> int:
+        """Nodes examined by all proofs."""
+        return sum(proof.nodes for proof in self.proofs)
+
+
+def settle(family: Family, fields: Sequence[AxisField], effort: Effort) -> Settled:
+    """Return the best pose over the axis fields, with a proof if the effort allows for one.
+
+    Every field is searched; then it is proved of each that it does not beat the best of all.
+
+    Args:
+        family: the ratios and their domain.
+        fields: the axis fields, one or more.
+        effort: what it may cost.
+
+    Raises:
+        SolveError: no pose reaches every node.
+    """
+    began = time.perf_counter()
+    each = [multistart(family, field, seed=effort.seed, settings=effort.search) for field in fields]
+    chosen = max(range(len(each)), key=lambda i: each[i].log_value)
+    best = each[chosen]
+    proofs: list[Proof] = []
+    reason = ""
+    for i, field in enumerate(fields):
+        if effort.limits is None:
+            break
+        # the level to exclude is that of the best of all; where to look for better poses is this field's
+        start = replace(each[i], log_value=best.log_value)
+        spent = Spent(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
+        proof = prove(family, field, start, effort.limits, on_progress=effort.on_progress, spent=spent)
+        proofs.append(proof)
+        reason = reason or proof.reason
+        if proof.found.log_value > best.log_value:
+            best, chosen = proof.found, i
+    counts = {
+        "starts": sum(found.starts for found in each),
+        "evaluations": sum(found.evaluations for found in each),
+    }
+    return Settled(
+        found=replace(best, **counts),
+        chosen=chosen,
+        proofs=tuple(proofs),
+        upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
+        reason=reason,
+    )
+
