@@ -12,7 +12,6 @@ from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.limits import Limits, default_gap
 from nullpose.solve.multistart import multistart
 from nullpose.solve.proof import Proof, prove
-from nullpose.solve.schemes import vertical, zero_interference
 
 PAPER = "examples/paper.toml"
 
@@ -81,8 +80,8 @@ def test_fixed_axes_are_closed() -> None:
         scenario = apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"])
         family = build_family(scenario)
         fields = (
-            zero_interference.axis_field(scenario.jammer_positions_m[0]),
-            vertical.axis_field(),
+            AxisField.towards(scenario.jammer_positions_m[0]),
+            AxisField.vertical(),
         )
         for axis_field in fields:
             proof = proof_of(family, axis_field, gap=1e-6)

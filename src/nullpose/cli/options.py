@@ -8,7 +8,18 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["JsonOutput", "OutFolder", "Overrides", "ScenarioFile", "SchemeName", "Seed"]
+__all__ = [
+    "Fast",
+    "Gap",
+    "JsonOutput",
+    "NodeLimit",
+    "OutFolder",
+    "Overrides",
+    "ScenarioFile",
+    "SchemeName",
+    "Seed",
+    "TimeLimit",
+]
 
 
 class SchemeName(StrEnum):
@@ -36,6 +47,28 @@ Overrides = Annotated[
 ]
 
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the random starts.")]
+
+Gap = Annotated[
+    float | None,
+    typer.Option(
+        "--gap",
+        metavar="G",
+        help="Relative gap between bound and value at which the proof is done.",
+        show_default="1e-6 to 3 nodes, 1e-4 to 20, else 1e-3",
+    ),
+]
+
+TimeLimit = Annotated[
+    float, typer.Option("--time-limit", metavar="S", help="Seconds after which a proof stops.")
+]
+
+NodeLimit = Annotated[
+    int, typer.Option("--node-limit", metavar="N", help="Boxes after which a proof stops.")
+]
+
+Fast = Annotated[
+    bool, typer.Option("--fast", help="Search only, more thoroughly, and prove nothing.")
+]
 
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 

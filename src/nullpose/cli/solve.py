@@ -2,11 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import JsonOutput, Overrides, ScenarioFile, SchemeName, Seed
+from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.gap_bar import GapBar
+from nullpose.cli.options import (
+    Fast,
+    Gap,
+    JsonOutput,
+    NodeLimit,
+    Overrides,
+    ScenarioFile,
+    SchemeName,
+    Seed,
+    TimeLimit,
+)
 from nullpose.cli.output import compiling_announced, show, show_json
 
 __all__ = ["solve"]
@@ -18,6 +31,10 @@ def solve(
         SchemeName, typer.Option("--scheme", help="How the pose is chosen.")
     ] = SchemeName.OPTIMUM,
     overrides: Overrides = None,
+    gap: Gap = None,
+    time_limit: TimeLimit = 60.0,
+    node_limit: NodeLimit = 10**9,
+    fast: Fast = False,
     seed: Seed = 0,
     null_jammer: Annotated[
         str | None,
@@ -28,19 +45,48 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            "--certificate",
+            metavar="FILE",
+            help="Write the proof here, for `nullpose verify`; compressed if the name ends in .gz.",
+            show_default=False,
+        ),
+    ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Find the best pose for a scenario."""
+    """Find the best pose for a scenario, and prove how far from the best of all it can be."""
     from nullpose.scenario import apply_overrides, load
 
     scenario = apply_overrides(load(file), overrides or [])
+    from nullpose.certificate import write_certificate
+    from nullpose.errors import UsageError
+    from nullpose.solve import certificate_of, default_gap
     from nullpose.solve import solve as solve_scenario
 
-    with compiling_announced():
-        solution = solve_scenario(scenario, scheme.value, seed=seed, null_jammer=null_jammer)
+    if fast and certificate is not None:
+        raise UsageError("--certificate: given with --fast, which proves nothing; leave out one of the two")
+    target = default_gap(len(scenario.nodes)) if gap is None else gap
+    with compiling_announced(), GapBar(target) as bar:
+        solution = solve_scenario(
+            scenario,
+            scheme.value,
+            gap=target,
+            time_limit_s=time_limit,
+            node_limit=node_limit,
+            certify=not fast,
+            seed=seed,
+            null_jammer=null_jammer,
+            on_progress=bar,
+        )
+    if certificate is not None:
+        write_certificate(certificate_of(solution), certificate)
     if json_output:
         show_json(solution.to_dict())
-        return
-    from nullpose.report.tables import solution_view
+    else:
+        from nullpose.report.tables import solution_view
 
-    show(solution_view(solution))
+        show(solution_view(solution))
+    if solution.interrupted:
+        raise typer.Exit(INTERRUPTED)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, compare, not_applicable
+from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, Solution, compare, not_applicable
 
 __all__ = ["Comparison", "compare_all"]
 
@@ -44,18 +44,37 @@ class Comparison:
 
 
 def compare_all(
-    scenario: Scenario, *, seed: int = 0, on_progress: Callable[[int, int], None] | None = None
+    scenario: Scenario,
+    *,
+    gap: float | None = None,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
+    seed: int = 0,
+    on_progress: Callable[[int, int], None] | None = None,
 ) -> Comparison:
     """Return the four cases of the paper for one scenario.
 
     Args:
         scenario: nodes, jammers, receiver and airspace.
+        gap: relative gap at which each proof is done; without it, by the number of nodes.
+        time_limit_s: seconds after which each proof stops.
+        node_limit: boxes after which each proof stops.
+        certify: whether to prove anything.
         seed: the random seed of every solve.
         on_progress: called after each solve with how many are done and how many there are.
     """
     reasons = [(scheme, not_applicable(scenario, scheme)) for scheme in PAPER_SCHEMES]
     return Comparison(
         scenario=scenario,
-        solutions=compare(scenario, seed=seed, on_progress=on_progress),
+        solutions=compare(
+            scenario,
+            gap=gap,
+            time_limit_s=time_limit_s,
+            node_limit=node_limit,
+            certify=certify,
+            seed=seed,
+            on_progress=on_progress,
+        ),
         left_out=tuple((scheme, reason) for scheme, reason in reasons if reason is not None),
     )

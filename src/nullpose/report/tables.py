@@ -10,13 +10,13 @@ from nullpose.physics import Pose, antenna_gain, received_power_w, to_db
 from nullpose.report.comparison import Comparison
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.scenario import Scenario
-from nullpose.solve import Solution
+from nullpose.solve import Objective, Solution, Status
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-__all__ = ["BINDING_RTOL", "binding_nodes", "comparison_view", "solution_view", "status_words"]
+__all__ = ["BINDING_RTOL", "binding_nodes", "bound_words", "comparison_view", "solution_view", "status_words"]
 
 BINDING_RTOL = 1e-6
 """Nodes whose SINR is within this of the smallest all bind, as they do on a kink of the max-min."""
@@ -40,12 +40,41 @@ def status_words(solution: Solution) -> str:
     Args:
         solution: what was found.
     """
-    effort = f"{_count(solution.stats.starts, 'start')}, {solution.stats.wall_s:.2g} s"
-    return f"{solution.status.message}\n{effort}"
+    reason = f": {solution.reason}" if solution.reason else ""
+    effort = [_count(solution.stats.starts, "start")]
+    if solution.stats.boxes:
+        effort.append(_count(solution.stats.boxes, "box", "boxes"))
+    return f"{solution.status.message}{reason}\n{', '.join(effort)}, {solution.stats.wall_s:.2g} s"
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+def bound_words(objective: Objective) -> str:
+    """Return the bound and the gap in words, empty if nothing is proved.
+
+    Args:
+        objective: value and bound.
+    """
+    if objective.upper_bound is None or objective.relative_gap is None:
+        return ""
+    return f"at most {bound_db_text(objective)} dB (relative gap {objective.relative_gap:.1e})"
+
+
+def bound_db_text(objective: Objective, digits: int = 0) -> str:
+    """Return the bound in dB, rounded up, with the decimals that tell it from the value, or so many.
+
+    Args:
+        objective: value and bound.
+        digits: decimals; 0 to choose.
+    """
+    assert objective.upper_bound is not None
+    bound_db = float(to_db(objective.upper_bound))
+    if not digits:
+        apart = max(bound_db - objective.value_db, 1e-12)
+        digits = min(12, max(2, math.ceil(-math.log10(apart)) + 1))
+    return f"{math.ceil(bound_db * 10**digits) / 10**digits:.{digits}f}"
+
+
+def _count(number: int, noun: str, nouns: str = "") -> str:
+    return f"{number} {noun if number == 1 else nouns or noun + 's'}"
 
 
 def _table(title: str, columns: Iterable[str], *, first: str = "") -> Table:
@@ -86,6 +115,8 @@ def solution_view(solution: Solution) -> RenderableType:
     head = Text.assemble((title, "bold"), "\n", (solution.scheme.label, "bold blue"), ": ")
     objective = solution.objective
     head.append(f"smallest SINR {objective.value_db:.7g} dB ({objective.value:.7g})", style="bold")
+    if objective.upper_bound is not None:
+        head.append(f"\n{bound_words(objective)}")
     head.append(f"\n{status_words(solution)}")
     if solution.note:
         head.append(f"\n{solution.note}")
@@ -177,9 +208,21 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     lines += [f"{scheme.label} does not apply: {reason}" for scheme, reason in comparison.left_out]
     if solutions:
         starts = sum(solution.stats.starts for solution in solutions)
-        lines.append(f"Each value is {solutions[0].status.message} ({_count(starts, 'start')} in all).")
+        boxes = sum(solution.stats.boxes for solution in solutions)
+        for status in Status:
+            labels = [s.scheme.label for s in solutions if s.status is status]
+            if labels:
+                who = "All" if len(labels) == len(solutions) else ", ".join(labels)
+                lines.append(f"{who}: {status.message}.")
+        lines += [f"{s.scheme.label}: {s.reason}" for s in solutions if s.reason]
+        work = _count(starts, "start") + (f", {_count(boxes, 'box', 'boxes')}" if boxes else "")
+        lines.append(f"{work} in all")
     lines.append("* binding: the smallest SINR is at this node")
     return Group(table, Text("\n".join(lines)))
+
+
+def _bound_cell(objective: Objective) -> str:
+    return "-" if objective.upper_bound is None else bound_db_text(objective, 7)
 
 
 _Rows = list[tuple[str, list[str]]]
@@ -191,6 +234,7 @@ def _comparison_rows(scenario: Scenario, solutions: Sequence[Solution]) -> list[
     best_db = max((solution.objective.value_db for solution in solutions), default=math.nan)
     value: _Rows = [
         ("smallest SINR (dB)", [f"[bold]{s.objective.value_db:.7f}[/]" for s in solutions]),
+        ("at most (dB)", [_bound_cell(s.objective) for s in solutions]),
         ("smallest SINR", [f"{s.objective.value:.7g}" for s in solutions]),
         ("gap to the best (dB)", [_fixed(best_db - s.objective.value_db, 4) for s in solutions]),
     ]

@@ -2,12 +2,15 @@
 
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.compiling import announce_compiling
-from nullpose.solve.limits import default_gap
+from nullpose.solve.evidence import certificate_of
+from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
 __all__ = [
+    "NODE_LIMIT",
     "PAPER_SCHEMES",
+    "TIME_LIMIT_S",
     "Objective",
     "Scheme",
     "Solution",
@@ -16,6 +19,7 @@ __all__ = [
     "announce_compiling",
     "as_scheme",
     "best_axis",
+    "certificate_of",
     "compare",
     "default_gap",
     "not_applicable",

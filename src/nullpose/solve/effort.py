@@ -11,7 +11,7 @@ from nullpose.solve.multistart import SearchSettings
 __all__ = ["Effort"]
 
 _THOROUGH = SearchSettings()
-_LIGHT = SearchSettings(coarse=24, polished=4, rounds=4, patience=1)
+_LIGHT = SearchSettings(coarse=16, polished=2, rounds=2, patience=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

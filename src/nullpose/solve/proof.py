@@ -20,7 +20,7 @@ FloatArray = NDArray[np.float64]
 
 _DIRECT_NODES = 20_000  # a first try at the target; most problems of the paper's size need a few hundred
 _STAGE = 0.25  # each stage's gap, as a share of the one before
-_FIRST_CHUNK = 512
+_FIRST_CHUNK = 4096  # nodes times ratios
 _CHUNK_S = 0.05
 _MOST_LEAVES = 700_000
 _WIDEST_GAP = 1e6
@@ -84,7 +84,7 @@ class _Run:
         self.deadline = time.perf_counter() + limits.time_limit_s - spent.seconds
         self.node_limit = max(1, limits.node_limit - spent.nodes)
         self.nodes = 0
-        self.chunk = _FIRST_CHUNK
+        self.chunk = max(16, _FIRST_CHUNK // len(family.numerator_point))
         self.proved, self.farthest = _reach(family)
         self.doubt = 0.0
         self.favourite = self._favourite()

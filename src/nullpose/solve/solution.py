@@ -11,7 +11,7 @@ from typing import Any
 
 from nullpose.physics import Link, Pose
 from nullpose.scenario import Scenario
-from nullpose.solve.proof import Proof
+from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.scheme import Scheme
 
 __all__ = ["Objective", "Solution", "Stats", "Status"]
@@ -116,6 +116,11 @@ class Solution:
     def binding_node(self) -> str:
         """Name of the node with the smallest SINR (the first, if several share it to the last digit)."""
         return min(self.links, key=lambda link: link.sinr).node
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended its proof."""
+        return self.reason == INTERRUPT
 
     def to_dict(self) -> dict[str, Any]:
         """Return the solution as plain data for JSON; a number that JSON cannot hold becomes None."""

@@ -1,7 +1,7 @@
 """The first compilation, shared between two processes.
 
-The search is compiled from two halves of about equal weight that do not call each other: the choice of a
-starting axis and the polish. A second process fills the cache with the one while this one compiles the other.
+A second process fills the cache with the choice of a starting axis and the branch and bound, while this one
+compiles the polish and the search around it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
     cache_path = search.stats.cache_path
     if cache_path is None or any(Path(cache_path).glob("search.search-*.nbi")):
         return
-    program = "from nullpose.solve.warming import compile_starting_axis as c; c()"
+    program = "from nullpose.solve.warming import compile_other_half as c; c()"
     try:
         other = subprocess.Popen(
             [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -43,7 +43,7 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
     except OSError:
         return
     try:
-        compile_polish(family, axis_field)
+        compile_search(family, axis_field)
         other.wait(_WAIT_S)
     except subprocess.TimeoutExpired:
         pass
@@ -52,21 +52,26 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
         other.wait()
 
 
-def compile_polish(family: Family, axis_field: AxisField) -> None:
-    """Compile the polish by running no step of it."""
+def compile_search(family: Family, axis_field: AxisField) -> None:
+    """Compile the polish, by running no step of it, and the search, by running no round of it."""
     import numpy as np
 
     from nullpose.solve.kernels.polish import polish
+    from nullpose.solve.kernels.search import cut_box, search
 
     ratios = len(family.numerator_point)
-    position_m, axis = np.full(3, 1e3), np.array([0.0, 0.0, 1.0])
-    polish(family.arrays, family.domain, axis_field.arrays, position_m, axis, 0.1, 0, np.empty(ratios))
+    p, u, z = np.full(3, 1e3), np.array([0.0, 0.0, 1.0]), np.empty(ratios)
+    polish(family.arrays, family.domain, axis_field.arrays, p, u, 0.1, 0, z)
+    cut_box(family.arrays, family.low_m, family.high_m, 0.0, np.empty(3), np.empty(3))
+    none = np.empty((0, 3))
+    search(family.arrays, family.domain, axis_field.arrays, none, np.zeros(3), 1, 0, 0, 0, p, u, z)
 
 
-def compile_starting_axis() -> None:
-    """Compile the choice of a starting axis, on a family of one point; run by the second process."""
+def compile_other_half() -> None:
+    """Compile the choice of a starting axis and the branch and bound; run by the second process."""
     import numpy as np
 
+    from nullpose.solve.kernels import branch, node
     from nullpose.solve.kernels.search import likely_axis
 
     family = Family(
@@ -85,3 +90,8 @@ def compile_starting_axis() -> None:
         keep_out_m=1.0,
     )
     likely_axis(family.arrays, np.array([0.0, 0.0, 10.0]), np.empty(3))
+    row, rows, field = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), AxisField.free()
+    node.keep_largest(np.ones(1), 1, row)
+    p, u = np.empty(3), np.empty(3)
+    none = (0, rows.copy(), 0, 1, p, u)  # no node to work off
+    branch.branch(family.arrays, family.domain, field.arrays, 1.0, 1.0, row, rows, *none)

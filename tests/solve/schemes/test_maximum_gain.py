@@ -7,18 +7,17 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
-from nullpose.family import build_family
+from nullpose.family import AxisField, build_family
 from nullpose.physics import antenna_gain, maximum_gain_axis, maximum_gain_sinr
 from nullpose.solve import Scheme, solve
 from nullpose.solve.kernels.maximum_gain import maximum_gain_value
-from nullpose.solve.schemes.maximum_gain import axis_field
 
 
 def test_the_field_is_broadside(random_scene: Callable) -> None:
     """The affine field is the axis of eq. 3.4, up to length and sign."""
     rng = np.random.default_rng(2)
     one = random_scene(rng, 2, 1)
-    _, offset, matrix = axis_field(*one.node_positions_m).arrays
+    _, offset, matrix = AxisField.broadside(*one.node_positions_m).arrays
     for position in rng.uniform([0.0, 0.0, 10.0], [100.0, 100.0, 30.0], (20, 3)):
         axis = offset + matrix @ position
         parallel = axis @ maximum_gain_axis(one, position) / np.linalg.norm(axis)

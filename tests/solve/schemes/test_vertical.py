@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
+from nullpose.family import AxisField
 from nullpose.physics import sinr
 from nullpose.solve import Scheme, solve
-from nullpose.solve.schemes.vertical import axis_field
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
 def test_the_axis_is_vertical(paper: Callable) -> None:
     """The field is e3 everywhere, and the pose reported is level."""
-    kind, offset, matrix = axis_field().arrays
+    kind, offset, matrix = AxisField.vertical().arrays
     assert kind == 1
     np.testing.assert_array_equal(offset, UP)
     np.testing.assert_array_equal(matrix, np.zeros((3, 3)))

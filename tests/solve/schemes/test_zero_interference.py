@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import differential_evolution
 
 from nullpose.errors import UsageError
-from nullpose.family import build_family
+from nullpose.family import AxisField, build_family
 from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
 from nullpose.scenario import Scenario
 from nullpose.solve import Scheme, solve
-from nullpose.solve.schemes.zero_interference import axis_field, find
+from nullpose.solve.schemes.zero_interference import find
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def three_jammers(scene: Callable) -> Scenario:
 def test_the_field_points_at_the_jammer(paper: Callable) -> None:
     """The affine field is the axis of eq. 3.1, its length left out."""
     jammer = paper(1.0).jammer_positions_m[0]
-    _, offset, matrix = axis_field(jammer).arrays
+    _, offset, matrix = AxisField.towards(jammer).arrays
     for position in np.random.default_rng(1).uniform([-30.0, 0.0, 8.0], [30.0, 50.0, 30.0], (20, 3)):
         axis = offset + matrix @ position
         np.testing.assert_allclose(

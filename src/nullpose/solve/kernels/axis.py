@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polynomial import real_roots
 from nullpose.solve.kernels.symmetric import eigen3
@@ -31,7 +31,7 @@ _MAX_CANDIDATES = 4000
 _FLAT = 1e-10
 
 
-@kernel
+@inner_kernel
 def quartic(a, curve, out):
     """Fill the coefficients of ``v(s)^T A v(s)`` for ``v(s) = c0 + c1 s + c2 s^2``."""
     out[0] = bilinear(a, curve[0], curve[0])
@@ -41,7 +41,7 @@ def quartic(a, curve, out):
     out[4] = bilinear(a, curve[2], curve[2])
 
 
-@kernel
+@inner_kernel
 def equal_cone(difference, curves):
     """Fill the curves, each (3, 3), whose traces over s in [-1, 1] cover ``v^T B v = 0``; return how many."""
     matrix = np.empty((3, 3))
@@ -86,7 +86,7 @@ def equal_cone(difference, curves):
     return 2
 
 
-@kernel
+@inner_kernel
 def add_candidate(v, forms, working, members, candidates, values, count, floor):
     """Append a direction whose smallest form over the working set exceeds ``floor``; return the new count."""
     norm = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
@@ -105,7 +105,7 @@ def add_candidate(v, forms, working, members, candidates, values, count, floor):
     return count + 1
 
 
-@kernel
+@inner_kernel
 def add_pair(forms, working, members, i, j, candidates, values, count, floor):
     """Append the candidates on which forms i and j of the working set are equal."""
     difference = forms[working[i]] - forms[working[j]]
@@ -143,7 +143,7 @@ def add_pair(forms, working, members, i, j, candidates, values, count, floor):
     return count
 
 
-@kernel
+@inner_kernel
 def add_single(forms, working, members, i, candidates, values, count, floor):
     """Append the top eigenvector of form i of the working set."""
     a = forms[working[i]]
@@ -154,7 +154,7 @@ def add_single(forms, working, members, i, candidates, values, count, floor):
     return add_candidate(vectors[:, 0].copy(), forms, working, members, candidates, values, count, floor)
 
 
-@kernel
+@inner_kernel
 def largest_eigenvalue(a):
     """Return the largest eigenvalue of a form kept as six numbers (closed form; a guide, not a bound)."""
     mean = (a[0] + a[1] + a[2]) / 3.0
@@ -168,7 +168,7 @@ def largest_eigenvalue(a):
     return mean + 2.0 * spread * math.cos(math.acos(half) / 3.0)
 
 
-@kernel
+@inner_kernel
 def spread_axis(forms, axis):
     """Fill the best of some directions spread evenly over a hemisphere; return its smallest form."""
     best = -math.inf
@@ -255,7 +255,7 @@ def best_axis_of_forms(forms, axis):
     return best
 
 
-@kernel
+@inner_kernel
 def whiten(forms, denominator, back, out):
     """Fill ``B A_k B`` with ``B = D^(-1/2)`` kept in ``back``, so that ratios become plain forms."""
     d = denominator

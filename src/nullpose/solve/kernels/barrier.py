@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve
 
 __all__ = ["barrier_value", "bent_step", "best_level", "newton_step", "residual", "update_duals"]
@@ -121,7 +121,7 @@ def newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, facto
     return slope
 
 
-@kernel
+@inner_kernel
 def bent_step(f, t, new_f, slopes, z, factor, n, scale, step, out):
     """Fill a step that allows for the curvature met: Newton's, with the linearisation's errors put in.
 
@@ -142,7 +142,7 @@ def bent_step(f, t, new_f, slopes, z, factor, n, scale, step, out):
         out[i] += scale * step[i]
 
 
-@kernel
+@inner_kernel
 def update_duals(gaps, values, rates, used, step, n, scale, mu, duals):
     """Take a dual step: ``z += scale (mu / gap - z - z / gap * (a . step))`` for each constraint in use.
 

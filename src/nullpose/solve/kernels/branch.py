@@ -15,11 +15,12 @@ from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, e
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, expand_denominator, out_of_reach
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
     AFFINE,
     ANCHOR,
+    BALL,
     CENTRE,
     COLUMNS,
     COUNT,
@@ -28,8 +29,10 @@ from nullpose.solve.kernels.node import (
     INDEX,
     KIND,
     LEVEL,
+    NU,
     WEIGHT,
     longest_side,
+    reaching_ball,
     split_axis,
     split_position,
 )
@@ -48,12 +51,12 @@ _BETTER = 3
 
 _COARSENESS = 8.0  # how far a duality gap must outweigh a box's size before axes are split
 _STRONG = 0.5  # an interferer this strong, in units of the noise, is worth a frame that turns with it
-_CLOSE = 0.2  # boxes nearer to a point than this share of their radius are split unseen
+_CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 
 
-@kernel
+@inner_kernel
 def strongest_point(family, centre):
     """Return the denominators' point that is received most strongly at the centre, and how strongly."""
     points, dpt, dw = family[0], family[7], family[8]
@@ -68,7 +71,7 @@ def strongest_point(family, centre):
     return anchor, strongest
 
 
-@kernel
+@inner_kernel
 def is_pose(domain, centre):
     """Return whether a box's centre is a position of the domain."""
     low, high, keep_points, keep_radius = domain
@@ -83,7 +86,7 @@ def is_pose(domain, centre):
     return inside
 
 
-@kernel
+@inner_kernel
 def examine(family, domain, axis_field, best, favourite, row, weights, axis):
     """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
@@ -101,6 +104,7 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
         nearest = min(nearest, min_distance(family[0], j, row[CENTRE:HALF], half))
     if not nearest > _CLOSE * radius:
         return _BY_POSITION, side, 0
+    row[BALL], row[NU] = reaching_ball(domain[2], domain[3], row), 0.0
     if axis_field[0] == 1:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
@@ -111,7 +115,7 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
     return verdict, side, sought
 
 
-@kernel
+@inner_kernel
 def examine_free(family, domain, best, favourite, row, nearest, weights, axis, is_free):
     """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
@@ -125,25 +129,25 @@ def examine_free(family, domain, best, favourite, row, nearest, weights, axis, i
     rests = expand_denominator(family, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, view, row, below):
+    if excludes(family, domain, view, row, below):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
-        for m in range(COUNT, COLUMNS):
+        for m in range(COUNT, BALL):
             row[m] = favourite[m]
-        if excludes(family, view, row, below):
+        if excludes(family, domain, view, row, below):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached = free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
     if is_free and reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, centre):
         return _BETTER, 1
-    if excludes(family, view, row, below):
+    if primal < 1.0 and excludes(family, domain, view, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell is in force
     split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0)
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
 
-@kernel
+@inner_kernel
 def lone_ratio(family, row, denominator):
     """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     points, n0, nw, npt = family[:4]
@@ -155,7 +159,7 @@ def lone_ratio(family, row, denominator):
     return False
 
 
-@kernel
+@inner_kernel
 def examine_affine(family, domain, axis_field, best, favourite, row, weights, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half = row[HALF:LEVEL]
@@ -164,11 +168,11 @@ def examine_affine(family, domain, axis_field, best, favourite, row, weights, ax
     row[KIND] = AFFINE
     if lone_ratio(family, row, below[17]):
         return _EXCLUDED, 0, 0
-    if excludes_curved(family, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
         return _EXCLUDED, 0, 0
-    for m in range(COUNT, COLUMNS):
+    for m in range(COUNT, BALL):
         row[m] = favourite[m]
-    if excludes_curved(family, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
         return _EXCLUDED, 0, 0
     reached = curved_multipliers(family, axis_field, row, below, jet, weights)
     if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
@@ -177,7 +181,7 @@ def examine_affine(family, domain, axis_field, best, favourite, row, weights, ax
             for i in range(3):
                 axis[m] += axis_field[2][m, i] * row[CENTRE + i]
         return _BETTER, 0, 1
-    if excludes_curved(family, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
         return _EXCLUDED, 0, 1
     return _BY_POSITION, impact(total, half), 1
 

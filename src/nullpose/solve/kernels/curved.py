@@ -14,8 +14,19 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.enclosure import JET, link_jet
-from nullpose.solve.kernels.jit import kernel
-from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT, keep_largest
+from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.node import (
+    BALL,
+    CENTRE,
+    COUNT,
+    HALF,
+    INDEX,
+    LEVEL,
+    NU,
+    WEIGHT,
+    ball_multiplier,
+    keep_largest,
+)
 from nullpose.solve.kernels.symmetric import eigen3
 
 __all__ = ["curved_multipliers", "denominator_jet", "excludes_curved", "impact"]
@@ -25,7 +36,7 @@ _LESS = 0.25
 _ROUNDING = 2e-14  # relative to the terms summed: see "The certificate explained"
 
 
-@kernel
+@inner_kernel
 def add_jet(weight, jet, total):
     """Add a weighted jet to another; radii add up whatever the sign."""
     for m in range(10):
@@ -36,7 +47,7 @@ def add_jet(weight, jet, total):
     total[17] += weight * (jet[17] if weight > 0.0 else jet[16])
 
 
-@kernel
+@inner_kernel
 def denominator_jet(family, axis_field, row, jet, total):
     """Fill the jet of ``-t D`` over a row's box; return the size of its terms at the centre."""
     points, _, _, _, _, d0, dstart, dpt, dw = family
@@ -49,7 +60,7 @@ def denominator_jet(family, axis_field, row, jet, total):
     return -total[0]
 
 
-@kernel
+@inner_kernel
 def scaled_bound(jet, half, gradient, hessian):
     """Fill gradient and Hessian in units of the half sides; return the value and the radii's part."""
     rest = 0.0
@@ -64,7 +75,7 @@ def scaled_bound(jet, half, gradient, hessian):
     return jet[0] + rest
 
 
-@kernel
+@inner_kernel
 def dual_bound(base, gradient, hessian, mu):
     """Return ``base + sum(mu) / 2 + g^T (diag(mu) - H)^-1 g / 2``, infinity if that is not definite."""
     a, b, c = mu[0] - hessian[0, 0], mu[1] - hessian[1, 1], mu[2] - hessian[2, 2]
@@ -116,14 +127,15 @@ def box_maximum(jet, half):
     return bound
 
 
-@kernel
-def excludes_curved(family, axis_field, row, below, size, jet, total):
+@inner_kernel
+def excludes_curved(family, domain, axis_field, row, below, size, jet, total):
     """Return whether the row's multipliers exclude its box; fill the jet of their sum.
 
     Args:
         family: arrays of the family.
+        domain: (low, high, keep-out points, keep-out radius).
         axis_field: (1, offset, matrix).
-        row: the node.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: the jet of ``-t D``.
         size: the size of its terms.
         jet: room for a jet.
@@ -140,10 +152,26 @@ def excludes_curved(family, axis_field, row, below, size, jet, total):
         total[0], total[17] = total[0] + row[WEIGHT + s] * n0[k], total[17] + row[WEIGHT + s] * n0[k]
         add_jet(row[WEIGHT + s] * nw[k], jet, total)
     total[0], total[17] = total[0] + _ROUNDING * size, total[17] + _ROUNDING * size
-    return total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0
+    row[NU] = 0.0
+    if total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
+        return True
+    ball = int(row[BALL])
+    if ball < 0:
+        return False
+    row[NU] = ball_multiplier(domain[2], ball, total[1:4], row)
+    if not row[NU] > 0.0:
+        return False
+    n2 = 0.0
+    for i in range(3):
+        n = row[CENTRE + i] - domain[2][ball, i]
+        n2 += n * n
+        total[1 + i] += 2.0 * row[NU] * n
+        total[4 + i] += 2.0 * row[NU]
+    total[0] += row[NU] * (n2 - domain[3] ** 2 * (1.0 - 1e-12))
+    return box_maximum(total, row[HALF:LEVEL]) < 0.0
 
 
-@kernel
+@inner_kernel
 def impact(total, half):
     """Return the side whose halving lowers the bound of a sum most."""
     side = 0
@@ -159,13 +187,13 @@ def impact(total, half):
     return side
 
 
-@kernel
+@inner_kernel
 def linear_bound(value, slopes, half):
     """Return the largest value of a linear function over the box."""
     return value + half[0] * abs(slopes[0]) + half[1] * abs(slopes[1]) + half[2] * abs(slopes[2])
 
 
-@kernel
+@inner_kernel
 def curved_multipliers(family, axis_field, row, below, jet, weights):
     """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
 
@@ -196,12 +224,12 @@ def curved_multipliers(family, axis_field, row, below, jet, weights):
         if linear_bound(values[k], gradients[k], half) < linear_bound(values[lead], gradients[lead], half):
             lead = k
     weights[lead] = 1.0
-    mix_in(values, gradients, half, lead, weights)
+    mix_in(values, gradients, half, np.int64(lead), weights)
     keep_largest(weights, ratios, row)
     return -smallest / below[0]
 
 
-@kernel
+@inner_kernel
 def mix_in(values, gradients, half, lead, weights):
     """Lower the bound of a mix of linear functions, beginning with one of them, by exact line searches."""
     ratios = values.shape[0]

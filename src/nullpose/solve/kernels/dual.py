@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, copy_into
 
 __all__ = ["dual_multipliers", "top_eigenvector"]
@@ -86,7 +86,7 @@ def inverse(u, w):
     return det
 
 
-@kernel
+@inner_kernel
 def positive_definite(u):
     """Return whether a form is positive definite, by its leading minors."""
     minor = u[0] * u[1] - u[3] * u[3]
@@ -94,7 +94,7 @@ def positive_definite(u):
     return u[0] > 0.0 and minor > 0.0 and det > 0.0
 
 
-@kernel
+@inner_kernel
 def fill_rows(forms, count, matrix, rows, value):
     """Fill each form's coordinates in the trace-free basis, its share in the level, and its value."""
     for k in range(forms.shape[0]):
@@ -109,7 +109,7 @@ def fill_rows(forms, count, matrix, rows, value):
         value[k] += 2.0 * (a[3] * matrix[3] + a[4] * matrix[4] + a[5] * matrix[5])
 
 
-@kernel
+@inner_kernel
 def barrier_derivatives(matrix, rows, slacks, mu, grad, hess):
     """Fill the gradient and the lower half of minus the Hessian of ``s + mu (log det U + sum log slack)``."""
     w, p = np.empty(6), np.empty((5, 3, 3))
@@ -143,7 +143,7 @@ def barrier_derivatives(matrix, rows, slacks, mu, grad, hess):
                 hess[i, j] += second * rows[k, i] * rows[k, j]
 
 
-@kernel
+@inner_kernel
 def feasible_step(matrix, slacks, changes, way, trial):
     """Return the largest tried share of a step that stays inside; fill the matrix there. Zero: none does."""
     step = 1.0
@@ -200,10 +200,10 @@ def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, 
         for k in range(total):
             slacks[k] = value[k] + s * rows[k, 5]
         barrier_derivatives(matrix, rows, slacks, mu, grad, hess)
-        if not cholesky_factor(hess, 6):
+        if not cholesky_factor(hess, np.int64(6)):
             break
         copy_into(grad, way)
-        cholesky_solve(hess, 6, way)
+        cholesky_solve(hess, np.int64(6), way)
         decrement = 0.0
         for i in range(6):
             decrement += grad[i] * way[i]

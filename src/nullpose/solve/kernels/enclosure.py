@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["JET", "axis_clearance", "link_jet"]
 
@@ -46,7 +46,7 @@ def axis_clearance(axis_field, centre, half):
     return math.sqrt(length), math.sqrt(change)
 
 
-@kernel
+@inner_kernel
 def cross_parts(offset, matrix, r, centre, half, u, c, dc, hc):
     """Fill the axis at the centre, the three entries of ``u x r``, their gradients and constant Hessians."""
     for m in range(3):
@@ -70,7 +70,7 @@ def cross_parts(offset, matrix, r, centre, half, u, c, dc, hc):
             hc[m, a, i] += matrix[b, i]
 
 
-@kernel
+@inner_kernel
 def relative_slopes(value, slope, swing, low, high):
     """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity in [low, high]."""
     bottom, top = slope - swing, slope + swing
@@ -117,7 +117,7 @@ def link_jet(points, j, axis_field, centre, half, jet):
             boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
             swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
         boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
-        low, high = square(boxed[m, 0])
+        low, high = square((boxed[m, 0, 0], boxed[m, 0, 1]))
         n, n_low, n_high = n + c[m] * c[m], n_low + low, n_high + high
     w = 1.0 / (b * s * s)
     jet[0] = n * w
@@ -126,7 +126,7 @@ def link_jet(points, j, axis_field, centre, half, jet):
         for m in range(3):
             db += 2.0 * matrix[m, i] * u[m]
             slope += 2.0 * c[m] * dc[m, i]
-            x, y = product(boxed[m, 0], boxed[m, 1 + i])
+            x, y = product((boxed[m, 0, 0], boxed[m, 0, 1]), (boxed[m, 1 + i, 0], boxed[m, 1 + i, 1]))
             low, high = low + 2.0 * x, high + 2.0 * y
             for k in range(3):
                 swing += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
@@ -141,7 +141,8 @@ def link_jet(points, j, axis_field, centre, half, jet):
         k = e if e < 3 else (1 if e == 3 else 2)
         first_low = first_high = gram = 0.0
         for m in range(3):
-            x, y = product(boxed[m, 1 + i], boxed[m, 1 + k]) if i != k else square(boxed[m, 1 + i])
+            first, second = (boxed[m, 1 + i, 0], boxed[m, 1 + i, 1]), (boxed[m, 1 + k, 0], boxed[m, 1 + k, 1])
+            x, y = product(first, second) if i != k else square(first)
             first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
             bent = 2.0 * hc[m, i, k]
             x, y = bent * boxed[m, 0, 0], bent * boxed[m, 0, 1]
@@ -149,13 +150,15 @@ def link_jet(points, j, axis_field, centre, half, jet):
             gram += 2.0 * matrix[m, i] * matrix[m, k]
         slope_i = (-beta[i, 1] - 2.0 * sigma[i, 1], -beta[i, 0] - 2.0 * sigma[i, 0])
         slope_k = (-beta[k, 1] - 2.0 * sigma[k, 1], -beta[k, 0] - 2.0 * sigma[k, 0])
-        x, y = product(dn[i], slope_k)
+        x, y = product((dn[i, 0], dn[i, 1]), slope_k)
         first_low, first_high = first_low + x, first_high + y
-        x, y = product(dn[k], slope_i)
+        x, y = product((dn[k, 0], dn[k, 1]), slope_i)
         first_low, first_high = first_low + x, first_high + y
-        bb = square(beta[i]) if i == k else product(beta[i], beta[k])
-        ss = square(sigma[i]) if i == k else product(sigma[i], sigma[k])
-        bs, sb = product(beta[i], sigma[k]), product(sigma[i], beta[k])
+        beta_i, beta_k = (beta[i, 0], beta[i, 1]), (beta[k, 0], beta[k, 1])
+        sigma_i, sigma_k = (sigma[i, 0], sigma[i, 1]), (sigma[k, 0], sigma[k, 1])
+        bb = square(beta_i) if i == k else product(beta_i, beta_k)
+        ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
+        bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
         low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
         high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
         low -= gram / (b_low if gram > 0.0 else b_high)

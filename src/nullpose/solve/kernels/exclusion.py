@@ -12,10 +12,12 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.dual import top_eigenvector
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, expand_point, min_distance
-from nullpose.solve.kernels.forms import congruence
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.forms import congruence, form_value
+from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
+    BALL,
     CELL,
     CENTRE,
     COUNT,
@@ -25,8 +27,10 @@ from nullpose.solve.kernels.node import (
     INDEX,
     KEPT_OUT,
     LEVEL,
+    NU,
     SIDE,
     WEIGHT,
+    ball_multiplier,
     cell_side,
 )
 
@@ -36,7 +40,7 @@ _ROUNDING = 2e-14  # relative to the terms summed: a hundred units in the last p
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
-@kernel
+@inner_kernel
 def negative_definite(a0, a1, a2, a3, a4, a5):
     """Return whether a form is negative definite, by the leading minors of its negative."""
     minor = a0 * a1 - a3 * a3
@@ -44,7 +48,7 @@ def negative_definite(a0, a1, a2, a3, a4, a5):
     return a0 < 0.0 and minor > _DEFINITE * a0 * a1 and det > -_DEFINITE * a0 * a1 * a2
 
 
-@kernel
+@inner_kernel
 def negative_at_corners(matrix, slopes, half):
     """Return whether the linear matrix is negative definite at all eight corners."""
     for corner in range(8):
@@ -63,7 +67,7 @@ def negative_at_corners(matrix, slopes, half):
     return True
 
 
-@kernel
+@inner_kernel
 def add_scaled(weight, form, slopes, matrix, matrix_slopes):
     """Add a weighted form and its slopes to a matrix and its slopes."""
     for m in range(6):
@@ -72,7 +76,7 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
             matrix_slopes[i, m] += weight * slopes[i, m]
 
 
-@kernel
+@inner_kernel
 def expand_denominator(family, level, view, centre, half, out, out_slopes):
     """Fill ``-t D`` and its slopes; return its remainders, isotropic and on the first two axes."""
     points, _, _, _, _, d0, dstart, dpt, dw = family
@@ -97,7 +101,7 @@ def expand_denominator(family, level, view, centre, half, out, out_slopes):
     return everywhere + _ROUNDING * level * size, across
 
 
-@kernel
+@inner_kernel
 def add_side(form, weight, view, matrix, matrix_slopes):
     """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
     kind, _, basis, rho, rho_min = view
@@ -119,14 +123,15 @@ def add_side(form, weight, view, matrix, matrix_slopes):
     return weight * 2.4143 * math.sqrt(2.0 * size) / (rho_min * rho_min)
 
 
-@kernel
-def excludes(family, view, row, below):
+@inner_kernel
+def excludes(family, domain, view, row, below):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
         family: arrays of the family.
+        domain: (low, high, keep-out points, keep-out radius).
         view: the frame at the box's centre, from ``set_frame``.
-        row: the node.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``.
     """
     points, n0, nw, npt = family[:4]
@@ -161,10 +166,36 @@ def excludes(family, view, row, below):
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
-    return negative_at_corners(matrix, slopes, half)
+    row[NU] = 0.0
+    if negative_at_corners(matrix, slopes, half):
+        return True
+    ball = int(row[BALL])
+    return ball >= 0 and excludes_outside(domain, ball, row, matrix, slopes)
 
 
-@kernel
+@inner_kernel
+def excludes_outside(domain, ball, row, matrix, slopes):
+    """Return whether the matrix is negative where the box is outside a ball; fill the multiplier of that."""
+    keep_points, keep_radius = domain[2], domain[3]
+    v, gradient = np.empty(3), np.empty(3)
+    top_eigenvector(matrix, v)
+    for i in range(3):
+        gradient[i] = form_value(slopes, i, v)
+    row[NU] = ball_multiplier(keep_points, ball, gradient, row)
+    if not row[NU] > 0.0:
+        return False
+    rest = -(keep_radius**2) * (1.0 - 1e-12)
+    for i in range(3):
+        n = row[CENTRE + i] - keep_points[ball, i]
+        rest += n * n + row[HALF + i] ** 2
+        for m in range(3):
+            slopes[i, m] += 2.0 * row[NU] * n
+    for m in range(3):
+        matrix[m] += row[NU] * rest
+    return negative_at_corners(matrix, slopes, row[HALF:LEVEL])
+
+
+@inner_kernel
 def out_of_reach(family, keep_points, keep_radius, row):
     """Return the kind of a box that needs no multipliers, too far or inside a keep-out ball, or -1."""
     points, n0, nw, npt, den, d0 = family[:6]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor"]
 
@@ -66,7 +66,7 @@ def inverse_factor(a, out):
     out[0, 2] = (l10 * l21 / l11 - l20) / (l00 * l22)
 
 
-@kernel
+@inner_kernel
 def fill_form(points, j, p, weight, isotropic, out):
     """Add ``weight * T(q_j - p)`` and ``isotropic * I`` to a form of six numbers."""
     x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]

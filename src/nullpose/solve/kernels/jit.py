@@ -10,7 +10,7 @@ from typing import Any
 
 from numba import njit
 
-__all__ = ["kernel"]
+__all__ = ["inner_kernel", "kernel"]
 
 # without the wrapper that C callbacks would use, a tenth less is compiled
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
@@ -22,10 +22,19 @@ def kernel(function: Callable[..., Any]) -> Any:
     Where no folder can hold a cache (a read-only installation without a home), it is compiled in every
     process.
     """
+    return _compiled(function, _OPTIONS)
+
+
+def inner_kernel(function: Callable[..., Any]) -> Any:
+    """Return a kernel that only other kernels can call: a tenth less is compiled without its Python wrapper."""
+    return _compiled(function, _OPTIONS | {"no_cpython_wrapper": True})
+
+
+def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     try:
-        dispatcher = njit(cache=True, **_OPTIONS)(function)
+        dispatcher = njit(cache=True, **options)(function)
     except RuntimeError:  # numba's word for "no locator available"
-        return njit(**_OPTIONS)(function)
+        return njit(**options)(function)
     if dispatcher is not function:  # numba hands it back as it is where NUMBA_DISABLE_JIT is set
         _drop_outdated(dispatcher.stats.cache_path)
     return dispatcher

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.solve.kernels.chart import axis_at, chart, domain_slacks, move, reduce_hessian, turning
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.links import derivatives, min_log_ratio
 from nullpose.solve.kernels.symmetric import copy_into, gauss_solve
 
@@ -16,7 +16,7 @@ _MOST_ACTIVE = 6
 _STEPS = 6
 
 
-@kernel
+@inner_kernel
 def active_set(domain, z, zs, used, free, length, q, held, active):
     """Put the position on the faces that hold it; fill the free coordinates and active ratios.
 
@@ -43,7 +43,7 @@ def active_set(domain, z, zs, used, free, length, q, held, active):
     return count
 
 
-@kernel
+@inner_kernel
 def fill_equations(f, grads, h, jacobian, active, count, multipliers, t, n, system, rhs):
     """Fill Newton's system: no slope in free variables, multipliers summing to one, ratios at t."""
     size = n + 1 + count
@@ -70,7 +70,7 @@ def fill_equations(f, grads, h, jacobian, active, count, multipliers, t, n, syst
     return size
 
 
-@kernel
+@inner_kernel
 def land(family, domain, axis_field, p, u, z, zs, used, free, length, best, best_p, best_u, multipliers):
     """Return the best smallest log ratio after solving the equations of the active set.
 

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["derivatives", "log_ratios", "min_log_ratio"]
 
@@ -53,7 +53,7 @@ def min_log_ratio(family, p, u, log_denominators, out):
     return smallest
 
 
-@kernel
+@inner_kernel
 def add_form(points, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u) to ``grad`` and, if asked for, ``hess``.
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from nullpose.solve.kernels.axis import best_axis_of_forms
 from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.symmetric import tangents
 
@@ -23,7 +23,7 @@ __all__ = ["maximum_gain_value"]
 _TIE = 1e-11
 
 
-@kernel
+@inner_kernel
 def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
     """Fill the quietest axis across ``normal`` among those whose forms all reach ``level``."""
     a, b, v = np.empty(3), np.empty(3), np.empty(3)

@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
 from nullpose.solve.kernels.forms import congruence, form_value, inverse_factor
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
     CELL,
     CENTRE,
@@ -22,8 +22,10 @@ from nullpose.solve.kernels.node import (
 
 __all__ = ["free_multipliers"]
 
+_MIXES = 6
 
-@kernel
+
+@inner_kernel
 def plain_form(points, j, basis, centre, weight, isotropic, out):
     """Fill ``isotropic I + weight T`` for point j seen from the centre, in the frame."""
     r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
@@ -38,7 +40,7 @@ def plain_form(points, j, basis, centre, weight, isotropic, out):
     out[3], out[4], out[5] = -f * x * y, -f * x * z, -f * y * z
 
 
-@kernel
+@inner_kernel
 def centre_forms(family, basis, row, level, denominator, forms, back):
     """Fill the ratios' forms at the centre, whitened by the denominator; return the number of sides."""
     points, n0, nw, npt = family[:4]
@@ -60,7 +62,7 @@ def centre_forms(family, basis, row, level, denominator, forms, back):
     return 2
 
 
-@kernel
+@inner_kernel
 def cell_start(basis, back, row, start):
     """Fill a positive definite matrix of unit trace inside the row's cell, in whitened coordinates."""
     for m in range(6):
@@ -90,13 +92,16 @@ def cell_start(basis, back, row, start):
             start[m] += 0.2 * w[i] * w[j] / norm
 
 
-@kernel
+@inner_kernel
 def two_multipliers(first, second, v):
     """Return the weight of the first of two forms that makes their mix's largest eigenvalue least."""
     low, high = 0.0, 1.0
+    slope_low = slope_high = 0.0
     mix = np.empty(6)
-    for _ in range(16):
-        weight = 0.5 * (low + high)
+    for turn in range(_MIXES):  # the slope rises with the weight: its ends, then the Illinois rule
+        weight = 0.0 if turn == 0 else 1.0
+        if turn > 1:
+            weight = low - (high - low) * slope_low / (slope_high - slope_low)
         for m in range(6):
             mix[m] = weight * first[m] + (1.0 - weight) * second[m]
         top_eigenvector(mix, v)
@@ -105,14 +110,20 @@ def two_multipliers(first, second, v):
             i = m if m < 3 else (0 if m < 5 else 1)
             j = m if m < 3 else (1 if m == 3 else 2)
             slope += (1.0 if m < 3 else 2.0) * (first[m] - second[m]) * v[i] * v[j]
+        if turn == 0 and slope >= 0.0:
+            return 0.0
+        if turn == 1 and slope <= 0.0:
+            return 1.0
         if slope > 0.0:
-            high = weight
+            high, slope_high = weight, slope
+            slope_low *= 0.5 if turn > 2 else 1.0
         else:
-            low = weight
-    return 0.5 * (low + high)
+            low, slope_low = weight, slope
+            slope_high *= 0.5 if turn > 2 else 1.0
+    return low - (high - low) * slope_low / (slope_high - slope_low)
 
 
-@kernel
+@inner_kernel
 def smallest_form(forms, count, v):
     """Return the smallest of the first ``count`` forms at a vector."""
     smallest = math.inf
@@ -121,7 +132,7 @@ def smallest_form(forms, count, v):
     return smallest
 
 
-@kernel
+@inner_kernel
 def free_multipliers(family, basis, row, denominator, coarseness, weights, axis):
     """Fill new multipliers for a free axis into the row; return (primal value, rank-one value) at the centre.
 

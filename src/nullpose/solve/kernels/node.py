@@ -6,11 +6,12 @@ length, in the world frame; face -1 is every axis.
 
 from __future__ import annotations
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = [
     "AFFINE",
     "ANCHOR",
+    "BALL",
     "CELL",
     "CENTRE",
     "COLUMNS",
@@ -22,12 +23,15 @@ __all__ = [
     "KEPT_OUT",
     "KIND",
     "LEVEL",
+    "NU",
     "SIDE",
     "SUPPORT",
     "WEIGHT",
     "cell_side",
+    "ball_multiplier",
     "keep_largest",
     "longest_side",
+    "reaching_ball",
     "split_axis",
     "split_position",
 ]
@@ -44,14 +48,16 @@ COUNT = 16  # how many ratios have a multiplier
 INDEX = 17  # which they are
 SUPPORT = 8
 WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
-COLUMNS = WEIGHT + SUPPORT
+BALL = WEIGHT + SUPPORT  # a keep-out ball that reaches into the box, or -1
+NU = BALL + 1  # and the multiplier of staying out of it, 1/m^2
+COLUMNS = NU + 1
 
 AFFINE = 2
 FAR = 3
 KEPT_OUT = 4
 
 
-@kernel
+@inner_kernel
 def cell_side(face, cell, side, out):
     """Fill the form ``(v - low a)(high a - v)`` of a cell's side, a being the face's axis, v the side's."""
     a = face
@@ -89,7 +95,34 @@ def keep_largest(weights, total, row):
         row[SIDE + side] /= gathered
 
 
-@kernel
+@inner_kernel
+def reaching_ball(keep_points, keep_radius, row):
+    """Return the keep-out ball that reaches farthest into a row's box, or -1 if none does."""
+    ball = -1
+    least = keep_radius * keep_radius
+    for q in range(keep_points.shape[0]):
+        d = 0.0
+        for i in range(3):
+            x = abs(keep_points[q, i] - row[CENTRE + i]) - row[HALF + i]
+            if x > 0.0:
+                d += x * x
+        if d < least:
+            ball, least = q, d
+    return ball
+
+
+@inner_kernel
+def ball_multiplier(keep_points, ball, gradient, row):
+    """Return the multiplier of ``|p - q|^2 - R^2 >= 0`` that cancels a gradient's part towards q."""
+    n2 = along = 0.0
+    for i in range(3):
+        n = row[CENTRE + i] - keep_points[ball, i]
+        n2 += n * n
+        along += n * gradient[i]
+    return -0.5 * along / n2 if n2 > 0.0 else 0.0
+
+
+@inner_kernel
 def longest_side(row):
     """Return the longest side of a row's box."""
     side = 0
@@ -99,7 +132,7 @@ def longest_side(row):
     return side
 
 
-@kernel
+@inner_kernel
 def split_position(row, side, stack, top):
     """Push the halves of a box, cut across one side; return the new top."""
     for child in range(2):
@@ -111,7 +144,7 @@ def split_position(row, side, stack, top):
     return top
 
 
-@kernel
+@inner_kernel
 def split_axis(row, stack, top):
     """Push the parts of a cell of axes, three faces or two halves; return the new top."""
     if row[FACE] < 0.0:

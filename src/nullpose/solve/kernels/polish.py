@@ -29,7 +29,7 @@ from nullpose.solve.kernels.chart import (
     reduce_hessian,
     turning,
 )
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.land import land
 from nullpose.solve.kernels.links import derivatives, log_ratios, min_log_ratio
 from nullpose.solve.kernels.symmetric import copy_into
@@ -42,7 +42,7 @@ _INSIDE = 0.995
 _ATTEMPTS = 31
 
 
-@kernel
+@inner_kernel
 def enter(domain, p, free, used):
     """Move a position strictly inside its faces; fill which coordinates and faces are in play."""
     low, high = domain[0], domain[1]
@@ -60,7 +60,7 @@ def enter(domain, p, free, used):
         used[c] = True
 
 
-@kernel
+@inner_kernel
 def value_in_domain(family, domain, p, u, slacks, logs, f):
     """Return the smallest log ratio, minus infinity outside the domain; fill the slacks."""
     domain_slacks(p, domain, slacks)
@@ -87,7 +87,7 @@ def begin(family, domain, axis_field, p, u, work, best_p, best_u):
     return best, value
 
 
-@kernel
+@inner_kernel
 def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
     """Fill the slopes of ratios and constraints in the search variables; add the balls' curvature."""
     keep_points = domain[2]
@@ -109,7 +109,7 @@ def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
             rows[6 + q, m] = s
 
 
-@kernel
+@inner_kernel
 def longest_scale(rows, slacks, used, step, n):
     """Return the largest share of a step that stays inside the faces, and the step's size."""
     largest = 0.0
@@ -126,7 +126,7 @@ def longest_scale(rows, slacks, used, step, n):
     return scale, largest
 
 
-@kernel
+@inner_kernel
 def line_search(family, domain, axis_field, here, there, model, way):
     """Return the share of a step that climbs the barrier enough, and the level there; fill the pose reached.
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["real_roots"]
 
 _EDGE = 1.0 + 1e-9
 
 
-@kernel
+@inner_kernel
 def horner(coefficients, degree, x):
     """Return the polynomial's value; coefficients run from the constant up."""
     value = coefficients[degree]
@@ -20,7 +20,7 @@ def horner(coefficients, degree, x):
     return value
 
 
-@kernel
+@inner_kernel
 def bracketed_root(coefficients, degree, low, high, f_low):
     """Return the root in a bracket by Newton's method kept inside it by bisection."""
     x = 0.5 * (low + high)

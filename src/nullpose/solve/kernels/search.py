@@ -14,7 +14,7 @@ import numpy as np
 from nullpose.solve.kernels.chart import axis_at
 from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.symmetric import copy_into
@@ -88,7 +88,7 @@ def likely_axis(family, p, axis):
     start, matrix, v, multipliers = np.zeros(6), np.empty(6), np.empty(3), np.empty(ratios)
     for i in range(3):
         start[i] = 1.0 / 3.0
-    dual_multipliers(forms, ratios, 0, level, math.inf, _ROUGH, start, multipliers, matrix)
+    dual_multipliers(forms, ratios, np.int64(0), level, math.inf, _ROUGH, start, multipliers, matrix)
     top_eigenvector(matrix, v)
     norm = 0.0
     for i in range(3):
@@ -98,7 +98,7 @@ def likely_axis(family, p, axis):
         axis[i] /= math.sqrt(norm)
 
 
-@kernel
+@inner_kernel
 def start_axis(family, axis_field, p, u, logs, f):
     """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
     if axis_field[0] == 0:
@@ -108,7 +108,7 @@ def start_axis(family, axis_field, p, u, logs, f):
     return min_log_ratio(family, p, u, logs, f)
 
 
-@kernel
+@inner_kernel
 def surround(points, margin, box_low, box_high):
     """Replace the infinite faces of a box by those of a box around the points: where to look first."""
     for i in range(3):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["cholesky_factor", "cholesky_solve", "copy_into", "eigen3", "gauss_solve", "tangents"]
 
@@ -130,7 +130,7 @@ def gauss_solve(a, b, n):
     return finite
 
 
-@kernel
+@inner_kernel
 def copy_into(source, target):
     """Overwrite a vector with another."""
     for i in range(source.shape[0]):
