@@ -14,7 +14,7 @@ from benchmarks.environment import ROOT
 
 __all__ = ["describe_machine", "load_average"]
 
-PACKAGES = ("nullpose", "numpy", "scipy", "numba", "llvmlite", "cma")
+PACKAGES = ("nullpose", "numpy", "scipy", "numba", "llvmlite", "cma", "pyscipopt", "maingopy")
 
 
 def describe_machine() -> dict[str, str]:
