@@ -17,6 +17,8 @@ from benchmarks.workloads.fields.scenes import Scene
     [
         (["--quick", "--gate"], "full runs only"),
         (["--quick", "--update-baseline"], "makes no baseline"),
+        (["--cap", "0"], "seconds above 0"),
+        (["--cap", "5", "--gate"], "the usual cap"),
         (["--render", "nowhere.json"], "no file"),
         (["--render", "x.json", "--quick"], "leave out"),
     ],
