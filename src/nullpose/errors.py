@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Fault", "NullposeError", "OutputError", "ScenarioError", "SolveError", "UsageError"]
+__all__ = [
+    "CertificateError",
+    "Fault",
+    "NullposeError",
+    "OutputError",
+    "ScenarioError",
+    "SolveError",
+    "UsageError",
+]
 
 
 class NullposeError(Exception):
@@ -51,6 +59,10 @@ class ScenarioError(NullposeError, ValueError):
 
 class UsageError(NullposeError, ValueError):
     """A request that does not fit its scenario or its options, such as a null without a jammer."""
+
+
+class CertificateError(NullposeError, ValueError):
+    """A file that is no certificate, or one made for another scenario than the one inside."""
 
 
 class OutputError(NullposeError, OSError):

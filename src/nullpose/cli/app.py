@@ -14,6 +14,7 @@ from nullpose.cli.reproduce import reproduce
 from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
 from nullpose.cli.sweep import sweep
+from nullpose.cli.verify import verify
 
 __all__ = ["app", "main"]
 
@@ -47,11 +48,11 @@ def nullpose(
     A scenario file (TOML) states nodes, jammers, receiver and airspace. Start with
     [bold]nullpose compare examples/paper.toml[/].
 
-    Exit codes: 0 fine, 2 bad input or usage, 1 anything else, 130 interrupted.
+    Exit codes: 0 fine, 2 bad input or usage, 1 anything else (a rejected certificate, say), 130 interrupted.
     """
 
 
-for _verb in (solve, compare, sweep, reproduce, check, schema):
+for _verb in (solve, compare, sweep, verify, reproduce, check, schema):
     app.command()(_verb)
 
 

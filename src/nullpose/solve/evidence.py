@@ -1,2 +1,103 @@
-"""placeholder"""
-def certificate_of(solution): ...
+"""From a proof to a certificate: the kernels' rows as the verifier's leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes
+from nullpose.certificate.certificate import AFFINE, TOWARDS, WORLD
+from nullpose.errors import UsageError
+from nullpose.solve.proof import Proof
+from nullpose.solve.solution import Solution
+
+__all__ = ["certificate_of"]
+
+
+def certificate_of(solution: Solution) -> Certificate:
+    """Return the certificate of a solution: everything that a verifier needs to check its bound.
+
+    Args:
+        solution: one with a proof.
+
+    Raises:
+        UsageError: nothing was proved, or the scheme has no certificate for this scenario.
+    """
+    fields = claimed_axes(solution.scenario, solution.scheme, solution.null_jammer)
+    bound = solution.objective.upper_bound
+    if bound is None or fields is None:
+        reason = solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
+        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {reason}")
+    pose = solution.pose
+    return Certificate(
+        scenario=solution.scenario,
+        scheme=solution.scheme.value,
+        null_jammer=solution.null_jammer,
+        value=solution.objective.value,
+        upper_bound=bound,
+        position_m=np.array(pose.position_m, dtype=float),
+        roll_rad=pose.roll_rad,
+        pitch_rad=pose.pitch_rad,
+        yaw_rad=pose.yaw_rad,
+        trees=tuple(
+            Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof))
+            for axis, proof in zip(fields, solution.proofs, strict=True)
+        ),
+        provenance=dict(solution.provenance),
+    )
+
+
+def leaves_of(proof: Proof) -> Leaves:
+    """Return a proof's leaves with their boxes as dyadic parts of the root.
+
+    Args:
+        proof: with its root and leaves.
+    """
+    from nullpose.solve.kernels import node
+
+    rows = proof.leaves
+    low, high = proof.root
+    half, centre = rows[:, node.HALF : node.HALF + 3], rows[:, node.CENTRE : node.CENTRE + 3]
+    flat = high <= low
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = np.where(flat, 0, np.rint(np.log2(0.5 * (high - low) / half))).astype(np.int64)
+        index = np.where(flat, 0, np.rint((centre - low) / (2.0 * half) - 0.5)).astype(np.int64)
+    test = rows[:, node.KIND].astype(np.int64)
+    ratios, weights = rows[:, node.INDEX : node.WEIGHT], rows[:, node.WEIGHT : node.BALL]
+    table: dict[tuple[float, ...], int] = {}
+    mixes: list[dict[int, float]] = []
+    mix = np.full(len(rows), -1, dtype=np.int64)
+    for i in np.flatnonzero(np.isin(test, (WORLD, TOWARDS, AFFINE))):
+        used = int(rows[i, node.COUNT])
+        key = (*ratios[i, :used], *weights[i, :used])
+        if key not in table:
+            table[key] = len(mixes)
+            mixes.append({int(k): float(w) for k, w in zip(ratios[i, :used], weights[i, :used], strict=True)})
+        mix[i] = table[key]
+    point = np.where(test == TOWARDS, rows[:, node.ANCHOR], rows[:, node.INDEX])
+    point = np.where(np.isin(test, (WORLD, AFFINE)), -1, point)
+    uses_ball = rows[:, node.NU] > 0.0
+    return Leaves(
+        box=np.stack([depth[:, 0], index[:, 0], depth[:, 1], index[:, 1], depth[:, 2], index[:, 2]], axis=1),
+        cell=_cells(rows, node.FACE, node.CELL),
+        test=test,
+        point=point.astype(np.int64),
+        level=rows[:, node.LEVEL].copy(),
+        mix=mix,
+        mixes=tuple(mixes),
+        sides=np.where(rows[:, [node.FACE]] >= 0.0, rows[:, node.SIDE : node.SIDE + 2], 0.0),
+        ball=np.where(uses_ball, rows[:, node.BALL], -1).astype(np.int64),
+        ball_multiplier=np.where(uses_ball, rows[:, node.NU], 0.0),
+    )
+
+
+def _cells(rows: NDArray[np.float64], face: int, cell: int) -> NDArray[np.int64]:
+    on_face = rows[:, face] >= 0.0
+    out = np.zeros((len(rows), 5), dtype=np.int64)
+    out[:, 0] = rows[:, face]
+    for side in range(2):
+        low, high = rows[:, cell + 2 * side], rows[:, cell + 2 * side + 1]
+        width = np.where(on_face, high - low, 2.0)
+        out[:, 1 + 2 * side] = np.rint(np.log2(2.0 / width))
+        out[:, 2 + 2 * side] = np.where(on_face, np.rint((low + 1.0) / width), 0)
+    return out

@@ -1,0 +1,126 @@
+"""A certificate: the claim about one scenario, and the leaves that prove it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.family import AxisField
+from nullpose.scenario import Scenario
+
+__all__ = ["AFFINE", "FAR", "KEPT_OUT", "TOWARDS", "WORLD", "Certificate", "Leaves", "Tree", "claimed_axes"]
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+
+WORLD = 0  # any axis, in the world frame
+TOWARDS = 1  # any axis, in a frame that turns towards a point
+AFFINE = 2  # the axis that the position gives
+FAR = 3  # a node out of reach
+KEPT_OUT = 4  # inside a keep-out ball
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Leaves:
+    """Boxes of positions, some with a cell of axes, and the test that excludes each.
+
+    A box is a dyadic part of the tree's root: along each axis, part ``index`` of ``2^depth`` equal ones.
+
+    Args:
+        box: (l, 6) depth and index along x, y and z.
+        cell: (l, 5) face of the cube of axes, -1 for every axis, then depth and index along its two sides.
+        test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR`` or ``KEPT_OUT``.
+        point: (l,) the point that the frame turns towards, the node that is out of reach, or the keep-out
+            ball; -1 where there is none.
+        level: (l,) the smallest SINR that no pose of the leaf reaches.
+        mix: (l,) index into ``mixes``; -1 where none is needed.
+        mixes: multipliers of ratios, each a mapping from ratio to weight.
+        sides: (l, 2) multipliers of the cell's two sides.
+        ball: (l,) the keep-out ball that counts in the box, or -1.
+        ball_multiplier: (l,) its multiplier, 1/m^2.
+    """
+
+    box: IntArray
+    cell: IntArray
+    test: IntArray
+    point: IntArray
+    level: FloatArray
+    mix: IntArray
+    mixes: tuple[Mapping[int, float], ...]
+    sides: FloatArray
+    ball: IntArray
+    ball_multiplier: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.box)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tree:
+    """The proof for one axis field.
+
+    Args:
+        axis: ``"free"``, ``"vertical"``, ``"broadside"`` or ``"null NAME"`` with a jammer's name.
+        root_m: (2, 3) lowest and highest corner of the root box, metres.
+        leaves: they cover the root.
+    """
+
+    axis: str
+    root_m: FloatArray
+    leaves: Leaves
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Certificate:
+    """The claim that a pose has a value and that no pose exceeds a bound.
+
+    Args:
+        scenario: what the claim is about.
+        scheme: the case: which axes are allowed.
+        null_jammer: zero interference only: the one jammer that was to be nulled, or None for any of them.
+        value: the smallest SINR at the pose.
+        upper_bound: no allowed pose has its smallest SINR above it.
+        position_m: (3,) the pose's position, metres, ENU.
+        roll_rad: its roll.
+        pitch_rad: its pitch.
+        yaw_rad: its yaw.
+        trees: one for each axis field of the scheme.
+        provenance: what produced it; not part of the claim.
+    """
+
+    scenario: Scenario
+    scheme: str
+    null_jammer: str | None
+    value: float
+    upper_bound: float
+    position_m: FloatArray
+    roll_rad: float
+    pitch_rad: float
+    yaw_rad: float
+    trees: tuple[Tree, ...]
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+
+def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField] | None:
+    """Return the axis fields of a scheme by the names they have in a certificate; None if there are none.
+
+    Args:
+        scenario: nodes and jammers.
+        scheme: the case.
+        null_jammer: zero interference only: the jammer to be nulled, or None for any.
+    """
+    jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
+    if scheme == "optimum":
+        return {"free": AxisField.free()}
+    if scheme == "vertical":
+        return {"vertical": AxisField.vertical()}
+    if scheme == "maximum-gain" and len(scenario.nodes) == 2:
+        return {"broadside": AxisField.broadside(*scenario.node_positions_m)}
+    if scheme == "zero-interference" and (null_jammer is None or null_jammer in jammers):
+        names = jammers if null_jammer is None else (null_jammer,)
+        return {f"null {name}": AxisField.towards(jammers[name]) for name in names} or None
+    return None

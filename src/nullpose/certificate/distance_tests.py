@@ -1,0 +1,70 @@
+"""Leaves that distances alone exclude."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.certificate import FloatArray, Leaves
+from nullpose.certificate.interval import Interval
+from nullpose.family import Family
+
+__all__ = ["far_holds", "kept_out_holds", "root_holds"]
+
+
+def far_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Return which boxes keep their node so far that it cannot reach the level, whatever the axis.
+
+    ``N <= n + w / a^2`` and ``D >= d``, a being the least distance that box and keep-out ball allow.
+
+    Args:
+        family: the ratios.
+        leaves: with level and node.
+        boxes: to be tested.
+    """
+    k = leaves.point[boxes.leaf]
+    level = leaves.level[boxes.leaf]
+    nearest2 = boxes.nearest2(family.points_m[family.numerator_point[k]])
+    a2 = np.maximum(nearest2, Interval(family.keep_out_m).squared().low)
+    lack = Interval(family.numerator_isotropic[k]) - Interval(level) * family.denominator_isotropic[0]
+    return np.asarray((lack.high < 0.0) & ((lack * a2 + family.numerator_weight[k]).high < 0.0))
+
+
+def kept_out_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Return which boxes lie inside their keep-out ball, where no position is allowed.
+
+    Args:
+        family: with its keep-out balls.
+        leaves: with the ball.
+        boxes: to be tested.
+    """
+    if not len(family.keep_out_points_m):
+        return np.zeros(len(boxes), dtype=bool)
+    farthest2 = boxes.farthest2(family.keep_out_points_m[leaves.point[boxes.leaf]])
+    return np.asarray(farthest2 < Interval(family.keep_out_m).squared().low)
+
+
+def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
+    """Return what a root box leaves out that could beat the bound, or an empty string.
+
+    Beyond each of its faces lies nothing of the domain, or nothing within a node's reach: there
+    ``n + w / a^2 <= t d``.
+
+    Args:
+        family: the ratios and their domain.
+        root_m: (2, 3) the root's corners.
+        upper_bound: t.
+    """
+    points = family.points_m[family.numerator_point]
+    lack = Interval(upper_bound) * family.denominator_isotropic[0] - family.numerator_isotropic
+    for i, name in enumerate("xyz"):
+        for side, domain_end in ((0, family.low_m[i]), (1, family.high_m[i])):
+            face = root_m[side, i]
+            if (face <= domain_end) if side == 0 else (face >= domain_end):
+                continue
+            beyond = Interval(points[:, i]) - face if side == 0 else Interval(face) - points[:, i]
+            reach = beyond.low
+            out = (reach > 0.0) & ((Interval(reach).squared() * lack - family.numerator_weight).low >= 0.0)
+            if not np.any(out):
+                return f"the root box ends at {name} = {face:g} m, beyond which poses could exceed the bound"
+    return ""

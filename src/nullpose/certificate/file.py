@@ -1,0 +1,229 @@
+"""Certificates as files: JSON, compressed if the name ends in ``.gz``."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.certificate.certificate import Certificate, Leaves, Tree
+from nullpose.errors import CertificateError, OutputError
+from nullpose.scenario import Scenario
+
+__all__ = ["FORMAT", "VERSION", "certificate_text", "parse_certificate", "read_certificate", "write_certificate"]
+
+FORMAT = "nullpose-certificate"
+VERSION = 1
+
+_GZIP_MAGIC = b"\x1f\x8b"
+_MOST_BYTES = 2**31
+_POSE = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
+_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "ball", "ball_multiplier")
+_SHAPES = {"box": 6, "cell": 5, "sides": 2}
+_WHOLE = {"box", "cell", "test", "point", "mix", "ball"}
+
+
+def write_certificate(certificate: Certificate, path: Path) -> None:
+    """Write a certificate to a file.
+
+    Args:
+        certificate: what to write.
+        path: where; compressed if it ends in ``.gz``.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    data = certificate_text(certificate).encode()
+    try:
+        path.write_bytes(gzip.compress(data, mtime=0) if path.suffix == ".gz" else data)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def read_certificate(path: Path) -> Certificate:
+    """Return the certificate in a file.
+
+    Args:
+        path: the file, compressed or not.
+
+    Raises:
+        CertificateError: it cannot be read, or is no certificate.
+        ScenarioError: the scenario inside is faulty.
+    """
+    try:
+        data = path.read_bytes()
+        if data.startswith(_GZIP_MAGIC):
+            with gzip.open(path) as stream:
+                data = stream.read(_MOST_BYTES)
+        text = data.decode()
+    except OSError as error:
+        raise CertificateError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (UnicodeDecodeError, EOFError) as error:
+        raise CertificateError(f"{path}: is no certificate: {error}") from error
+    try:
+        return parse_certificate(text)
+    except CertificateError as error:
+        raise CertificateError(f"{path}: {error}") from error
+
+
+def scenario_digest(data: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of a scenario's plain data, in canonical JSON."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def certificate_text(certificate: Certificate) -> str:
+    """Return a certificate as JSON, one line for each column.
+
+    Args:
+        certificate: what to write down.
+    """
+    scenario = certificate.scenario.to_dict()
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        "version": VERSION,
+        "scenario": scenario,
+        "scenario_sha256": scenario_digest(scenario),
+        "scheme": certificate.scheme,
+        "null_jammer": certificate.null_jammer,
+        "value": certificate.value,
+        "upper_bound": certificate.upper_bound,
+        "pose": {
+            "position_m": [float(x) for x in certificate.position_m],
+            "roll_rad": certificate.roll_rad,
+            "pitch_rad": certificate.pitch_rad,
+            "yaw_rad": certificate.yaw_rad,
+        },
+        "trees": [_tree_data(tree) for tree in certificate.trees],
+        "provenance": dict(certificate.provenance),
+    }
+    return _lines(data, 0) + "\n"
+
+
+def _lines(value: Any, depth: int) -> str:
+    """Return JSON with the outer tables spread over lines and the columns on one line each."""
+    if depth > 4 or not isinstance(value, dict | list) or not value or depth > 0 and not _nested(value):
+        return json.dumps(value, separators=(",", ":"), allow_nan=False)
+    pad = " " * (depth + 1)
+    if isinstance(value, dict):
+        body = [f"{pad}{json.dumps(key)}: {_lines(item, depth + 1)}" for key, item in value.items()]
+        return "{\n" + ",\n".join(body) + "\n" + " " * depth + "}"
+    return "[\n" + ",\n".join(pad + _lines(item, depth + 1) for item in value) + "\n" + " " * depth + "]"
+
+
+def _nested(value: Any) -> bool:
+    items = value.values() if isinstance(value, dict) else value
+    return any(isinstance(item, dict) for item in items) or isinstance(value, dict) and "box" in value
+
+
+def _tree_data(tree: Tree) -> dict[str, Any]:
+    leaves = tree.leaves
+    columns: dict[str, Any] = {name: getattr(leaves, name).tolist() for name in _COLUMNS}
+    columns["mixes"] = [[[k, w] for k, w in mix.items()] for mix in leaves.mixes]
+    return {"axis": tree.axis, "root_m": tree.root_m.tolist(), "leaves": columns}
+
+
+def parse_certificate(text: str) -> Certificate:
+    """Return the certificate in a text.
+
+    Args:
+        text: JSON as :func:`certificate_text` writes it.
+
+    Raises:
+        CertificateError: it is no certificate, or its scenario is not the one it was made for.
+        ScenarioError: the scenario inside is faulty.
+    """
+    try:
+        data = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise CertificateError(f"is no certificate: not JSON ({error})") from error
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
+    if data.get("version") != VERSION or isinstance(data.get("version"), bool):
+        raise CertificateError(f"version: got {data.get('version')!r}; this nullpose reads version {VERSION}")
+    scenario = _get(data, "scenario", dict)
+    if scenario_digest(scenario) != data.get("scenario_sha256"):
+        raise CertificateError("scenario_sha256: the scenario is not the one that the certificate was made for")
+    pose = _get(data, "pose", dict)
+    null_jammer = data.get("null_jammer")
+    if not (null_jammer is None or isinstance(null_jammer, str)):
+        raise CertificateError(f"null_jammer: got {null_jammer!r}; must be a name or null")
+    provenance = data.get("provenance", {})
+    return Certificate(
+        scenario=Scenario.from_dict(scenario),
+        scheme=_get(data, "scheme", str),
+        null_jammer=null_jammer,
+        value=_number(data, "value"),
+        upper_bound=_number(data, "upper_bound"),
+        position_m=_array(pose, "position_m", "pose.", (3,)),
+        roll_rad=_number(pose, "roll_rad", "pose."),
+        pitch_rad=_number(pose, "pitch_rad", "pose."),
+        yaw_rad=_number(pose, "yaw_rad", "pose."),
+        trees=tuple(_tree(tree, f"trees[{i}].") for i, tree in enumerate(_get(data, "trees", list))),
+        provenance=provenance if isinstance(provenance, dict) else {},
+    )
+
+
+def _tree(data: Any, path: str) -> Tree:
+    if not isinstance(data, dict):
+        raise CertificateError(f"{path[:-1]}: must be a table")
+    inside = path + "leaves."
+    columns = _get(data, "leaves", dict, path)
+    count = len(_get(columns, "test", list, inside))
+    arrays = {
+        name: _array(columns, name, inside, (count, _SHAPES[name]) if name in _SHAPES else (count,), name in _WHOLE)
+        for name in _COLUMNS
+    }
+    mixes = tuple(_mix(mix, f"{inside}mixes[{i}]") for i, mix in enumerate(_get(columns, "mixes", list, inside)))
+    root_m = _array(data, "root_m", path, (2, 3))
+    return Tree(axis=_get(data, "axis", str, path), root_m=root_m, leaves=Leaves(mixes=mixes, **arrays))
+
+
+def _mix(data: Any, path: str) -> dict[int, float]:
+    try:
+        mix = {k: float(w) for k, w in data}
+    except (TypeError, ValueError, OverflowError):
+        mix = {-1: 0.0}
+    if len(mix) != len(data) or any(type(k) is not int or k < 0 or not math.isfinite(w) for k, w in mix.items()):
+        raise CertificateError(f"{path}: must be a list of [ratio, weight] with different ratios")
+    return mix
+
+
+def _get(data: Mapping[str, Any], key: str, kind: type, path: str = "") -> Any:
+    value = data.get(key)
+    if not isinstance(value, kind):
+        words = {dict: "a table", list: "a list", str: "a text"}[kind]
+        raise CertificateError(f"{path}{key}: {'is missing' if value is None else 'is wrong'}; must be {words}")
+    return value
+
+
+def _number(data: Mapping[str, Any], key: str, path: str = "") -> float:
+    value = data.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise CertificateError(f"{path}{key}: got {value!r}; must be a finite number")
+    return float(value)
+
+
+def _array(
+    data: Mapping[str, Any], key: str, path: str, shape: tuple[int, ...], whole: bool = False
+) -> NDArray[Any]:
+    value = _get(data, key, list, path)
+    try:
+        array = np.array(value, dtype=object).astype(float)
+        exact = array.astype(np.int64) if whole else array
+    except (TypeError, ValueError, OverflowError) as error:
+        raise CertificateError(f"{path}{key}: must hold numbers only") from error
+    if array.size == 0:
+        array, exact = array.reshape(shape), exact.reshape(shape)
+    if array.shape != shape:
+        raise CertificateError(f"{path}{key}: has shape {array.shape}; must have {shape}")
+    if not np.all(np.isfinite(array)) or not np.array_equal(array, exact):
+        kind = "whole numbers" if whole else "finite numbers"
+        raise CertificateError(f"{path}{key}: must hold {kind} only")
+    return exact

@@ -1,0 +1,146 @@
+"""Interval arithmetic on arrays, rounded outward: what is computed contains what is meant.
+
+IEEE 754 has sums, products, quotients and square roots correctly rounded, so that one step to the next
+floating-point number on either side encloses the exact result. Nothing else is used.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["FloatArray", "Interval", "dot", "hull", "largest", "stack"]
+
+FloatArray: TypeAlias = NDArray[np.float64]
+
+
+def _down(x: FloatArray) -> FloatArray:
+    return np.nextafter(x, -np.inf)
+
+
+def _up(x: FloatArray) -> FloatArray:
+    return np.nextafter(x, np.inf)
+
+
+class Interval:
+    """Arrays of numbers of which only bounds are known.
+
+    Args:
+        low: lower bounds.
+        high: upper bounds, of the same shape; left out, the numbers are known exactly.
+    """
+
+    __array_ufunc__ = None  # numpy must leave mixed expressions to the operators below
+    __slots__ = ("high", "low")
+
+    def __init__(self, low: ArrayLike, high: ArrayLike | None = None) -> None:
+        self.low: FloatArray = np.asarray(low, dtype=float)
+        self.high: FloatArray = self.low if high is None else np.asarray(high, dtype=float)
+
+    def __getitem__(self, index: object) -> Interval:
+        return Interval(self.low[index], self.high[index])  # type: ignore[index]
+
+    def __neg__(self) -> Interval:
+        return Interval(-self.high, -self.low)
+
+    def __add__(self, other: Interval | ArrayLike) -> Interval:
+        o = as_interval(other)
+        return Interval(_down(self.low + o.low), _up(self.high + o.high))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Interval | ArrayLike) -> Interval:
+        o = as_interval(other)
+        return Interval(_down(self.low - o.high), _up(self.high - o.low))
+
+    def __rsub__(self, other: ArrayLike) -> Interval:
+        return as_interval(other) - self
+
+    def __mul__(self, other: Interval | ArrayLike) -> Interval:
+        o = as_interval(other)
+        if o.low is o.high and self.low is self.high:
+            product = self.low * o.low
+            return Interval(_down(product), _up(product))
+        a, b = self.low * o.low, self.low * o.high
+        c, d = self.high * o.low, self.high * o.high
+        low = np.minimum(np.minimum(a, b), np.minimum(c, d))
+        high = np.maximum(np.maximum(a, b), np.maximum(c, d))
+        return Interval(_down(low), _up(high))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Interval | ArrayLike) -> Interval:
+        o = as_interval(other)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            reciprocal = Interval(_down(1.0 / o.high), _up(1.0 / o.low))
+            unknown = (o.low <= 0.0) & (o.high >= 0.0)
+            low = np.where(unknown, -np.inf, reciprocal.low)
+            high = np.where(unknown, np.inf, reciprocal.high)
+            quotient = self * Interval(low, high)
+            # 0 times infinity: nothing is known
+            return Interval(
+                np.where(np.isnan(quotient.low), -np.inf, quotient.low),
+                np.where(np.isnan(quotient.high), np.inf, quotient.high),
+            )
+
+    def __rtruediv__(self, other: ArrayLike) -> Interval:
+        return as_interval(other) / self
+
+    def squared(self) -> Interval:
+        """Return the squares, never below zero."""
+        a, b = self.low * self.low, self.high * self.high
+        across = (self.low < 0.0) & (self.high > 0.0)
+        low = np.where(across, 0.0, np.maximum(_down(np.minimum(a, b)), 0.0))
+        return Interval(low, _up(np.maximum(a, b)))
+
+    def sqrt(self) -> Interval:
+        """Return the square roots of numbers that are not negative."""
+        root = np.sqrt(np.maximum(self.low, 0.0))
+        return Interval(np.maximum(_down(root), 0.0), _up(np.sqrt(np.maximum(self.high, 0.0))))
+
+    def magnitude(self) -> FloatArray:
+        """Return upper bounds on the absolute values."""
+        return np.maximum(np.abs(self.low), np.abs(self.high))
+
+    def middle(self) -> FloatArray:
+        """Return numbers inside, near the middle."""
+        return np.clip(0.5 * self.low + 0.5 * self.high, self.low, self.high)
+
+    def radius(self) -> FloatArray:
+        """Return upper bounds on the distance from :meth:`middle` to the ends."""
+        middle = self.middle()
+        return _up(np.maximum(self.high - middle, middle - self.low))
+
+    def total(self) -> Interval:
+        """Return the sum over the last axis."""
+        result = self[..., 0]
+        for i in range(1, self.low.shape[-1]):
+            result = result + self[..., i]
+        return result
+
+
+def as_interval(value: Interval | ArrayLike) -> Interval:
+    """Return exact numbers as an interval, and an interval as it is."""
+    return value if isinstance(value, Interval) else Interval(value)
+
+
+def dot(a: Interval, b: Interval | FloatArray) -> Interval:
+    """Return the inner product over the last axis."""
+    return (a * b).total()
+
+
+def stack(parts: list[Interval]) -> Interval:
+    """Return intervals of one shape along a new last axis."""
+    return Interval(np.stack([p.low for p in parts], -1), np.stack([p.high for p in parts], -1))
+
+
+def hull(a: Interval, b: Interval) -> Interval:
+    """Return the smallest interval that holds both."""
+    return Interval(np.minimum(a.low, b.low), np.maximum(a.high, b.high))
+
+
+def largest(a: Interval, b: Interval) -> Interval:
+    """Return bounds on the larger of two numbers."""
+    return Interval(np.maximum(a.low, b.low), np.maximum(a.high, b.high))
