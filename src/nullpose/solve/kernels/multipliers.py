@@ -12,8 +12,10 @@ from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
     CELL,
     CENTRE,
+    COUNT,
     FACE,
     HALF,
+    INDEX,
     LEVEL,
     SIDE,
     cell_side,
@@ -23,6 +25,10 @@ from nullpose.solve.kernels.node import (
 __all__ = ["free_multipliers"]
 
 _MIXES = 6
+_MANY = 16  # more ratios than this are not all taken at once
+_FEW = 6
+_ROUNDS = 5
+_SLIGHT = 1e-3
 
 
 @inner_kernel
@@ -133,6 +139,68 @@ def smallest_form(forms, count, v):
 
 
 @inner_kernel
+def add_smallest(forms, ratios, matrix, below, most, chosen, count, taken):
+    """Add the forms of smallest ``<A_k, U>`` below a value to those chosen; return how many there are now."""
+    values = np.empty(ratios)
+    for k in range(ratios):
+        a = forms[k]
+        values[k] = a[0] * matrix[0] + a[1] * matrix[1] + a[2] * matrix[2]
+        values[k] += 2.0 * (a[3] * matrix[3] + a[4] * matrix[4] + a[5] * matrix[5])
+    smallest = math.inf
+    for k in range(ratios):
+        smallest = min(smallest, values[k])
+    for _ in range(most):
+        lead = -1
+        for k in range(ratios):
+            if not taken[k] and values[k] < below and (lead < 0 or values[k] < values[lead]):
+                lead = k
+        if lead < 0 or count >= chosen.shape[0]:
+            break
+        chosen[count], taken[lead] = lead, True
+        count += 1
+    return smallest, count
+
+
+@inner_kernel
+def sparse_dual(forms, ratios, sides, row, stop, gap, start, weights, matrix):
+    """Return the dual's primal value as ``dual_multipliers`` does, from few forms at a time if there are many.
+
+    Begins with the row's own ratios and those smallest at the start, and adds what turns out to be smaller.
+    """
+    level = row[LEVEL]
+    if ratios <= _MANY:
+        return dual_multipliers(forms, ratios, sides, level, stop, gap, start, weights, matrix)
+    chosen, taken = np.empty(2 * _MANY, np.int64), np.zeros(ratios, np.bool_)
+    count = np.int64(0)
+    for s in range(int(row[COUNT])):
+        chosen[count] = int(row[INDEX + s])
+        taken[chosen[count]] = True
+        count += 1
+    _, count = add_smallest(forms, ratios, start, math.inf, _FEW, chosen, count, taken)
+    few, few_weights = np.empty((2 * _MANY + 2, 6)), np.empty(2 * _MANY + 2)
+    smallest = -math.inf
+    for _ in range(_ROUNDS):
+        for c in range(count + sides):
+            k = chosen[c] if c < count else ratios + c - count
+            for m in range(6):
+                few[c, m] = forms[k, m]
+        found = dual_multipliers(few, count, sides, level, stop, gap, start, few_weights, matrix)
+        before = count
+        smallest, count = add_smallest(
+            forms, ratios, matrix, found - _SLIGHT * level, _FEW, chosen, count, taken
+        )
+        if count == before:
+            break
+    for k in range(ratios):
+        weights[k] = 0.0
+    for c in range(before):
+        weights[chosen[c]] = few_weights[c]
+    for side in range(sides):
+        weights[ratios + side] = few_weights[before + side]
+    return smallest
+
+
+@inner_kernel
 def free_multipliers(family, basis, row, denominator, coarseness, weights, axis):
     """Fill new multipliers for a free axis into the row; return (primal value, rank-one value) at the centre.
 
@@ -155,11 +223,11 @@ def free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
         primal = top_eigenvector(matrix, v)
     else:
         cell_start(basis, back, row, start)
-        primal = dual_multipliers(forms, ratios, sides, level, level, 1e-5, start, weights, matrix)
+        primal = sparse_dual(forms, ratios, sides, row, level, 1e-5, start, weights, matrix)
         top_eigenvector(matrix, v)
         if primal > level and primal - smallest_form(forms, ratios, v) > coarseness * level:
             # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
-            primal = dual_multipliers(forms, ratios, sides, level, math.inf, 1e-4, start, weights, matrix)
+            primal = sparse_dual(forms, ratios, sides, row, math.inf, 1e-4, start, weights, matrix)
             top_eigenvector(matrix, v)
     for side in range(2):
         row[SIDE + side] = weights[ratios + side] if sides else 0.0
