@@ -73,7 +73,9 @@ def _pieces(field: AxisField, p: Interval, points: FloatArray) -> dict[str, Inte
     }
 
 
-def _spread(field: AxisField, at: dict[str, Interval], boxes: Boxes, points: FloatArray) -> dict[str, Interval]:
+def _spread(
+    field: AxisField, at: dict[str, Interval], boxes: Boxes, points: FloatArray
+) -> dict[str, Interval]:
     """Return the pieces over the boxes: u x r is quadratic, so that its expansion at the centre is exact."""
     low, high = boxes.corners
     over = _pieces(field, Interval(low.low, high.high), points)
@@ -217,7 +219,7 @@ def _quadratic_negative(
 
 
 def _off(full: FloatArray) -> FloatArray:
-    return np.abs(full).sum(axis=2) - np.abs(np.diagonal(full, axis1=1, axis2=2))
+    return np.asarray(np.abs(full).sum(axis=2) - np.abs(np.diagonal(full, axis1=1, axis2=2)))
 
 
 def _dual_negative(rest: Interval, g: list[Interval], middle: list[FloatArray], mu: FloatArray) -> np.ndarray:
@@ -225,7 +227,11 @@ def _dual_negative(rest: Interval, g: list[Interval], middle: list[FloatArray], 
     d, e, f = (Interval(-middle[i]) for i in (3, 4, 5))
     minor = a * b - d.squared()
     det = c * minor - a * f.squared() - b * e.squared() + d * e * f * 2.0
-    form = g[0].squared() * (b * c - f.squared()) + g[1].squared() * (a * c - e.squared()) + g[2].squared() * minor
+    form = (
+        g[0].squared() * (b * c - f.squared())
+        + g[1].squared() * (a * c - e.squared())
+        + g[2].squared() * minor
+    )
     cross = g[0] * g[1] * (e * f - d * c) + g[0] * g[2] * (d * f - b * e) + g[1] * g[2] * (d * e - a * f)
     bound = (rest + Interval(mu).total() * 0.5) * det + (form + cross * 2.0) * 0.5
     return np.asarray((a.low > 0.0) & (minor.low > 0.0) & (det.low > 0.0) & (bound.high < 0.0))

@@ -29,11 +29,11 @@ class Boxes:
     def __len__(self) -> int:
         return len(self.leaf)
 
-    def chosen(self, mask: IntArray | np.ndarray) -> Boxes:
+    def chosen(self, mask: IntArray | np.ndarray | slice) -> Boxes:
         """Return some of the boxes.
 
         Args:
-            mask: a mask or indices.
+            mask: a mask, indices or a slice.
         """
         return Boxes(leaf=self.leaf[mask], centre=self.centre[mask], half=self.half[mask])
 
@@ -49,7 +49,7 @@ class Boxes:
         return Interval(np.maximum(np.nextafter(gap, -np.inf), 0.0)).squared().total().low
 
     def farthest2(self, points: FloatArray) -> FloatArray:
-        """Return upper bounds on the squared distance from points, (b, 3) or (3,), to the boxes' far corners."""
+        """Return upper bounds on the squared distance from points, (b, 3) or (3,), to all of the boxes."""
         reach = Interval((Interval(points) - self.centre).magnitude()) + self.half
         return reach.squared().total().high
 
@@ -84,7 +84,8 @@ def parts(boxes: Boxes) -> Boxes:
     signs = np.array([[1.0 if c >> i & 1 else -1.0 for i in range(3)] for c in range(8)])
     centre = (boxes.centre[:, None, :] + 0.5 * signs * boxes.half[:, None, :]).reshape(-1, 3)
     slack = 4e-16 * (np.abs(boxes.centre) + boxes.half)
-    half = np.repeat(0.5 * boxes.half + slack, 8, axis=0)
+    # the step upwards counts where the slack is too small to be a number
+    half = np.repeat(np.nextafter(0.5 * boxes.half + slack, np.inf), 8, axis=0)
     return Boxes(leaf=np.repeat(boxes.leaf, 8), centre=centre, half=half)
 
 

@@ -113,6 +113,8 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> di
         scheme: the case.
         null_jammer: zero interference only: the jammer to be nulled, or None for any.
     """
+    if null_jammer is not None and scheme != "zero-interference":
+        return None
     jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
     if scheme == "optimum":
         return {"free": AxisField.free()}

@@ -6,6 +6,7 @@ import gzip
 import hashlib
 import json
 import math
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,19 +15,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate.certificate import Certificate, Leaves, Tree
-from nullpose.errors import CertificateError, OutputError
+from nullpose.errors import CertificateError, OutputError, ScenarioError
 from nullpose.scenario import Scenario
 
-__all__ = ["FORMAT", "VERSION", "certificate_text", "parse_certificate", "read_certificate", "write_certificate"]
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "certificate_text",
+    "parse_certificate",
+    "read_certificate",
+    "write_certificate",
+]
 
 FORMAT = "nullpose-certificate"
 VERSION = 1
 
 _GZIP_MAGIC = b"\x1f\x8b"
 _MOST_BYTES = 2**31
-_POSE = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
 _COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "ball", "ball_multiplier")
 _SHAPES = {"box": 6, "cell": 5, "sides": 2}
+_KINDS: dict[type[Any], str] = {dict: "a table", list: "a list", str: "a text"}
 _WHOLE = {"box", "cell", "test", "point", "mix", "ball"}
 
 
@@ -63,14 +71,18 @@ def read_certificate(path: Path) -> Certificate:
             with gzip.open(path) as stream:
                 data = stream.read(_MOST_BYTES)
         text = data.decode()
+    except (UnicodeDecodeError, EOFError, gzip.BadGzipFile, zlib.error) as error:
+        raise CertificateError(f"{path}: is no certificate: {error}") from error
     except OSError as error:
         raise CertificateError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except (UnicodeDecodeError, EOFError) as error:
-        raise CertificateError(f"{path}: is no certificate: {error}") from error
+    except ValueError as error:  # a null character in the name
+        raise CertificateError(f"{path}: cannot be read: {error}") from error
     try:
         return parse_certificate(text)
     except CertificateError as error:
         raise CertificateError(f"{path}: {error}") from error
+    except ScenarioError as error:
+        raise ScenarioError(error.faults, f"{path}: {error.source}") from error
 
 
 def scenario_digest(data: Mapping[str, Any]) -> str:
@@ -108,7 +120,7 @@ def certificate_text(certificate: Certificate) -> str:
 
 def _lines(value: Any, depth: int) -> str:
     """Return JSON with the outer tables spread over lines and the columns on one line each."""
-    if depth > 4 or not isinstance(value, dict | list) or not value or depth > 0 and not _nested(value):
+    if depth > 4 or not isinstance(value, dict | list) or not value or (depth > 0 and not _nested(value)):
         return json.dumps(value, separators=(",", ":"), allow_nan=False)
     pad = " " * (depth + 1)
     if isinstance(value, dict):
@@ -119,7 +131,7 @@ def _lines(value: Any, depth: int) -> str:
 
 def _nested(value: Any) -> bool:
     items = value.values() if isinstance(value, dict) else value
-    return any(isinstance(item, dict) for item in items) or isinstance(value, dict) and "box" in value
+    return any(isinstance(item, dict) for item in items) or (isinstance(value, dict) and "box" in value)
 
 
 def _tree_data(tree: Tree) -> dict[str, Any]:
@@ -139,24 +151,18 @@ def parse_certificate(text: str) -> Certificate:
         CertificateError: it is no certificate, or its scenario is not the one it was made for.
         ScenarioError: the scenario inside is faulty.
     """
-    try:
-        data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise CertificateError(f"is no certificate: not JSON ({error})") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
-    if data.get("version") != VERSION or isinstance(data.get("version"), bool):
-        raise CertificateError(f"version: got {data.get('version')!r}; this nullpose reads version {VERSION}")
+    data = _plain(text)
     scenario = _get(data, "scenario", dict)
     if scenario_digest(scenario) != data.get("scenario_sha256"):
-        raise CertificateError("scenario_sha256: the scenario is not the one that the certificate was made for")
+        raise CertificateError(
+            "scenario_sha256: the scenario is not the one that the certificate was made for"
+        )
     pose = _get(data, "pose", dict)
-    null_jammer = data.get("null_jammer")
+    null_jammer = data.get("null_jammer", 0)
     if not (null_jammer is None or isinstance(null_jammer, str)):
-        raise CertificateError(f"null_jammer: got {null_jammer!r}; must be a name or null")
-    provenance = data.get("provenance", {})
+        raise CertificateError("null_jammer: is missing or wrong; must be a name or null")
     return Certificate(
-        scenario=Scenario.from_dict(scenario),
+        scenario=Scenario.from_dict(scenario, "scenario"),
         scheme=_get(data, "scheme", str),
         null_jammer=null_jammer,
         value=_number(data, "value"),
@@ -166,8 +172,34 @@ def parse_certificate(text: str) -> Certificate:
         pitch_rad=_number(pose, "pitch_rad", "pose."),
         yaw_rad=_number(pose, "yaw_rad", "pose."),
         trees=tuple(_tree(tree, f"trees[{i}].") for i, tree in enumerate(_get(data, "trees", list))),
-        provenance=provenance if isinstance(provenance, dict) else {},
+        provenance=_get(data, "provenance", dict),
     )
+
+
+def _plain(text: str) -> dict[str, Any]:
+    """Return a certificate's tables, having asked for no more than its format and version."""
+    try:
+        data = json.loads(text, parse_constant=_no_number, parse_float=_finite)
+        json.dumps(data)  # an outsider's tables may be nested too deeply to be hashed
+    except (ValueError, RecursionError) as error:
+        raise CertificateError(f"is no certificate: not JSON ({error})") from error
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
+    version = data.get("version")
+    if type(version) is not int or version != VERSION:
+        raise CertificateError(f"version: this nullpose reads version {VERSION}, and no other")
+    return data
+
+
+def _no_number(name: str) -> None:
+    raise ValueError(f"{name} is no number")
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise ValueError(f"{digits} is too large")
+    return number
 
 
 def _tree(data: Any, path: str) -> Tree:
@@ -177,53 +209,69 @@ def _tree(data: Any, path: str) -> Tree:
     columns = _get(data, "leaves", dict, path)
     count = len(_get(columns, "test", list, inside))
     arrays = {
-        name: _array(columns, name, inside, (count, _SHAPES[name]) if name in _SHAPES else (count,), name in _WHOLE)
+        name: _array(
+            columns, name, inside, (count, _SHAPES[name]) if name in _SHAPES else (count,), name in _WHOLE
+        )
         for name in _COLUMNS
     }
-    mixes = tuple(_mix(mix, f"{inside}mixes[{i}]") for i, mix in enumerate(_get(columns, "mixes", list, inside)))
+    mixes = tuple(
+        _mix(mix, f"{inside}mixes[{i}]") for i, mix in enumerate(_get(columns, "mixes", list, inside))
+    )
     root_m = _array(data, "root_m", path, (2, 3))
     return Tree(axis=_get(data, "axis", str, path), root_m=root_m, leaves=Leaves(mixes=mixes, **arrays))
 
 
 def _mix(data: Any, path: str) -> dict[int, float]:
-    try:
-        mix = {k: float(w) for k, w in data}
-    except (TypeError, ValueError, OverflowError):
-        mix = {-1: 0.0}
-    if len(mix) != len(data) or any(type(k) is not int or k < 0 or not math.isfinite(w) for k, w in mix.items()):
+    pairs = data if isinstance(data, list) else [data]
+    paired = all(isinstance(pair, list) and len(pair) == 2 and type(pair[0]) is int for pair in pairs)
+    mix = {pair[0]: _float(pair[1]) for pair in pairs} if paired else {}
+    if len(mix) != len(pairs) or any(k < 0 or not math.isfinite(w) for k, w in mix.items()):
         raise CertificateError(f"{path}: must be a list of [ratio, weight] with different ratios")
     return mix
 
 
-def _get(data: Mapping[str, Any], key: str, kind: type, path: str = "") -> Any:
+def _get(data: Mapping[str, Any], key: str, kind: type[Any], path: str = "") -> Any:
     value = data.get(key)
     if not isinstance(value, kind):
-        words = {dict: "a table", list: "a list", str: "a text"}[kind]
-        raise CertificateError(f"{path}{key}: {'is missing' if value is None else 'is wrong'}; must be {words}")
+        what = "is missing" if key not in data else "is wrong"
+        raise CertificateError(f"{path}{key}: {what}; must be {_KINDS[kind]}")
     return value
 
 
+def _float(value: Any) -> float:
+    """Return a JSON number as a float; whatever is none, or is too large, as not-a-number."""
+    if type(value) not in (int, float):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.nan
+
+
 def _number(data: Mapping[str, Any], key: str, path: str = "") -> float:
-    value = data.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise CertificateError(f"{path}{key}: got {value!r}; must be a finite number")
-    return float(value)
+    number = _float(data.get(key))
+    if not math.isfinite(number):
+        what = "is missing" if key not in data else "is wrong"
+        raise CertificateError(f"{path}{key}: {what}; must be a finite number")
+    return number
 
 
 def _array(
     data: Mapping[str, Any], key: str, path: str, shape: tuple[int, ...], whole: bool = False
 ) -> NDArray[Any]:
     value = _get(data, key, list, path)
+    rows = value if len(shape) == 2 else [value]
+    if (len(shape) == 2 and len(rows) != shape[0]) or not all(
+        isinstance(row, list) and len(row) == shape[-1] for row in rows
+    ):
+        words = " lists of ".join(str(n) for n in shape)
+        raise CertificateError(f"{path}{key}: must be {words} numbers")
+    kinds = {type(item) for row in rows for item in row}
     try:
-        array = np.array(value, dtype=object).astype(float)
-        exact = array.astype(np.int64) if whole else array
-    except (TypeError, ValueError, OverflowError) as error:
-        raise CertificateError(f"{path}{key}: must hold numbers only") from error
-    if array.size == 0:
-        array, exact = array.reshape(shape), exact.reshape(shape)
-    if array.shape != shape:
-        raise CertificateError(f"{path}{key}: has shape {array.shape}; must have {shape}")
-    if not np.all(np.isfinite(array)) or not np.array_equal(array, exact):
-        kind = "whole numbers" if whole else "finite numbers"
-        raise CertificateError(f"{path}{key}: must hold {kind} only")
-    return exact
+        if kinds <= ({int} if whole else {int, float}):
+            array = np.array(value, dtype=np.int64 if whole else float).reshape(shape)
+            if np.all(np.isfinite(array)):
+                return array
+    except OverflowError:
+        pass
+    raise CertificateError(f"{path}{key}: must hold {'whole' if whole else 'finite'} numbers only")

@@ -91,7 +91,10 @@ def expansion(
         unit[e] = 1.0
         # b' = -e + (e (d.a) - d (a.e)) / rho, and rho d for the anchor itself
         swing = (Interval(unit) * along[:, None] - frames.direction * a[:, e][:, None]) / frames.rho[:, None]
-        w = Interval(np.where(frames.turning[:, None], swing.low, 0.0), np.where(frames.turning[:, None], swing.high, 0.0))
+        w = Interval(
+            np.where(frames.turning[:, None], swing.low, 0.0),
+            np.where(frames.turning[:, None], swing.high, 0.0),
+        )
         w = w - unit
         rate = dot(a, w) * 2.0
         moving = turned(frames, w)
@@ -219,7 +222,11 @@ def add_sides(
         for m in range(6):
             matrix[m] = matrix[m] + form[m] * weight
         if np.any(frames.turning):
-            size = Interval(q.low.reshape(-1, 9), q.high.reshape(-1, 9)).squared().total().sqrt() * np.sqrt(2.0) * (1.0 + 1e-12)
+            size = (
+                Interval(q.low.reshape(-1, 9), q.high.reshape(-1, 9)).squared().total().sqrt()
+                * np.sqrt(2.0)
+                * (1.0 + 1e-12)
+            )
             bend = size / frames.rho_least.squared() * _SWING * weight * half2
             rest = rest + np.where(frames.turning, finite(bend.high), 0.0)
             for e in range(3):
@@ -299,7 +306,5 @@ def at_corners(boxes: Boxes, matrix: list[Interval], slopes: list[list[Interval]
 def negative_definite(a: list[Interval]) -> np.ndarray:
     """Return which forms are negative definite for certain, by the leading minors of their negatives."""
     minor = a[0] * a[1] - a[3].squared()
-    det = (
-        -(a[2] * minor) + a[0] * a[5].squared() + a[1] * a[4].squared() - a[3] * a[4] * a[5] * 2.0
-    )
+    det = -(a[2] * minor) + a[0] * a[5].squared() + a[1] * a[4].squared() - a[3] * a[4] * a[5] * 2.0
     return np.asarray((a[0].high < 0.0) & (minor.low > 0.0) & (det.low > 0.0))

@@ -6,7 +6,7 @@ floating-point number on either side encloses the exact result. Nothing else is 
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,8 +39,8 @@ class Interval:
         self.low: FloatArray = np.asarray(low, dtype=float)
         self.high: FloatArray = self.low if high is None else np.asarray(high, dtype=float)
 
-    def __getitem__(self, index: object) -> Interval:
-        return Interval(self.low[index], self.high[index])  # type: ignore[index]
+    def __getitem__(self, index: Any) -> Interval:
+        return Interval(self.low[index], self.high[index])
 
     def __neg__(self) -> Interval:
         return Interval(-self.high, -self.low)

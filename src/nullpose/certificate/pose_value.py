@@ -23,7 +23,8 @@ def antenna_axis(certificate: Certificate) -> list[Fraction]:
         certificate: its attitude, radians, each within four.
     """
     (sr, cr), (sp, cp), (sy, cy) = (
-        sine_cosine(Fraction(angle)) for angle in (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
+        sine_cosine(Fraction(angle))
+        for angle in (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
     )
     # the third column of Rz(yaw) Ry(pitch) Rx(roll)
     return [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
@@ -61,28 +62,45 @@ def smallest_ratio(family: Family, position: list[Fraction], axis: list[Fraction
     denominators = []
     for g, isotropic in enumerate(family.denominator_isotropic):
         entries = range(family.denominator_start[g], family.denominator_start[g + 1])
-        sums = (Fraction(float(family.denominator_weight[e])) * links[family.denominator_point[e]] for e in entries)
+        sums = (
+            Fraction(float(family.denominator_weight[e])) * links[family.denominator_point[e]]
+            for e in entries
+        )
         denominators.append(Fraction(float(isotropic)) + sum(sums, Fraction(0)))
-    return min(
-        (Fraction(float(family.numerator_isotropic[k])) + Fraction(float(family.numerator_weight[k])) * links[a])
+    ratios: list[Fraction] = [
+        (
+            Fraction(float(family.numerator_isotropic[k]))
+            + Fraction(float(family.numerator_weight[k])) * links[a]
+        )
         / denominators[family.denominator_of[k]]
         for k, a in enumerate(family.numerator_point)
-    )
+    ]
+    return min(ratios)
 
 
 def field_offset(axis_field: AxisField, position: list[Fraction], axis: list[Fraction]) -> Fraction:
     """Return the squared sine of the angle between an axis and the one that a field has at a position.
 
+    Where the field vanishes, in line with both nodes, every axis across that line is a limit of its own.
+
     Args:
         axis_field: an affine field.
         position: where, metres.
-        axis: the axis, of any length.
+        axis: the axis, of any length but zero.
     """
+    matrix = [[Fraction(float(x)) for x in row] for row in axis_field.matrix]
     wanted = [
-        Fraction(float(axis_field.offset[m]))
-        + sum(Fraction(float(axis_field.matrix[m, i])) * position[i] for i in range(3))
+        Fraction(float(axis_field.offset[m])) + sum(x * p for x, p in zip(matrix[m], position, strict=True))
         for m in range(3)
     ]
-    cross = [wanted[(i + 1) % 3] * axis[(i + 2) % 3] - wanted[(i + 2) % 3] * axis[(i + 1) % 3] for i in range(3)]
-    size = sum(x * x for x in wanted) * sum(x * x for x in axis)
-    return Fraction(sum(x * x for x in cross)) / size if size else Fraction(0)
+    length2, size2 = sum(x * x for x in axis), sum(x * x for x in wanted)
+    if size2:
+        cross = [
+            wanted[(i + 1) % 3] * axis[(i + 2) % 3] - wanted[(i + 2) % 3] * axis[(i + 1) % 3]
+            for i in range(3)
+        ]
+        return Fraction(sum(x * x for x in cross)) / (size2 * length2)
+    turned = [sum(x * u for x, u in zip(row, axis, strict=True)) for row in matrix]
+    # u -> w x u: |w x u|^2 = |w|^2 |u|^2 for u across w, and half the squares of the matrix sum to |w|^2
+    whole = Fraction(sum(x * x for row in matrix for x in row)) / 2
+    return abs(1 - Fraction(sum(x * x for x in turned)) / (whole * length2))

@@ -40,7 +40,13 @@ _MOST_RAD = 4.0
 _CHUNK = 4096
 _ROUNDS = 3  # boxes whose test fails by a hair are cut into eight, so many times
 
-_NAMES = {WORLD: "free axis", TOWARDS: "free axis, turning frame", AFFINE: "given axis", FAR: "distance", KEPT_OUT: "keep-out"}
+_NAMES = {
+    WORLD: "free axis",
+    TOWARDS: "free axis, turning frame",
+    AFFINE: "given axis",
+    FAR: "distance",
+    KEPT_OUT: "keep-out",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,18 +103,19 @@ def _sentence(certificate: Certificate, leaves: int) -> str:
     if certificate.null_jammer is not None:
         axes = f"an antenna whose null is on jammer {certificate.null_jammer}"
     who = f"with {axes}" if axes.startswith("a") else f"and {axes}"
-    gap = certificate.upper_bound / certificate.value - 1.0
+    bound, value = certificate.upper_bound, certificate.value
     return (
         f"proved: in this scenario no position {who} gives every node an SINR above "
-        f"{certificate.upper_bound:.10g} ({10.0 * math.log10(certificate.upper_bound):.7f} dB), and the stated "
-        f"pose gives every node {certificate.value:.10g} ({10.0 * math.log10(certificate.value):.7f} dB) or "
-        f"more, which is within {gap:.2e} of it; {leaves} leaves checked"
+        f"{bound:.10g} ({10.0 * math.log10(bound):.7f} dB), and the stated pose gives every node "
+        f"{value:.10g} ({10.0 * math.log10(value):.7f} dB) or more, which is within "
+        f"{bound / value - 1.0:.2e} of it; {leaves} leaves checked"
     )
 
 
 def _claim_fault(certificate: Certificate, fields: dict[str, AxisField] | None) -> str:
     if fields is None:
-        return f"scheme {certificate.scheme!r} with null jammer {certificate.null_jammer!r} has no certificate here"
+        with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
+        return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
     named = [tree.axis for tree in certificate.trees]
     if sorted(named) != sorted(fields):
         return f"the scheme needs a tree for each of {sorted(fields)}; there are {sorted(named)}"
@@ -168,8 +175,8 @@ def _tree_fault(
             where = ", ".join(f"{low.low[one, i]:.6g} to {high.high[one, i]:.6g}" for i in range(3))
             test = _NAMES[int(leaves.test[one])]
             return (
-                f"tree {tree.axis!r}: leaf {one} (x, y, z: {where} m) is not excluded at {leaves.level[one]:.12g} "
-                f"by its test ({test})"
+                f"tree {tree.axis!r}: leaf {one} (x, y, z: {where} m) is not excluded at "
+                f"{leaves.level[one]:.12g} by its test ({test})"
             )
         if on_progress is not None:
             on_progress(before + min(start + _CHUNK, len(leaves)), total)
@@ -181,7 +188,9 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
     leaves = tree.leaves
     points, ratios, balls = len(family.points_m), len(family.numerator_point), len(family.keep_out_points_m)
     limit = np.select(
-        [leaves.test == TOWARDS, leaves.test == FAR, leaves.test == KEPT_OUT], [points, ratios, balls], points + 1
+        [leaves.test == TOWARDS, leaves.test == FAR, leaves.test == KEPT_OUT],
+        [points, ratios, balls],
+        points + 1,
     )
     needs_point = np.isin(leaves.test, (TOWARDS, FAR, KEPT_OUT))
     needs_mix = np.isin(leaves.test, (WORLD, TOWARDS, AFFINE))
