@@ -1,0 +1,164 @@
+"""Scenes, certificates and plain algebra that the tests of the verifier share."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import Certificate, Leaves
+from nullpose.family import Family
+from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+from nullpose.solve import certificate_of, solve
+
+Place = tuple[float, float, float]
+
+
+@pytest.fixture(scope="session")
+def scene() -> Callable[..., Scenario]:
+    """Returns a builder: nodes and jammers with their powers (1 W if left out), altitudes and airspace."""
+
+    def build(
+        nodes_m: Sequence[Place],
+        jammers_m: Sequence[Place] = (),
+        *,
+        node_powers_w: Sequence[float] | float = 1.0,
+        jammer_powers_w: Sequence[float] | float = 1.0,
+        altitude_m: tuple[float, float] = (8.0, 30.0),
+        **airspace: object,
+    ) -> Scenario:
+        return Scenario(
+            airspace=Airspace(altitude_m=altitude_m, **airspace),
+            receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
+            nodes=tuple(
+                Node(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(nodes_m, np.broadcast_to(node_powers_w, len(nodes_m)), strict=True)
+            ),
+            jammers=tuple(
+                Jammer(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(jammers_m, np.broadcast_to(jammer_powers_w, len(jammers_m)), strict=True)
+            ),
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def paper(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: the paper's scene at a jamming power, in any airspace."""
+
+    def build(jammer_w: float = 1.0, **airspace: object) -> Scenario:
+        return scene([(0, 0, 0), (0, 50, 0)], [(17, 15, 4)], jammer_powers_w=jammer_w, **airspace)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def random_scene(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: so many nodes and jammers on a field of 100 m, of a total jamming power."""
+
+    def build(seed: int, nodes: int, jammers: int, **airspace: object) -> Scenario:
+        rng = np.random.default_rng(seed)
+        return scene(
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (nodes, 3)),
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (jammers, 3)),
+            node_powers_w=10.0 ** rng.uniform(-0.5, 0.5, nodes),
+            jammer_powers_w=30.0 / max(jammers, 1),
+            **airspace,
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def certified() -> Callable[..., Certificate]:
+    """Returns a function: the certificate of a scenario solved under a scheme to a gap."""
+
+    def make(
+        scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3, null_jammer: str | None = None
+    ) -> Certificate:
+        return certificate_of(solve(scenario, scheme, gap=gap, null_jammer=null_jammer))
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def celled(random_scene: Callable[..., Scenario], certified: Callable[..., Certificate]) -> Certificate:
+    """Returns a certificate some of whose leaves have cells of axes."""
+    return certified(random_scene(51, 5, 1))
+
+
+@pytest.fixture(scope="session")
+def walled(paper: Callable[..., Scenario], certified: Callable[..., Certificate]) -> Certificate:
+    """Returns a certificate some of whose leaves use a keep-out ball's multiplier."""
+    return certified(paper(keep_out_m=26.5))
+
+
+@pytest.fixture(scope="session")
+def random_family() -> Callable[..., Family]:
+    """Returns a builder: so many ratios over one denominator of so many points, with keep-out balls."""
+
+    def build(rng: np.random.Generator, ratios: int, others: int, keep_out_m: float = 1.0) -> Family:
+        points_m = rng.uniform([0.0, 0.0, 0.0], [60.0, 60.0, 5.0], (ratios + others, 3))
+        return Family(
+            points_m=points_m,
+            numerator_isotropic=rng.uniform(0.0, 0.2, ratios),
+            numerator_weight=10.0 ** rng.uniform(2.0, 4.0, ratios),
+            numerator_point=np.arange(ratios),
+            denominator_of=np.zeros(ratios, dtype=np.int64),
+            denominator_isotropic=rng.uniform(0.5, 2.0, 1),
+            denominator_start=np.array([0, others]),
+            denominator_point=ratios + np.arange(others),
+            denominator_weight=10.0 ** rng.uniform(1.0, 4.0, others),
+            low_m=np.array([-np.inf, -np.inf, 8.0]),
+            high_m=np.array([np.inf, np.inf, 30.0]),
+            keep_out_points_m=points_m,
+            keep_out_m=keep_out_m,
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def make_leaves() -> Callable[..., Leaves]:
+    """Returns a builder: leaves of which only some columns matter; the others are of no effect."""
+
+    def build(count: int, **columns: object) -> Leaves:
+        plain: dict[str, object] = {
+            "box": np.zeros((count, 6), dtype=np.int64),
+            "cell": np.tile(np.array([-1, 0, 0, 0, 0]), (count, 1)),
+            "test": np.zeros(count, dtype=np.int64),
+            "point": np.full(count, -1),
+            "level": np.ones(count),
+            "mix": np.zeros(count, dtype=np.int64),
+            "mixes": ({0: 1.0},),
+            "sides": np.zeros((count, 2)),
+            "ball": np.full(count, -1),
+            "ball_multiplier": np.zeros(count),
+        }
+        return Leaves(**(plain | columns))
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def link_matrix() -> Callable[[np.ndarray], np.ndarray]:
+    """Returns a function: the form of a link, ``(|r|^2 I - r r^T) / |r|^4``, densely."""
+
+    def matrix(r: np.ndarray) -> np.ndarray:
+        square = r @ r
+        return (square * np.eye(3) - np.outer(r, r)) / square**2
+
+    return matrix
+
+
+@pytest.fixture(scope="session")
+def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., np.ndarray]:
+    """Returns a function: the ratios of a family at a pose, by dense matrices and nothing else."""
+
+    def ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
+        u = axis / np.linalg.norm(axis)
+        gains = np.array([u @ link_matrix(point - position_m) @ u for point in family.points_m])
+        below = family.denominator_isotropic[0] + family.denominator_weight @ gains[family.denominator_point]
+        return (family.numerator_isotropic + family.numerator_weight * gains[family.numerator_point]) / below
+
+    return ratios

@@ -1,0 +1,231 @@
+"""Given axes: the expansions enclose the links they stand for, and what they exclude is excluded."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link_jet
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.certificate import AFFINE
+from nullpose.certificate.interval import Interval
+from nullpose.certificate.pose_value import link
+from nullpose.family import AxisField
+
+seeds = st.integers(0, 2**32 - 1)
+
+SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+POINTS = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0], [17.0, 15.0, 4.0], [31.7, -8.3, 1.1]])
+FIELDS = [
+    AxisField.vertical(),
+    AxisField.towards(POINTS[2]),
+    AxisField.broadside(POINTS[0], POINTS[1]),
+    AxisField.broadside(POINTS[1], POINTS[3]),
+]
+
+
+def exact(array: np.ndarray) -> list[Fraction]:
+    """Return numbers exactly."""
+    return [Fraction(float(x)) for x in array]
+
+
+def exact_link(field: AxisField, point: np.ndarray, p: list[Fraction]) -> Fraction:
+    """Return a link's ``sin^2 / |r|^2`` at a position with the field's axis, exactly."""
+    axis = [
+        a + sum(m * x for m, x in zip(row, p, strict=True))
+        for a, row in zip(exact(field.offset), map(exact, field.matrix), strict=True)
+    ]
+    return link(exact(point), p, axis)
+
+
+def plain_link(field: AxisField, point: np.ndarray, p: np.ndarray) -> float:
+    """Return the same in floating point."""
+    return float(exact_link(field, point, exact(p)))
+
+
+def one_box(rng: np.random.Generator) -> Boxes:
+    """Return a box above the field, well clear of the ground points."""
+    return Boxes(
+        leaf=np.zeros(1, dtype=np.int64),
+        centre=rng.uniform([-30.0, -30.0, 8.0], [60.0, 80.0, 30.0], (1, 3)),
+        half=10.0 ** rng.uniform(-2.0, 0.3, (1, 3)),
+    )
+
+
+def ends(x: Interval) -> tuple[Fraction, Fraction]:
+    """Return the exact ends of an interval of one box; none must be undefined."""
+    return Fraction(float(x.low[0])), Fraction(float(x.high[0]))
+
+
+def times(x: Interval, factor: Fraction) -> tuple[Fraction, Fraction]:
+    """Return the exact ends of a multiple."""
+    low, high = (end * factor for end in ends(x))
+    return min(low, high), max(low, high)
+
+
+@pytest.mark.parametrize("field", FIELDS)
+@given(seed=seeds)
+def test_expansions_enclose_the_links(field: AxisField, seed: int) -> None:
+    """The exact link at any position of a box lies within value, slopes and second derivatives."""
+    rng = np.random.default_rng(seed)
+    boxes, j = one_box(rng), int(rng.integers(4))
+    value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[j][None])
+    if not all(np.isfinite(x.low[0]) and np.isfinite(x.high[0]) for x in hessian):
+        return
+    centre, half = exact(boxes.centre[0]), exact(boxes.half[0])
+    assert ends(value)[0] <= exact_link(field, POINTS[j], centre) <= ends(value)[1]
+    for shares in rng.integers(-8, 9, (4, 3)):
+        x = [Fraction(int(s), 8) * h for s, h in zip(shares, half, strict=True)]
+        there = exact_link(field, POINTS[j], [c + d for c, d in zip(centre, x, strict=True)])
+        terms = [ends(value)] + [times(s, d) for s, d in zip(slopes, x, strict=True)]
+        for entry, (i, k) in zip(hessian, SIX, strict=True):
+            terms.append(times(entry, x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
+        assert sum(low for low, _ in terms) <= there <= sum(high for _, high in terms)
+        assert ends(ranged)[0] <= there <= ends(ranged)[1]
+
+
+@pytest.mark.parametrize("field", FIELDS)
+@given(seed=seeds)
+def test_hessians_contain_finite_differences(field: AxisField, seed: int) -> None:
+    """Second differences anywhere in the box, and first ones at its centre, lie within the bounds."""
+    rng = np.random.default_rng(seed)
+    boxes, j, step = one_box(rng), int(rng.integers(4)), Fraction(1, 1000)
+    _, slopes, hessian, _ = link_jet(field, boxes, POINTS[j][None])
+    centre = exact(boxes.centre[0])
+    p = [
+        c + Fraction(float(s)) * h
+        for c, s, h in zip(centre, rng.uniform(-1, 1, 3), exact(boxes.half[0]), strict=True)
+    ]
+
+    def at(base: list[Fraction], *moves: tuple[int, int]) -> Fraction:
+        place = list(base)
+        for i, sign in moves:
+            place[i] += sign * step
+        return exact_link(field, POINTS[j], place)
+
+    scale = float(1.0 / np.sum((POINTS[j] - boxes.centre[0]) ** 2))
+    for i in range(3):
+        first = float((at(centre, (i, 1)) - at(centre, (i, -1))) / (2 * step))
+        assert slopes[i].low[0] - 1e-5 * scale <= first <= slopes[i].high[0] + 1e-5 * scale
+    for entry, (i, k) in zip(hessian, SIX, strict=True):
+        if i == k:
+            second = (at(p, (i, 1)) + at(p, (i, -1)) - 2 * at(p)) / step**2
+        else:
+            second = at(p, (i, 1), (k, 1)) + at(p, (i, -1), (k, -1)) - at(p, (i, 1), (k, -1))
+            second = (second - at(p, (i, -1), (k, 1))) / (4 * step**2)
+        assert entry.low[0] - 1e-5 * scale <= float(second) <= entry.high[0] + 1e-5 * scale
+
+
+def test_small_boxes_have_narrow_bounds() -> None:
+    """The bounds close in on the link as the box shrinks: they are not merely wide."""
+    for field in FIELDS:
+        boxes = Boxes(
+            leaf=np.zeros(1, dtype=np.int64), centre=np.array([[9.0, 21.0, 12.0]]), half=np.full((1, 3), 1e-6)
+        )
+        value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[0][None])
+        there = plain_link(field, POINTS[0], boxes.centre[0])
+        for x in (value, *slopes, *hessian):
+            assert x.high[0] - x.low[0] <= 1e-5 * there
+        assert ranged.high[0] - ranged.low[0] <= 1e-5 * there
+
+
+def quadratic(rng: np.random.Generator) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return a random quadratic on the unit cube whose largest value is near zero."""
+    hessian = rng.normal(size=(3, 3)) * 10.0 ** rng.uniform(-2, 1)
+    hessian = hessian + hessian.T - np.eye(3) * rng.uniform(0.0, 6.0)
+    gradient = rng.normal(size=3) * 10.0 ** rng.uniform(-2, 1)
+    grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), -1).reshape(-1, 3)
+    top = np.max(grid @ gradient + 0.5 * np.einsum("pi,ij,pj->p", grid, hessian, grid))
+    size = np.abs(hessian).sum() + np.abs(gradient).sum()
+    return float(-top + size * rng.uniform(-0.6, 0.1)), gradient, hessian
+
+
+def test_negative_quadratics_are_negative() -> None:
+    """What passes is negative at every position tried, also with the Hessian at its bounds; not in vain."""
+    rng = np.random.default_rng(7)
+    passed = missed = 0
+    for _ in range(400):
+        value, gradient, hessian = quadratic(rng)
+        half = 10.0 ** rng.uniform(-2, 2, 3)
+        slack = 10.0 ** rng.uniform(-8, -1) * np.abs(hessian).max()
+        boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.zeros((1, 3)), half=half[None])
+        bounds = [
+            Interval(
+                [(hessian[i, k] - slack) / (half[i] * half[k])],
+                [(hessian[i, k] + slack) / (half[i] * half[k])],
+            )
+            for i, k in SIX
+        ]
+        slopes = [Interval([g / h]) for g, h in zip(gradient, half, strict=True)]
+        holds = _quadratic_negative(boxes, Interval([value]), slopes, bounds)[0]
+        y = np.vstack([rng.uniform(-1, 1, (200, 3)), np.sign(rng.normal(size=(50, 3)))])
+        noise = slack * np.triu(rng.choice([-1.0, 1.0], (len(y), 3, 3)))
+        noise = noise + np.swapaxes(np.triu(noise, 1), 1, 2)
+        tops = value + y @ gradient + 0.5 * np.einsum("pi,pij,pj->p", y, hessian + noise, y)
+        if holds:
+            passed += 1
+            assert tops.max() < 0.0
+        elif tops.max() < 0.0:
+            missed += 1
+    assert passed > 100
+    assert missed < passed
+
+
+@pytest.mark.parametrize("field", FIELDS[:3])
+@settings(max_examples=15)
+@given(seed=seeds)
+def test_no_position_of_an_excluded_box_reaches_the_level(
+    field: AxisField, seed: int, random_family: Callable, make_leaves: Callable, dense_ratios: Callable
+) -> None:
+    """Whatever mix or ball: allowed positions of excluded boxes stay below the level."""
+    rng = np.random.default_rng(seed)
+    count, ratios = 60, int(rng.integers(1, 4))
+    keep_out_m = float(rng.choice([1.0, 20.0]))
+    family = random_family(rng, ratios, 2, keep_out_m=keep_out_m)
+
+    def axis(p: np.ndarray) -> np.ndarray:
+        return field.offset + field.matrix @ p
+
+    boxes = Boxes(
+        leaf=np.arange(count),
+        centre=rng.uniform([-20.0, -20.0, 10.0], [80.0, 80.0, 30.0], (count, 3)),
+        half=10.0 ** rng.uniform(-2.0, 0.5, (count, 3)),
+    )
+    at_centre = np.array([dense_ratios(family, p, axis(p)).min() for p in boxes.centre])
+    drawn = rng.dirichlet(np.ones(ratios), count)
+    leaves = make_leaves(
+        count,
+        test=np.full(count, AFFINE),
+        level=at_centre * 10.0 ** rng.uniform(-0.2, 0.8, count),
+        mix=np.arange(count),
+        mixes=tuple({int(k): float(w) for k, w in enumerate(row)} for row in drawn),
+        ball=rng.integers(-1, len(family.points_m), count),
+        ball_multiplier=10.0 ** rng.uniform(-4.0, 0.0, count) * rng.integers(0, 2, count),
+    )
+    with np.errstate(all="ignore"):
+        holds = affine_holds(family, field, leaves, boxes)
+    assert np.any(holds)
+    assert not np.all(holds)
+    for b in np.flatnonzero(holds):
+        for shift in rng.uniform(-1.0, 1.0, (20, 3)):
+            p = boxes.centre[b] + shift * boxes.half[b]
+            if np.min(np.linalg.norm(family.points_m - p, axis=1)) >= keep_out_m:
+                assert dense_ratios(family, p, axis(p)).min() < leaves.level[b]
+
+
+def test_a_mix_of_nothing_excludes_nothing(random_family: Callable, make_leaves: Callable) -> None:
+    """Weights of zero prove nothing, also inside a ball."""
+    family = random_family(np.random.default_rng(2), 2, 1, keep_out_m=5.0)
+    boxes = Boxes(
+        leaf=np.zeros(1, dtype=np.int64),
+        centre=family.points_m[:1] + np.array([3.0, 0.0, 0.0]),
+        half=np.full((1, 3), 0.1),
+    )
+    leaves = make_leaves(
+        1, level=np.array([1e6]), mixes=({0: 0.0},), ball=np.array([0]), ball_multiplier=np.ones(1)
+    )
+    with np.errstate(all="ignore"):
+        assert not affine_holds(family, AxisField.vertical(), leaves, boxes)[0]

@@ -1,0 +1,79 @@
+"""Certificates: which axes a scheme claims, and that no code of the solver is used to check them."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import claimed_axes
+from nullpose.family import AxisField
+from nullpose.solve import Scheme
+
+
+def test_each_scheme_names_its_axes(random_scene: Callable) -> None:
+    """The axes of a scheme, by the names that its trees must have."""
+    two, three = random_scene(1, 2, 2), random_scene(1, 3, 2)
+    for scenario in (two, three):
+        assert list(claimed_axes(scenario, "optimum", None)) == ["free"]
+        assert list(claimed_axes(scenario, "vertical", None)) == ["vertical"]
+        assert list(claimed_axes(scenario, "zero-interference", None)) == ["null M1", "null M2"]
+        assert list(claimed_axes(scenario, "zero-interference", "M2")) == ["null M2"]
+    assert list(claimed_axes(two, "maximum-gain", None)) == ["broadside"]
+
+
+def test_the_axes_are_the_schemes(random_scene: Callable) -> None:
+    """Each field is the paper's."""
+    scenario = random_scene(1, 2, 2)
+    expected = {
+        ("optimum", "free"): AxisField.free(),
+        ("vertical", "vertical"): AxisField.vertical(),
+        ("zero-interference", "null M2"): AxisField.towards(scenario.jammer_positions_m[1]),
+        ("maximum-gain", "broadside"): AxisField.broadside(*scenario.node_positions_m),
+    }
+    for (scheme, name), field in expected.items():
+        claimed = claimed_axes(scenario, scheme, None)[name]
+        for one, other in zip(claimed.arrays, field.arrays, strict=True):
+            assert np.array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "null_jammer"),
+    [
+        ("maximum-gain-printed", None),
+        ("", None),
+        ("Optimum", None),
+        ("zero-interference", "M9"),
+        ("zero-interference", ""),
+        ("optimum", "M1"),
+        ("vertical", "M1"),
+        ("maximum-gain", "M1"),
+    ],
+)
+def test_others_have_none(scheme: str, null_jammer: str | None, random_scene: Callable) -> None:
+    """Unknown schemes and jammers, and a jammer to null where no null is pointed, claim nothing."""
+    assert claimed_axes(random_scene(1, 2, 2), scheme, null_jammer) is None
+
+
+def test_some_scenarios_have_none(random_scene: Callable) -> None:
+    """Maximum gain for other than two nodes, and a null without jammers, claim nothing."""
+    assert claimed_axes(random_scene(1, 3, 1), "maximum-gain", None) is None
+    assert claimed_axes(random_scene(1, 1, 1), "maximum-gain", None) is None
+    assert claimed_axes(random_scene(1, 2, 0), "zero-interference", None) is None
+
+
+def test_schemes_are_spelled_as_the_solver_s() -> None:
+    """The names that a certificate uses are those of the schemes."""
+    assert {"optimum", "vertical", "maximum-gain", "zero-interference"} <= {scheme.value for scheme in Scheme}
+
+
+def test_the_verifier_needs_no_solver() -> None:
+    """Importing the verifier loads neither the solver nor its compiler."""
+    program = (
+        "import sys, nullpose.certificate\n"
+        "others = ('nullpose.solve', 'nullpose.report', 'numba', 'scipy')\n"
+        "print([name for name in sys.modules if name.startswith(others)])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

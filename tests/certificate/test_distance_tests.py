@@ -1,0 +1,110 @@
+"""Distances alone: what is called out of reach is, and so is what a root box leaves out."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def some_boxes(rng: np.random.Generator, count: int) -> Boxes:
+    """Return boxes above the field, one for each leaf."""
+    return Boxes(
+        leaf=np.arange(count),
+        centre=rng.uniform([-40.0, -40.0, 5.0], [100.0, 100.0, 30.0], (count, 3)),
+        half=10.0 ** rng.uniform(-2.0, 1.0, (count, 3)),
+    )
+
+
+def inside(rng: np.random.Generator, boxes: Boxes, b: int, count: int) -> np.ndarray:
+    """Return positions of a box, corners among them."""
+    shifts = rng.uniform(-1.0, 1.0, (count, 3))
+    shifts[: count // 2] = np.sign(shifts[: count // 2])
+    return boxes.centre[b] + shifts * boxes.half[b]
+
+
+def nearest_m(boxes: Boxes, b: int, point: np.ndarray) -> float:
+    """Return the distance from a point to a box."""
+    return float(np.linalg.norm(np.maximum(np.abs(point - boxes.centre[b]) - boxes.half[b], 0.0)))
+
+
+@given(seed=seeds)
+def test_far_is_far(
+    seed: int, random_family: Callable, make_leaves: Callable, dense_ratios: Callable
+) -> None:
+    """No allowed pose of a box that is out of reach gives its node the level; just out of reach is told."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 1, keep_out_m=float(rng.choice([1.0, 12.0])))
+    boxes = some_boxes(rng, 30)
+    nodes = rng.integers(3, size=30)
+    level = 10.0 ** rng.uniform(-1.0, 2.0, 30)
+    distances = [nearest_m(boxes, b, family.points_m[nodes[b]]) for b in range(30)]
+    reach = np.maximum(distances, family.keep_out_m)
+    top = family.numerator_isotropic[nodes] + family.numerator_weight[nodes] / reach**2
+    exact = top / family.denominator_isotropic[0]
+    level[::2] = exact[::2] * (1.0 + 1e-9 * np.sign(rng.normal(size=15)))
+    holds = far_holds(family, make_leaves(30, point=nodes, level=level), boxes)
+    assert np.array_equal(holds, exact < level)
+    for b in np.flatnonzero(holds):
+        for p in inside(rng, boxes, b, 6):
+            if np.min(np.linalg.norm(family.points_m - p, axis=1)) >= family.keep_out_m:
+                assert dense_ratios(family, p, rng.normal(size=3))[nodes[b]] <= level[b]
+
+
+@given(seed=seeds)
+def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_leaves: Callable) -> None:
+    """A box is kept out if its farthest corner is in the ball, to rounding."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 1, keep_out_m=25.0)
+    boxes = some_boxes(rng, 40)
+    ball = rng.integers(4, size=40)
+    away = np.abs(family.keep_out_points_m[ball] - boxes.centre) + boxes.half
+    farthest = np.linalg.norm(away, axis=1)
+    holds = kept_out_holds(family, make_leaves(40, point=ball), boxes)
+    assert np.array_equal(holds, farthest < 25.0)
+    larger = replace(family, keep_out_m=float(farthest[0]) * (1.0 + 1e-12))
+    smaller = replace(family, keep_out_m=float(farthest[0]) * (1.0 - 1e-12))
+    assert kept_out_holds(larger, make_leaves(40, point=ball), boxes)[0]
+    assert not kept_out_holds(smaller, make_leaves(40, point=ball), boxes)[0]
+    none = replace(family, keep_out_points_m=np.zeros((0, 3)))
+    assert not np.any(kept_out_holds(none, make_leaves(40, point=ball), boxes))
+
+
+@given(seed=seeds)
+def test_nothing_beyond_the_root_beats_the_bound(seed: int, random_family: Callable) -> None:
+    """A root passes exactly if beyond each face one node, at its best, stays within the bound."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 1)
+    bound = float(10.0 ** rng.uniform(0.0, 1.5))
+    lack = bound * family.denominator_isotropic[0] - family.numerator_isotropic
+    radius = np.sqrt(family.numerator_weight / np.maximum(lack, 1e-300))
+    points = family.points_m[:3]
+    low = np.max(points - radius[:, None], axis=0)
+    high = np.min(points + radius[:, None], axis=0)
+    wide = np.array([low - 1e-9 * radius.max(), high + 1e-9 * radius.max()])
+    assert np.all(lack > 0.0)
+    assert root_holds(family, wide, bound) == ""
+    for side, i in ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2)):
+        narrow = wide.copy()
+        narrow[side, i] += 1e-6 * radius.max() * (1.0 if side == 0 else -1.0)
+        fault = root_holds(family, narrow, bound)
+        end = (family.low_m if side == 0 else family.high_m)[i]
+        enough = narrow[side, i] <= end if side == 0 else narrow[side, i] >= end
+        assert (fault == "") == bool(enough)
+        assert enough or f"ends at {'xyz'[i]} = " in fault
+
+
+def test_a_root_of_the_whole_domain_needs_no_reach(random_family: Callable) -> None:
+    """Where the room is bounded its own faces do; a hair inside does not."""
+    family = random_family(np.random.default_rng(1), 2, 1)
+    low, high = np.array([-5.0, -5.0, 8.0]), np.array([5.0, 5.0, 9.0])
+    room = replace(family, low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
+    assert root_holds(room, np.array([low, high]), 1e-3) == ""
+    assert "x = " in root_holds(room, np.array([low + np.array([1e-12, 0, 0]), high]), 1e-3)
+    assert "z = " in root_holds(room, np.array([low, high - np.array([0, 0, 1e-12])]), 1e-3)

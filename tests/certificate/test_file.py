@@ -1,0 +1,367 @@
+"""Certificates as files: what is written is read back, and whatever is none is refused in words."""
+
+import copy
+import gzip
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nullpose.certificate import (
+    Certificate,
+    certificate_text,
+    parse_certificate,
+    read_certificate,
+    write_certificate,
+)
+from nullpose.certificate.file import scenario_digest
+from nullpose.errors import CertificateError, OutputError, ScenarioError
+
+Data = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def certificate(paper: Callable, certified: Callable) -> Certificate:
+    """Returns a small certificate."""
+    return certified(paper(keep_out_m=26.5), gap=0.1)
+
+
+@pytest.fixture(scope="module")
+def text(certificate: Certificate) -> str:
+    """Returns it as text."""
+    return certificate_text(certificate)
+
+
+@pytest.fixture
+def data(text: str) -> Data:
+    """Returns it as plain data, to be spoiled."""
+    return json.loads(text)
+
+
+def fault(data: object) -> str:
+    """Return the words with which data is refused."""
+    with pytest.raises((CertificateError, ScenarioError)) as caught:
+        parse_certificate(json.dumps(data))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["walled", "celled"])
+def test_text_survives(name: str, request: pytest.FixtureRequest) -> None:
+    """Text to certificate to text is the identity, cells, balls and mixes included."""
+    text = certificate_text(request.getfixturevalue(name))
+    assert certificate_text(parse_certificate(text)) == text
+    json.loads(text, parse_constant=lambda name: pytest.fail(name))
+
+
+def test_a_certificate_without_jammers_or_with_several_trees_survives(
+    random_scene: Callable, certified: Callable
+) -> None:
+    """Several trees, a null jammer and a scheme of given axes are kept."""
+    scenario = random_scene(3, 3, 2)
+    for null_jammer in (None, "M2"):
+        text = certificate_text(certified(scenario, "zero-interference", null_jammer=null_jammer))
+        again = parse_certificate(text)
+        assert certificate_text(again) == text
+        assert (again.null_jammer, len(again.trees)) == (null_jammer, 1 if null_jammer else 2)
+
+
+def test_columns_stand_on_lines_of_their_own(text: str) -> None:
+    """The file is readable: the claim above, each column on one line."""
+    lines = text.splitlines()
+    assert lines[1] == ' "format": "nullpose-certificate",'
+    assert sum(line.strip().startswith('"box":') for line in lines) == 1
+    assert len(lines) < 60
+
+
+@pytest.mark.parametrize("name", ["proof.json", "proof.json.gz"])
+def test_files_survive(name: str, certificate: Certificate, tmp_path: Path) -> None:
+    """Written and read, compressed or not, the certificate is the same, and so are its bytes."""
+    path = tmp_path / name
+    write_certificate(certificate, path)
+    first = path.read_bytes()
+    again = read_certificate(path)
+    assert certificate_text(again) == certificate_text(certificate)
+    write_certificate(again, path)
+    assert path.read_bytes() == first
+    assert first.startswith(b"\x1f\x8b") == (name[-2:] == "gz")
+    renamed = tmp_path / "other"
+    renamed.write_bytes(first)
+    assert certificate_text(read_certificate(renamed)) == certificate_text(certificate)
+
+
+def test_arrays_have_their_types(text: str) -> None:
+    """Indices are whole numbers and levels floats, whatever JSON made of them."""
+    leaves = parse_certificate(text).trees[0].leaves
+    for name in ("box", "cell", "test", "point", "mix", "ball"):
+        assert getattr(leaves, name).dtype == np.int64
+    for name in ("level", "sides", "ball_multiplier"):
+        assert getattr(leaves, name).dtype == np.float64
+
+
+def test_whole_numbers_may_stand_for_floats(data: Data) -> None:
+    """A value of 1 is as good as 1.0."""
+    data["pose"]["yaw_rad"] = 0
+    data["trees"][0]["leaves"]["sides"][0] = [0, 0]
+    assert parse_certificate(json.dumps(data)).yaw_rad == 0.0
+
+
+def places(value: Any, path: tuple = ()) -> list[tuple]:
+    """Return the paths of a certificate's parts; of long lists, of a few items only."""
+    out = [path] if path else []
+    if isinstance(value, dict):
+        items = list(value.items())
+    elif isinstance(value, list):
+        items = list(enumerate(value))[:2]
+    else:
+        items = []
+    for key, item in items:
+        if key not in ("scenario", "provenance"):
+            out += places(item, (*path, key))
+    return out
+
+
+def set_at(data: Any, path: tuple, value: Any) -> None:
+    """Put a value where a path points."""
+    for key in path[:-1]:
+        data = data[key]
+    data[path[-1]] = value
+
+
+def words_for(path: tuple) -> str:
+    """Return the name that a path's fault must carry: its last key that is no index."""
+    return next(str(key) for key in reversed(path) if isinstance(key, str))
+
+
+def test_missing_keys_are_named(data: Data) -> None:
+    """Each key that is left out is asked for by its name."""
+    for path in places(data):
+        if isinstance(path[-1], str) and path != ("format",):
+            broken = copy.deepcopy(data)
+            part = broken
+            for key in path[:-1]:
+                part = part[key]
+            del part[path[-1]]
+            assert words_for(path) in fault(broken)
+
+
+def refusal(text: str) -> str:
+    """Return the words with which a text is refused, none if it is not."""
+    try:
+        parse_certificate(text)
+    except CertificateError as error:
+        return str(error)
+    return ""
+
+
+WRONG = [None, True, False, "1", "", {}, {"a": 1}, [], [[]], [None], [[[1]]], 1, 10**400, 1.5, -1.5, "NaN"]
+
+
+def test_wrong_types_are_named(data: Data) -> None:
+    """Any value put anywhere is either as good or refused by name; nothing else is raised."""
+    refused = 0
+    for path in places(data):
+        for wrong in WRONG:
+            broken = copy.deepcopy(data)
+            set_at(broken, path, wrong)
+            words = refusal(json.dumps(broken))
+            # a column of another length is told of the first one that differs from it
+            assert not words or words_for(path) in words or "trees[0].leaves." in words
+            refused += bool(words)
+    assert refused > 300
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("version",), 1.0),
+        (("version",), True),
+        (("version",), 2),
+        (("version",), "1"),
+        (("format",), "nullpose"),
+        (("value",), True),
+        (("value",), "1.0"),
+        (("value",), 10**400),
+        (("pose", "position_m"), []),
+        (("pose", "position_m"), [1.0, 2.0]),
+        (("pose", "position_m"), [1.0, 2.0, 3.0, 4.0]),
+        (("pose", "position_m"), [1.0, 2.0, "3"]),
+        (("pose", "position_m"), [1.0, 2.0, True]),
+        (("trees", 0, "root_m"), [[0.0, 0.0, 0.0]]),
+        (("trees", 0, "root_m"), [0.0] * 6),
+        (("trees", 0, "leaves", "test", 0), 1.0),
+        (("trees", 0, "leaves", "test", 0), True),
+        (("trees", 0, "leaves", "test", 0), 2**63),
+        (("trees", 0, "leaves", "box", 0), [0, 0, 0, 0, 0]),
+        (("trees", 0, "leaves", "box", 0, 0), 0.5),
+        (("trees", 0, "leaves", "box"), []),
+        (("trees", 0, "leaves", "level", 0), "1"),
+        (("trees", 0, "leaves", "level", 0), None),
+        (("trees", 0, "leaves", "mixes"), [5]),
+        (("trees", 0, "leaves", "mixes"), [None]),
+        (("trees", 0, "leaves", "mixes"), [{"0": 1.0}]),
+        (("trees", 0, "leaves", "mixes"), ["01"]),
+        (("trees", 0, "leaves", "mixes", 0), [[0, 0.5], [0, 0.5]]),
+        (("trees", 0, "leaves", "mixes", 0), [[-1, 0.5]]),
+        (("trees", 0, "leaves", "mixes", 0), [[0, "0.5"]]),
+        (("trees", 0, "leaves", "mixes", 0), [[0, True]]),
+        (("trees", 0, "leaves", "mixes", 0), [[True, 1.0]]),
+        (("trees", 0, "leaves", "mixes", 0), [[0.0, 1.0]]),
+        (("trees", 0, "leaves", "mixes", 0), [[0, 1.0, 2.0]]),
+        (("null_jammer",), 3),
+        (("provenance",), []),
+        (("scheme",), 3),
+    ],
+)
+def test_what_looks_like_a_number_is_refused(path: tuple, value: object, data: Data) -> None:
+    """Booleans, texts, floats for whole numbers, wrong shapes and too large numbers are named."""
+    set_at(data, path, value)
+    assert words_for(path) in fault(data)
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999", "-1e999"])
+def test_numbers_that_are_none_are_refused(number: str, data: Data) -> None:
+    """What JSON lacks, and what no float holds, is refused wherever it stands."""
+    for path in (("value",), ("trees", 0, "leaves", "level", 0), ("provenance", "x"), ("scenario", "name")):
+        broken = copy.deepcopy(data)
+        set_at(broken, path, "@")
+        with pytest.raises(CertificateError, match="no certificate"):
+            parse_certificate(json.dumps(broken).replace('"@"', number))
+
+
+def test_a_changed_scenario_is_found(data: Data) -> None:
+    """A scenario that its digest does not fit is refused; with another digest its own faults are told."""
+    data["scenario"]["jammers"][0]["power_w"] = 1.0000001
+    assert "scenario_sha256" in fault(data)
+    for key, value, words in (
+        ("power_w", -1.0, "jammers[0].power_w"),
+        ("power_w", True, "jammers[0].power_w"),
+        ("position_m", [0.0, 0.0, 0.0], "position_m"),
+        ("position_m", "here", "position_m"),
+        ("name", "\ud800", "name"),
+        ("colour", 1, "colour"),
+    ):
+        broken = copy.deepcopy(data)
+        broken["scenario"]["jammers"][0][key] = value
+        broken["scenario_sha256"] = scenario_digest(broken["scenario"])
+        assert "scenario: " in fault(broken)
+        assert words in fault(broken)
+    data["scenario"] = {}
+    data["scenario_sha256"] = scenario_digest({})
+    assert "scenario: " in fault(data)
+
+
+FOREIGN = [
+    "",
+    " ",
+    "null",
+    "3",
+    "[]",
+    "{}",
+    "true",
+    '"nullpose-certificate"',
+    '{"format": "nullpose-certificate"}',
+    '{"format": ["nullpose-certificate"]}',
+    '{"type": "FeatureCollection", "features": []}',
+    "{",
+    '{"a": 1,}',
+    "[" * 100_000,
+    '{"a":' * 100_000,
+    "1" * 10_000,
+    "\ufeff{}",
+    "\x00",
+    '{"format": "nullpose-certificate", "version": 1, "scenario": ' + "[" * 900 + "]" * 900 + "}",
+    '{"format": "nullpose-certificate", "version": 1, "scenario": {"a":' + "[" * 900 + "]" * 900 + "}}",
+]
+
+
+@pytest.mark.parametrize("content", FOREIGN, ids=range(len(FOREIGN)))
+def test_foreign_texts_are_refused(content: str, tmp_path: Path) -> None:
+    """Empty, foreign and broken JSON is refused, the file being named."""
+    path = tmp_path / "proof.json"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(CertificateError) as caught:
+        read_certificate(path)
+    assert str(caught.value).startswith(f"{path}: ")
+
+
+def test_broken_files_are_refused(text: str, tmp_path: Path) -> None:
+    """Cut or spoiled archives, binaries, folders and files that are not there are refused by name."""
+    packed = gzip.compress(text.encode(), mtime=0)
+    spoiled = bytearray(packed)
+    spoiled[len(spoiled) // 2] ^= 0xFF
+    path = tmp_path / "proof.json.gz"
+    for content in (
+        packed[:2],
+        packed[:11],
+        packed[: len(packed) // 2],
+        packed[:-1],
+        bytes(spoiled),
+        packed + b"\x1f\x8b",
+        packed[:3] + b"\xff" + packed[4:],
+        b"\x1f\x8b\x07" + packed[3:],
+        gzip.compress(b""),
+        gzip.compress(b"\xff\xfe"),
+        b"\xff\xfe\x00\x01",
+        bytes(range(256)),
+        text.encode("utf-16"),
+        text.encode()[: len(text) // 2],
+    ):
+        path.write_bytes(content)
+        with pytest.raises(CertificateError) as caught:
+            read_certificate(path)
+        assert str(caught.value).startswith(f"{path}: ")
+    for unreadable in (tmp_path, tmp_path / "missing.json", tmp_path / "a\0b"):
+        with pytest.raises(CertificateError, match="cannot be read"):
+            read_certificate(unreadable)
+
+
+@settings(max_examples=60)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_any_flipped_byte_is_a_certificate_or_refused(
+    seed: int, text: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Random damage of the text, compressed or not, never ends in any other exception."""
+    rng = np.random.default_rng(seed)
+    path = tmp_path_factory.getbasetemp() / f"flipped-{seed}"
+    content = bytearray(gzip.compress(text.encode(), mtime=0) if seed % 2 else text.encode())
+    for at in rng.integers(len(content), size=int(rng.integers(1, 4))):
+        content[at] = int(rng.integers(256))
+    path.write_bytes(bytes(content))
+    words = str(path)
+    try:
+        read_certificate(path)
+    except (CertificateError, ScenarioError) as error:
+        words = str(error)
+    path.unlink()
+    assert words.startswith(str(path))
+
+
+def test_a_faulty_scenario_names_the_file(data: Data, tmp_path: Path) -> None:
+    """A scenario's faults are listed under the file's name."""
+    data["scenario"]["nodes"] = []
+    data["scenario_sha256"] = scenario_digest(data["scenario"])
+    path = tmp_path / "proof.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    with pytest.raises(ScenarioError) as caught:
+        read_certificate(path)
+    assert str(caught.value).startswith(f"{path}: scenario: ")
+    assert [found.path for found in caught.value.faults] == ["nodes"]
+
+
+def test_a_file_that_cannot_be_written_is_told(certificate: Certificate, tmp_path: Path) -> None:
+    """A folder in the way, or none to write to, is an OutputError."""
+    for path in (tmp_path, tmp_path / "missing" / "proof.json"):
+        with pytest.raises(OutputError, match="cannot be written"):
+            write_certificate(certificate, path)
+
+
+def test_the_digest_is_of_the_values() -> None:
+    """The order of keys does not matter; any value does."""
+    assert scenario_digest({"a": 1, "b": [2.0]}) == scenario_digest({"b": [2.0], "a": 1})
+    assert scenario_digest({"a": 1}) != scenario_digest({"a": math.nextafter(1, 2)})

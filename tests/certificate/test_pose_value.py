@@ -1,0 +1,122 @@
+"""The value at a pose in exact arithmetic agrees with the physics."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.certificate.pose_value import antenna_axis, field_offset, sine_cosine, smallest_ratio
+from nullpose.family import AxisField, build_family
+from nullpose.physics import Pose, maximum_gain_axis, min_sinr, zero_interference_axis
+from nullpose.physics import antenna_axis as physics_axis
+
+seeds = st.integers(0, 2**32 - 1)
+angles = st.floats(-4.0, 4.0)
+
+
+def exact(array: np.ndarray) -> list[Fraction]:
+    """Return numbers exactly."""
+    return [Fraction(float(x)) for x in array]
+
+
+@given(x=angles)
+def test_sine_and_cosine(x: float) -> None:
+    """Their squares sum to one, and both agree with the usual ones to rounding."""
+    sine, cosine = sine_cosine(Fraction(x))
+    assert abs(sine**2 + cosine**2 - 1) < Fraction(1, 10**30)
+    assert float(sine) == pytest.approx(math.sin(x), abs=2e-16)
+    assert float(cosine) == pytest.approx(math.cos(x), abs=2e-16)
+
+
+@given(x=angles, y=angles)
+def test_sums_of_angles(x: float, y: float) -> None:
+    """The sine of half a sum obeys the addition theorem, to thirty digits."""
+    (sx, cx), (sy, cy) = sine_cosine(Fraction(x) / 2), sine_cosine(Fraction(y) / 2)
+    sine, cosine = sine_cosine((Fraction(x) + Fraction(y)) / 2)
+    assert abs(sine - (sx * cy + cx * sy)) < Fraction(1, 10**29)
+    assert abs(cosine - (cx * cy - sx * sy)) < Fraction(1, 10**29)
+
+
+@given(roll=angles, pitch=angles, yaw=angles)
+def test_the_axis_is_the_physics_one(roll: float, pitch: float, yaw: float) -> None:
+    """Roll, pitch and yaw give the axis of paper eq. 1.1."""
+    attitude = SimpleNamespace(roll_rad=roll, pitch_rad=pitch, yaw_rad=yaw)
+    axis = [float(x) for x in antenna_axis(attitude)]
+    np.testing.assert_allclose(axis, physics_axis(roll, pitch, yaw), atol=1e-15)
+
+
+@given(seed=seeds, roll=angles, pitch=angles, yaw=angles)
+def test_the_smallest_ratio_is_the_smallest_sinr(
+    seed: int, roll: float, pitch: float, yaw: float, random_scene: Callable
+) -> None:
+    """The smallest ratio of the family is the paper's objective at the pose."""
+    rng = np.random.default_rng(seed)
+    scenario = random_scene(seed, int(rng.integers(1, 9)), int(rng.integers(0, 4)))
+    pose = Pose(rng.uniform([-20.0, -20.0, 8.0], [120.0, 120.0, 30.0]), roll, pitch, yaw)
+    expected = min_sinr(scenario, pose)
+    axis = antenna_axis(SimpleNamespace(roll_rad=roll, pitch_rad=pitch, yaw_rad=yaw))
+    value = float(smallest_ratio(build_family(scenario), exact(pose.position_m), axis))
+    # a node near the null has a gain that is the difference of nearly equal numbers in the physics
+    assert value == pytest.approx(expected, rel=1e-13, abs=1e-12)
+
+
+@given(seed=seeds)
+def test_several_denominators(seed: int) -> None:
+    """Each ratio takes its own denominator, as in the secrecy rates that the family allows for."""
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(0.0, 10.0, (4, 3))
+    family = SimpleNamespace(
+        points_m=points,
+        numerator_isotropic=rng.uniform(size=2),
+        numerator_weight=rng.uniform(size=2),
+        numerator_point=np.array([0, 1]),
+        denominator_of=np.array([1, 0]),
+        denominator_isotropic=rng.uniform(0.5, 1.0, 2),
+        denominator_start=np.array([0, 1, 2]),
+        denominator_point=np.array([2, 3]),
+        denominator_weight=rng.uniform(size=2),
+    )
+    p, u = np.array([1.0, 2.0, 20.0]), rng.normal(size=3)
+    gains = [np.sum(np.cross(q - p, u) ** 2) / (u @ u * np.sum((q - p) ** 2) ** 2) for q in points]
+    below = family.denominator_isotropic + family.denominator_weight * np.array(gains[2:])
+    above = family.numerator_isotropic + family.numerator_weight * np.array(gains[:2])
+    value = float(smallest_ratio(family, exact(p), exact(u)))
+    assert value == pytest.approx(min(above[0] / below[1], above[1] / below[0]), rel=1e-13)
+
+
+@given(seed=seeds)
+def test_offsets_from_a_field(seed: int, random_scene: Callable) -> None:
+    """The paper's own axes are on their fields; one that is turned is off by the sine of the angle."""
+    rng = np.random.default_rng(seed)
+    scenario = random_scene(seed, 2, 1)
+    p = rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 30.0])
+    jammer = scenario.jammer_positions_m[0]
+    for field, axis in (
+        (AxisField.vertical(), np.array([0.0, 0.0, -2.0])),
+        (AxisField.towards(jammer), zero_interference_axis(p, jammer)),
+        (AxisField.broadside(*scenario.node_positions_m), maximum_gain_axis(scenario, p)),
+    ):
+        assert field_offset(field, exact(p), exact(axis)) < Fraction(1, 10**24)
+        across = np.cross(axis, rng.normal(size=3))
+        angle = float(rng.uniform(1e-3, 1.5))
+        turned = axis / np.linalg.norm(axis) * math.cos(angle) + across / np.linalg.norm(across) * math.sin(
+            angle
+        )
+        assert float(field_offset(field, exact(p), exact(turned))) == pytest.approx(
+            math.sin(angle) ** 2, rel=1e-9
+        )
+
+
+def test_in_line_with_both_nodes_any_axis_across_the_line_is_broadside() -> None:
+    """Where the field vanishes its limits are allowed, and no other axis."""
+    field = AxisField.broadside([0.0, 0.0, 0.0], [0.0, 0.0, 5.0])
+    above = exact(np.array([0.0, 0.0, 8.0]))
+    for axis in ([1.0, 0.0, 0.0], [0.6, -0.8, 0.0], [0.0, 3.0, 0.0]):
+        assert field_offset(field, above, exact(np.array(axis))) < Fraction(1, 10**24)
+    assert field_offset(field, above, exact(np.array([0.0, 0.0, 1.0]))) == 1
+    assert field_offset(field, above, exact(np.array([1.0, 0.0, 1.0]))) == Fraction(1, 2)
