@@ -2,11 +2,14 @@
 
 import itertools
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from nullpose import Pose, Scenario
@@ -112,6 +115,56 @@ def test_a_node_in_the_null_leaves_a_gap(reproduction: Reproduction) -> None:
     silent = type(row)(2.0, row.scheme, row.status, 0.0, -np.inf, row.pose, row.links)
     figure = draw_sweep(SweepTable("jammers.M.power_w", (row, silent)))
     assert np.all(np.isfinite(figure.axes[0].get_ylim()))
+
+
+def bands_of(figure: Figure) -> list[PolyCollection]:
+    """Returns the bands of a figure's first axes."""
+    return [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
+
+
+def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
+    """The four curves have their bands, and small text says that every point is certified, or how many."""
+    figure = draw_figure2(reproduction.table)
+    assert len(bands_of(figure)) == 4
+    assert "Every point of the four curves is certified" in figure.get_supxlabel()
+    assert "within 1e-6" in figure.get_supxlabel()
+    first, *others = reproduction.table.rows
+    doubtful = replace(first, status="gap-not-reached")
+    figure = draw_figure2(SweepTable(reproduction.table.path, (doubtful, *others)))
+    assert figure.get_supxlabel().startswith("75 of 76 points of the four curves are certified")
+
+
+def test_visible_bounds_are_drawn(paper: Scenario) -> None:
+    """A bound farther off than the width of a line is a mark above its value, and the caption explains it."""
+    near = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"]))
+    assert [len(near.axes[0].lines), len(bands_of(near))] == [1, 1]
+    assert near.get_supxlabel().startswith("Certified to 1e-6")
+    far = sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"], gap=0.5)
+    assert all(row.relative_gap > 0.1 for row in far.rows)
+    figure = draw_sweep(far)
+    _, marks = figure.axes[0].lines
+    assert list(marks.get_ydata()) == [row.upper_bound_db for row in far.rows]
+    assert figure.axes[0].get_ylim()[1] > max(row.upper_bound_db for row in far.rows)
+    assert "Bands reach" in figure.get_supxlabel()
+    (legend,) = figure.legends
+    assert len(legend.get_texts()) == 1
+
+
+def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
+    """A bound tens of decibels above does not squeeze the curves into a line at the bottom."""
+    table = sweep(paper, "jammers.M.power_w", [0.01, 1.0, 100.0], schemes=["vertical"])
+    rows = [replace(row, status="gap-not-reached", upper_bound=1e6, relative_gap=1e6) for row in table.rows]
+    low, high = draw_sweep(SweepTable(table.path, tuple(rows))).axes[0].get_ylim()
+    values = [row.min_sinr_db for row in rows]
+    assert low < min(values)
+    assert max(values) < high < max(values) + 10.0
+
+
+def test_nothing_proved_is_said_below_the_figure(paper: Scenario) -> None:
+    """Without proofs there are no bands, and the caption does not call anything certified."""
+    figure = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0], certify=False))
+    assert bands_of(figure) == []
+    assert figure.get_supxlabel() == "Best found by searching, nothing is proved."
 
 
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (-0.9, 0.4, 0.2)])

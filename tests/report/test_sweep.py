@@ -7,7 +7,33 @@ from rich.console import Console
 
 from nullpose import Scenario
 from nullpose.report.sweep import sweep_view, write_sweep
-from nullpose.study import spaced, sweep
+from nullpose.study import SweepTable, spaced, sweep
+
+
+def shown(table: SweepTable) -> str:
+    """Returns what a terminal shows of a sweep."""
+    console = Console(width=200, file=io.StringIO())
+    console.print(sweep_view(table, []))
+    return console.file.getvalue()
+
+
+def test_what_is_proved_is_shown(paper: Scenario) -> None:
+    """One line says that all is certified, or which case is not and why, with its bounds in the table."""
+    power, values = "jammers.M.power_w", [0.1, 10.0]
+    text = shown(sweep(paper, power, values))
+    assert "Certified to 1e-6 (relative)" in text
+    assert "at most" not in text
+    assert "nothing is proved" in shown(sweep(paper, power, values, certify=False))
+    proved = sweep(paper, power, values, schemes=["vertical"])
+    short = sweep(paper, power, values, schemes=["optimum"], node_limit=5)
+    text = shown(proved.joined(short))
+    assert text.count("at most") == 2
+    assert "Vertical: certified to 1e-6" in text
+    assert "Optimum: no pose exceeds the bound, but the gap asked for is not reached at 2 of 2" in text
+    assert "Optimum: the node limit of 5" in text
+    for row in short.rows:
+        bound = [float(words.split()[0]) for words in text.split("at most ")[1:]]
+        assert any(row.upper_bound_db <= number < row.upper_bound_db + 0.01 for number in bound)
 
 
 def test_long_sweeps_are_thinned_out_on_the_screen_only(paper: Scenario, tmp_path: Path) -> None:
@@ -16,7 +42,7 @@ def test_long_sweeps_are_thinned_out_on_the_screen_only(paper: Scenario, tmp_pat
     files = write_sweep(table, tmp_path, log=True)
     console = Console(width=200, file=io.StringIO())
     console.print(sweep_view(table, files))
-    shown = console.file.getvalue().splitlines()
-    assert "One row in 3 is shown." in " ".join(shown)
-    assert len(shown) < 50
+    lines = console.file.getvalue().splitlines()
+    assert "One row in 3 is shown." in " ".join(lines)
+    assert len(lines) < 50
     assert len((tmp_path / "sweep.csv").read_text(encoding="utf-8").splitlines()) == 101

@@ -1,13 +1,15 @@
 """Results in words and columns."""
 
 import io
+import math
+import re
 
 import pytest
 from rich.console import Console, RenderableType
 
 from nullpose import Scenario, Solution, solve
 from nullpose.report.comparison import compare_all
-from nullpose.report.tables import binding_nodes, comparison_view, solution_view, status_words
+from nullpose.report.tables import binding_nodes, bound_words, comparison_view, solution_view, status_words
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:
@@ -42,11 +44,55 @@ def test_one_node_binds_above_the_jammer(paper: Scenario) -> None:
     assert binding_nodes(solve(paper, "vertical")) == {"S2"}
 
 
-def test_status_is_told_in_words(optimum: Solution) -> None:
-    """The status says what is not proved, and how many searches there were."""
+def test_status_is_told_in_words(optimum: Solution, paper: Scenario) -> None:
+    """The status says what is proved, and how many searches and boxes there were."""
     words = status_words(optimum)
-    assert "not proved" in words
-    assert f"{optimum.stats.starts} starts" in words
+    assert words.startswith("certified")
+    assert f"{optimum.stats.starts} starts, {optimum.stats.boxes} boxes" in words
+    fast = solve(paper, certify=False)
+    assert "not proved" in status_words(fast)
+    assert "box" not in status_words(fast)
+    short = solve(paper, node_limit=5)
+    assert "the gap asked for was not reached: the node limit of 5" in status_words(short)
+
+
+def test_the_bound_is_told_with_its_gap(optimum: Solution, paper: Scenario) -> None:
+    """The bound stands below the value, never rounded below what is proved; without one there is no line."""
+    words = bound_words(optimum.objective)
+    found = re.fullmatch(r"at most (-?\d+\.\d+) dB \(relative gap (.*)\)", words)
+    assert found is not None
+    bound_db = 10.0 * math.log10(optimum.objective.upper_bound)
+    assert bound_db <= float(found[1]) < bound_db + 1e-6
+    assert found[2] == "1.0e-06"
+    assert words in text_of(solution_view(optimum))
+    fast = solve(paper, certify=False)
+    assert bound_words(fast.objective) == ""
+    assert "at most" not in text_of(solution_view(fast))
+
+
+@pytest.mark.parametrize("gap", [1e-8, 1e-6, 1e-3, 0.5])
+def test_bound_and_value_look_different(paper: Scenario, gap: float) -> None:
+    """However small the gap, the bound is printed with the decimals that tell it from the value."""
+    objective = solve(paper, gap=gap).objective
+    text = bound_words(objective).split()[2]
+    assert float(text) > objective.value_db
+    assert f"{objective.value_db:.{len(text.split('.')[1])}f}" != text
+
+
+def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: Scenario) -> None:
+    """Bounds have a row of their own; statuses name their cases unless all share one."""
+    text = text_of(comparison_view(compare_all(paper)))
+    (row,) = [line for line in text.splitlines() if "at most (dB)" in line]
+    assert row.split()[3:] == ["0.9837041", "0.8123593", "-0.6998429", "-2.1602567"]
+    assert "All: certified" in text
+    text = text_of(comparison_view(compare_all(field)))
+    assert "Optimum, Zero interference, Vertical: certified" in text
+    assert "Maximum gain: no pose exceeds the bound, but the gap asked for was not reached." in text
+    assert "the bound is that of the optimum" in text
+    fast = text_of(comparison_view(compare_all(paper, certify=False)))
+    (row,) = [line for line in fast.splitlines() if "at most (dB)" in line]
+    assert row.split()[3:] == ["-"] * 4
+    assert "not proved" in fast
 
 
 def test_a_null_on_the_jammer_is_called_so(paper: Scenario) -> None:

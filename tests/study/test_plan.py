@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from nullpose import OutputError, Scenario, ScenarioError, UsageError
+from nullpose.solve.limits import Limits
 from nullpose.study import SweepPlan, plan_sweep
 
 POWER = "jammers.M.power_w"
@@ -31,6 +32,17 @@ def test_a_plan_runs(paper: Scenario, tmp_path: Path) -> None:
     assert [(row.value, row.scheme) for row in table.rows] == [(1.0, "vertical"), (2.0, "vertical")]
 
 
+def test_a_plan_has_limits(paper: Scenario, tmp_path: Path) -> None:
+    """The gap goes by the number of nodes unless given; without certifying there are no limits at all."""
+    assert plan(paper, tmp_path).limits == Limits(gap=1e-6)
+    given = plan(paper, tmp_path, gap=0.5, time_limit_s=7.0, node_limit=9000, schemes=["vertical"])
+    assert given.limits == Limits(gap=0.5, time_limit_s=7.0, node_limit=9000)
+    assert [row.relative_gap <= 0.5 for row in given.run().rows] == [True, True]
+    fast = plan(paper, tmp_path, certify=False, schemes=["vertical"])
+    assert fast.limits is None
+    assert {row.status for row in fast.run().rows} == {"best-found"}
+
+
 @pytest.mark.parametrize("settings", [["receiver.noise_w=1"], [POWER, "receiver.noise_w"]])
 def test_exactly_one_path_is_varied(paper: Scenario, tmp_path: Path, settings: list[str]) -> None:
     """None or two paths without a value are refused."""
@@ -45,6 +57,9 @@ def test_exactly_one_path_is_varied(paper: Scenario, tmp_path: Path, settings: l
         ({"settings": [POWER, "receiver.noise_w=-1"]}, ScenarioError),
         ({"points": 1}, UsageError),
         ({"start": -1.0}, ScenarioError),
+        ({"gap": 0.0}, UsageError),
+        ({"time_limit_s": -1.0}, UsageError),
+        ({"node_limit": 0}, UsageError),
     ],
 )
 def test_no_folder_is_made_for_a_faulty_plan(

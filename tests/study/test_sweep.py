@@ -1,11 +1,14 @@
 """Sweeps: the same answers as single solves, and every value checked before the first solve."""
 
+import dataclasses
 import itertools
+import sys
 
 import pytest
 
 from nullpose import Scenario, ScenarioError, UsageError, solve
 from nullpose.scenario import apply_overrides
+from nullpose.solve.proof import INTERRUPT
 from nullpose.study import sweep
 
 POWER = "jammers.M.power_w"
@@ -71,3 +74,35 @@ def test_path_that_does_not_exist(paper: Scenario) -> None:
     """An unknown path is refused with the nearest one."""
     with pytest.raises(ScenarioError, match=r"jammers\.M\.power_w"):
         sweep(paper, "jammers.M.powr_w", [1.0])
+
+
+def test_every_row_is_certified_unless_told_otherwise(paper: Scenario) -> None:
+    """Each case has a bound within the gap; a wider gap may be asked for, and no proof at all."""
+    for row in sweep(paper, POWER, [1e-2, 1.0, 1e3]).rows:
+        assert (row.status, row.reason) == ("certified", "")
+        assert row.min_sinr <= row.upper_bound <= row.min_sinr * (1.0 + 1e-6)
+        assert row.relative_gap == pytest.approx(row.upper_bound / row.min_sinr - 1.0, abs=1e-15)
+        assert row.upper_bound_db > row.min_sinr_db
+    (wide,) = sweep(paper, POWER, [1.0], schemes=["optimum"], gap=0.1).rows
+    assert 1e-6 < wide.relative_gap <= 0.1
+    (fast,) = sweep(paper, POWER, [1.0], schemes=["optimum"], certify=False).rows
+    assert (fast.status, fast.upper_bound, fast.upper_bound_db) == ("best-found", None, None)
+
+
+def test_a_limit_is_told_in_its_row(paper: Scenario) -> None:
+    """A proof stopped by a limit leaves a row with a valid bound and the reason."""
+    (best,) = sweep(paper, POWER, [1.0], schemes=["optimum"]).rows
+    (row,) = sweep(paper, POWER, [1.0], schemes=["optimum"], node_limit=5).rows
+    assert (row.status, row.reason) == ("gap-not-reached", "the node limit of 5")
+    assert row.upper_bound >= best.min_sinr
+    (row,) = sweep(paper, POWER, [1.0], schemes=["optimum"], gap=1e-9, time_limit_s=1e-9).rows
+    assert (row.status, row.reason) == ("gap-not-reached", "the time limit of 1e-09 s")
+    assert row.upper_bound >= best.min_sinr
+
+
+def test_an_interrupted_proof_ends_the_sweep(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solve that comes back interrupted is not taken for a row."""
+    stopped = dataclasses.replace(solve(paper), reason=INTERRUPT)
+    monkeypatch.setattr(sys.modules["nullpose.study.sweep"], "solve", lambda *_, **__: stopped)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(paper, POWER, [1.0, 2.0], schemes=["optimum"])

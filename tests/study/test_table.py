@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,12 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRo
     ratio = 10.0 ** (db / 10.0)
     pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
     return SweepRow(value, scheme, "best-found", ratio, db, pose, (Link(node, ratio, db),), "a, note")
+
+
+def proved(row: SweepRow, relative_gap: float) -> SweepRow:
+    """Returns the row with a bound."""
+    bound = row.min_sinr * (1.0 + relative_gap)
+    return replace(row, status="certified", upper_bound=bound, relative_gap=relative_gap)
 
 
 TABLE = SweepTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))
@@ -65,3 +72,19 @@ def test_plain_data() -> None:
     assert data["left_out"] == [{"scheme": "zero-interference", "reason": "no jammer"}]
     assert data["rows"][0]["pose"]["position_m"] == [1.0, 2.0, 8.0]
     assert data["rows"][0]["links"] == [{"node": "S1", "sinr": 1.0, "sinr_db": 0.0}]
+
+
+def test_bounds_are_columns(tmp_path: Path) -> None:
+    """A proved row has its bound in dB and its gap; a row of which nothing is proved has empty cells."""
+    open_row = replace(row(2.0, "vertical"), reason="the time limit, 60 s")
+    table = SweepTable("receiver.noise_w", (proved(row(1.0, "optimum", db=1.0), 1e-6), open_row))
+    path = table.write_csv(tmp_path / "t.csv")
+    with path.open(encoding="utf-8", newline="") as file:
+        first, second = csv.DictReader(file)
+    assert (first["status"], first["relative_gap"], first["reason"]) == ("certified", "1e-06", "")
+    assert float(first["upper_bound_db"]) == pytest.approx(1.0 + 10.0 * math.log10(1.0 + 1e-6), abs=1e-12)
+    assert (second["status"], second["upper_bound_db"], second["relative_gap"]) == ("best-found", "", "")
+    assert second["reason"] == "the time limit, 60 s"
+    plain = [data["upper_bound_db"] for data in table.to_dict()["rows"]]
+    assert plain == [table.rows[0].upper_bound_db, None]
+    assert table.to_dict()["rows"][0]["upper_bound"] == 10**0.1 * (1.0 + 1e-6)

@@ -6,7 +6,17 @@ from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import JsonOutput, OutFolder, ScenarioFile, SchemeName, Seed
+from nullpose.cli.options import (
+    Fast,
+    Gap,
+    JsonOutput,
+    NodeLimit,
+    OutFolder,
+    ScenarioFile,
+    SchemeName,
+    Seed,
+    TimeLimit,
+)
 from nullpose.cli.output import Ticker, compiling_announced, show, show_json
 
 __all__ = ["sweep"]
@@ -34,6 +44,10 @@ def sweep(
         list[SchemeName] | None,
         typer.Option("--scheme", help="Only this scheme. Can be repeated.", show_default="all four"),
     ] = None,
+    gap: Gap = None,
+    time_limit: TimeLimit = 60.0,
+    node_limit: NodeLimit = 10**9,
+    fast: Fast = False,
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
@@ -50,6 +64,10 @@ def sweep(
         log=log,
         schemes=[name.value for name in scheme] if scheme else None,
         out=out,
+        gap=gap,
+        time_limit_s=time_limit,
+        node_limit=node_limit,
+        certify=not fast,
         seed=seed,
     )
     with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep
-from nullpose.study import SweepTable
+from nullpose.solve import Scheme, Status
+from nullpose.study import SweepRow, SweepTable
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -34,7 +37,7 @@ def write_sweep(table: SweepTable, folder: Path, *, log: bool = False) -> tuple[
 
 
 def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
-    """Return a sweep as a table of the smallest SINR in dB, one column per scheme.
+    """Return a sweep as a table of the smallest SINR in dB, one column per scheme, and what is proved of it.
 
     Args:
         table: what the sweep found.
@@ -48,16 +51,30 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
 
     view = Table(title="Smallest SINR over the nodes (dB)", box=box.SIMPLE_HEAD, pad_edge=False)
     view.title_justify, view.title_style = "left", "bold"
-    view.add_column(escape(table.path), justify="right")
+    view.add_column(escape(table.path), justify="right", overflow="fold")
     for scheme in table.schemes:
         view.add_column(CURVES[scheme].label, justify="right")
     columns = [table.of(scheme) for scheme in table.schemes]
     step = -(-len(table.values) // _SHOWN)
     for index in range(0, len(table.values), step):
-        cells = [f"{column[index].min_sinr_db:.4f}" for column in columns]
+        cells = [_cell(column[index]) for column in columns]
         view.add_row(f"{table.values[index]:.6g}", *cells)
     lines = [f"{scheme} does not apply: {reason}" for scheme, reason in table.left_out.items()]
     lines += [f"One row in {step} is shown."] if step > 1 else []
-    lines += ["Each value is the best of many local optima found, not proved to be the best there is."]
+    lines += [f"{line}." for line in certainty_lines(table)]
+    lines += _reasons(table)
     lines += [f"Wrote {path}" for path in files]
     return Group(view, Text("\n".join(lines)))
+
+
+def _cell(row: SweepRow) -> str:
+    value = f"{row.min_sinr_db:.4f}"
+    if row.status != Status.GAP_NOT_REACHED or row.upper_bound_db is None:
+        return value
+    return f"{value}\nat most {math.ceil(1e2 * row.upper_bound_db) / 1e2:.2f}"
+
+
+def _reasons(table: SweepTable) -> list[str]:
+    """Return what kept rows from being certified, each reason once with its scheme."""
+    reasons = dict.fromkeys((row.scheme, row.reason) for row in table.rows if row.reason)
+    return [f"{Scheme(scheme).label}: {reason}" for scheme, reason in reasons]

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, apply_overrides
-from nullpose.solve import PAPER_SCHEMES, Scheme
+from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap
+from nullpose.solve.limits import Limits
 from nullpose.solve.scheme import require_applicable
 from nullpose.study.files import prepare_folder
 from nullpose.study.spacing import spaced
@@ -29,6 +30,7 @@ class SweepPlan:
         schemes: the cases to solve.
         folder: where the results go; it exists and can be written.
         seed: the random seed of every solve.
+        limits: target and limits of every proof; None proves nothing.
     """
 
     scenario: Scenario
@@ -37,6 +39,7 @@ class SweepPlan:
     schemes: tuple[Scheme, ...]
     folder: Path
     seed: int
+    limits: Limits | None
 
     def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
         """Return what the sweep finds.
@@ -44,11 +47,16 @@ class SweepPlan:
         Args:
             on_progress: called after each solve with how many are done and how many there are.
         """
+        limits = self.limits
         return sweep(
             self.scenario,
             self.path,
             self.values,
             schemes=self.schemes,
+            gap=None if limits is None else limits.gap,
+            time_limit_s=TIME_LIMIT_S if limits is None else limits.time_limit_s,
+            node_limit=NODE_LIMIT if limits is None else limits.node_limit,
+            certify=limits is not None,
             seed=self.seed,
             on_progress=on_progress,
         )
@@ -64,6 +72,10 @@ def plan_sweep(
     out: Path,
     log: bool = False,
     schemes: Sequence[str] | None = None,
+    gap: float | None = None,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
     seed: int = 0,
 ) -> SweepPlan:
     """Return the plan of a sweep, its output folder made.
@@ -77,10 +89,14 @@ def plan_sweep(
         out: where the results go.
         log: space the values by a constant ratio.
         schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
+        gap: relative gap at which each proof is done; without it, by the number of nodes.
+        time_limit_s: seconds after which each proof stops.
+        node_limit: boxes after which each proof stops.
+        certify: whether to prove anything.
         seed: the random seed of every solve.
 
     Raises:
-        UsageError: not exactly one path to vary, a bad range, or a scheme that does not apply.
+        UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.
         ScenarioError: a fixed setting is at fault.
         OutputError: the folder cannot be written.
     """
@@ -94,6 +110,8 @@ def plan_sweep(
     if schemes is not None:
         for scheme in wanted:
             require_applicable(base, scheme)
+    target = default_gap(len(base.nodes)) if gap is None else gap
+    limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
     path = varied[0].strip()
     scenarios_along(base, path, values)  # a fault shows before a folder is made
-    return SweepPlan(base, path, values, wanted, prepare_folder(out), seed)
+    return SweepPlan(base, path, values, wanted, prepare_folder(out), seed, limits if certify else None)

@@ -7,7 +7,15 @@ from types import MappingProxyType
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, not_applicable, solve
+from nullpose.solve import (
+    NODE_LIMIT,
+    PAPER_SCHEMES,
+    TIME_LIMIT_S,
+    Scheme,
+    Solution,
+    not_applicable,
+    solve,
+)
 from nullpose.study.table import SweepRow, SweepTable
 
 __all__ = ["scenarios_along", "sweep"]
@@ -19,25 +27,34 @@ def sweep(
     values: Sequence[float],
     *,
     schemes: Sequence[str] = PAPER_SCHEMES,
+    gap: float | None = None,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
     seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> SweepTable:
-    """Return the best pose of every scheme at every value of one setting.
+    """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
     Schemes that the scenario does not admit are left out, with the reason in the table. Every value is
-    checked before the first solve.
+    checked before the first solve. An interrupt ends the sweep, during a proof as anywhere else.
 
     Args:
         scenario: the scenario whose setting is varied.
         path: the setting, as in ``jammers.M.power_w``.
         values: what to set it to, in its own unit.
         schemes: which cases to solve.
+        gap: relative gap at which each proof is done; without it, by the number of nodes.
+        time_limit_s: seconds after which each proof stops.
+        node_limit: boxes after which each proof stops.
+        certify: whether to prove anything.
         seed: the random seed of every solve.
         on_progress: called after each solve with how many are done and how many there are.
 
     Raises:
         ScenarioError: the path does not exist, or a value makes no valid scenario.
-        UsageError: no scheme applies.
+        UsageError: no scheme applies, or a bad limit.
+        KeyboardInterrupt: Ctrl-C ended a proof.
     """
     scenarios = scenarios_along(scenario, path, values)
     wanted = [Scheme(scheme) for scheme in schemes]
@@ -50,7 +67,18 @@ def sweep(
     total = len(scenarios) * len(solved)
     for value, varied in scenarios:
         for scheme in solved:
-            rows.append(_row(value, solve(varied, scheme, seed=seed)))
+            solution = solve(
+                varied,
+                scheme,
+                gap=gap,
+                time_limit_s=time_limit_s,
+                node_limit=node_limit,
+                certify=certify,
+                seed=seed,
+            )
+            if solution.interrupted:
+                raise KeyboardInterrupt
+            rows.append(_row(value, solution))
             if on_progress is not None:
                 on_progress(len(rows), total)
     return SweepTable(path=path, rows=tuple(rows), left_out=MappingProxyType(left_out))
@@ -100,4 +128,7 @@ def _row(value: float, solution: Solution) -> SweepRow:
         pose=solution.pose,
         links=solution.links,
         note=solution.note,
+        upper_bound=solution.objective.upper_bound,
+        relative_gap=solution.objective.relative_gap,
+        reason=solution.reason,
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from nullpose.physics import Link, Pose
+from nullpose.physics import Link, Pose, to_db
 from nullpose.study.files import replacing
 
 __all__ = ["SweepRow", "SweepTable"]
@@ -22,12 +22,15 @@ class SweepRow:
     Args:
         value: the swept setting, in the unit of its name.
         scheme: the scheme's name, as in ``maximum-gain``.
-        status: how sure the solver is, as in ``best-found``.
+        status: how sure the solver is, as in ``certified``.
         min_sinr: the smallest SINR over the nodes, a power ratio.
         min_sinr_db: the same, dB.
         pose: where the drone is and how it is turned.
         links: every node's SINR, in the scenario's order.
         note: one sentence that the reader needs beside the numbers, or nothing.
+        upper_bound: no pose's smallest SINR exceeds this, a power ratio; None if nothing is proved.
+        relative_gap: ``(upper_bound - min_sinr) / min_sinr``; None if nothing is proved.
+        reason: what kept the row from being certified; empty if nothing did.
     """
 
     value: float
@@ -38,6 +41,14 @@ class SweepRow:
     pose: Pose
     links: tuple[Link, ...]
     note: str = ""
+    upper_bound: float | None = None
+    relative_gap: float | None = None
+    reason: str = ""
+
+    @property
+    def upper_bound_db(self) -> float | None:
+        """The upper bound, dB; None if nothing is proved."""
+        return None if self.upper_bound is None else float(to_db(self.upper_bound))
 
     def to_dict(self) -> dict[str, object]:
         """Return the row as plain data, angles in radians."""
@@ -45,8 +56,12 @@ class SweepRow:
             "value": self.value,
             "scheme": self.scheme,
             "status": self.status,
+            "reason": self.reason,
             "min_sinr": self.min_sinr,
             "min_sinr_db": self.min_sinr_db,
+            "upper_bound": self.upper_bound,
+            "upper_bound_db": self.upper_bound_db,
+            "relative_gap": self.relative_gap,
             "pose": {
                 "position_m": [float(x) for x in self.pose.position_m],
                 "roll_rad": self.pose.roll_rad,
@@ -132,7 +147,7 @@ class SweepTable:
         nodes = [link.node for link in self.rows[0].links] if self.rows else []
         with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([self.path, *_COLUMNS, *(f"sinr_{node}_db" for node in nodes), "note"])
+            writer.writerow([self.path, *_COLUMNS, *(f"sinr_{node}_db" for node in nodes), "note", "reason"])
             writer.writerows(_csv_row(row) for row in self.rows)
         return path
 
@@ -142,6 +157,8 @@ _COLUMNS = (
     "status",
     "min_sinr",
     "min_sinr_db",
+    "upper_bound_db",
+    "relative_gap",
     "x_m",
     "y_m",
     "z_m",
@@ -157,7 +174,8 @@ _COLUMNS = (
 def _csv_row(row: SweepRow) -> list[object]:
     pose = row.pose
     angles_deg = [math.degrees(angle) for angle in (pose.roll_rad, pose.pitch_rad, pose.yaw_rad)]
-    numbers = [row.min_sinr, row.min_sinr_db, *pose.position_m, *angles_deg, *pose.antenna_axis]
+    proved = (row.upper_bound_db, row.relative_gap)
+    numbers = [row.min_sinr, row.min_sinr_db, *proved, *pose.position_m, *angles_deg, *pose.antenna_axis]
     links_db = [link.sinr_db for link in row.links]
-    texts = [repr(float(number)) for number in (*numbers, *links_db)]
-    return [repr(float(row.value)), row.scheme, row.status, *texts, row.note]
+    texts = ["" if number is None else repr(float(number)) for number in (*numbers, *links_db)]
+    return [repr(float(row.value)), row.scheme, row.status, *texts, row.note, row.reason]

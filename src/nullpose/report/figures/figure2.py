@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nullpose.report.certainty import Certainty, short
 from nullpose.report.figures.style import CURVES, house_style
-from nullpose.report.figures.sweep import draw_curve
+from nullpose.report.figures.sweep import draw_bounds, draw_caption, draw_curve
 from nullpose.study import SweepTable
 
 if TYPE_CHECKING:
@@ -32,10 +33,11 @@ def draw_figure2(table: SweepTable) -> Figure:
     from matplotlib.figure import Figure
 
     with house_style():
-        figure = Figure(figsize=(7.0, 4.4), layout="constrained")
+        figure = Figure(figsize=(7.0, 4.7), layout="constrained")
         axes = figure.add_subplot()
         for scheme in table.schemes:
             draw_curve(axes, table, scheme)
+            draw_bounds(axes, table, scheme)
         axes.set_xscale("log")
         axes.set_xlim(0.8 * table.values[0], 1.25 * table.values[-1])  # no marker is cut in half
         axes.set_ylim(*_SINR_DB)
@@ -44,7 +46,22 @@ def draw_figure2(table: SweepTable) -> Figure:
         for scheme, (level, sinr_db) in _LABELS.items():
             axes.text(level, sinr_db, CURVES[scheme].label, color=CURVES[scheme].colour, fontweight="bold")
         _mark_printed_form(axes, table)
+        draw_caption(figure, [_certainty(table)])
     return figure
+
+
+def _certainty(table: SweepTable) -> str:
+    """Return what is proved of the four curves, and of the printed form."""
+    found = Certainty.of(row for scheme in _LABELS for row in table.of(scheme))
+    gap = found.largest_relative_gap
+    if not found.complete or gap is None:
+        share = f"{found.certified} of {found.values}"
+        return f"{share} points of the four curves are certified; bands reach up to the bounds there are."
+    return (
+        f"Every point of the four curves is certified: proved to be within {short(gap)} of its case's global "
+        "optimum, so that the band from value to bound is thinner than the line. "
+        "Eq. 3.5 as printed is searched, not bounded."
+    )
 
 
 def _mark_printed_form(axes: Axes, table: SweepTable) -> None:

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from typing import TYPE_CHECKING
 
-from nullpose.report.figures.style import CURVES, Curve, house_style
-from nullpose.study import SweepTable
+import numpy as np
+
+from nullpose.report.certainty import certainty_lines
+from nullpose.report.figures.style import CURVES, GREY, Curve, house_style
+from nullpose.study import SweepRow, SweepTable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_curve", "draw_sweep", "finite_or_gap"]
+__all__ = ["draw_bounds", "draw_caption", "draw_curve", "draw_sweep", "finite_or_gap"]
 
 _UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m"}
+_VISIBLE_DB = 0.02  # a bound closer to its value lies within the width of the line
+_CARET_DOWN = 7  # Matplotlib's name for it
+_CAPTION_LETTERS = 125  # letters in a line of the caption
+_ABOVE_CURVES = 5.0
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
 
 
@@ -54,14 +62,83 @@ def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:
     return curve
 
 
+def draw_bounds(axes: Axes, table: SweepTable, scheme: str) -> None:
+    """Draw the band between one scheme's values and their upper bounds, where it is wider than a line.
+
+    Args:
+        axes: where to draw.
+        table: the sweep.
+        scheme: one of the table's schemes.
+    """
+    curve = CURVES[scheme]
+    rows = [row for row in table.of(scheme) if row.upper_bound_db is not None]
+    if not rows:
+        return
+    levels = [row.value for row in rows]
+    values_db = np.array(finite_or_gap([row.min_sinr_db for row in rows]))
+    bounds_db = np.array(finite_or_gap([row.upper_bound_db or 0.0 for row in rows]))
+    axes.fill_between(
+        levels, values_db, bounds_db, color=curve.colour, alpha=0.10, linewidth=0.0, zorder=curve.order - 2.0
+    )
+    seen = np.where(bounds_db - values_db > _VISIBLE_DB, bounds_db, math.nan)
+    if not np.all(np.isnan(seen)):
+        axes.plot(
+            levels,
+            seen,
+            color=curve.colour,
+            linestyle="",  # between two points nothing is proved
+            marker=_CARET_DOWN,
+            markersize=3.5,
+            alpha=0.7,
+            zorder=_ABOVE_CURVES,
+            label=f"_{scheme}: no pose is above",
+        )
+
+
 def _axis_label(path: str) -> str:
     leaf = path.rsplit(".", 1)[-1].split("[", 1)[0]
     unit = _UNITS.get(leaf.rsplit("_", 1)[-1].lower())
     return f"{path}  ({unit})" if unit else path
 
 
+def draw_caption(figure: Figure, lines: list[str]) -> None:
+    """Write what is proved of the curves under the axes, broken into lines.
+
+    Args:
+        figure: with its axes.
+        lines: sentences.
+    """
+    text = "\n".join(wrapped for line in lines for wrapped in textwrap.wrap(line, _CAPTION_LETTERS))
+    figure.supxlabel(text, x=0.01, ha="left", fontsize=7.5, color=GREY, linespacing=1.35)
+
+
+def _caption(table: SweepTable) -> list[str]:
+    lines = [f"{line}." for line in certainty_lines(table)]
+    if any(_gap_db(row) > _VISIBLE_DB for row in table.rows):
+        lines.append(
+            "Bands reach from the value found up to the bound, a small triangle above which no pose is."
+        )
+    return lines
+
+
+def _gap_db(row: SweepRow) -> float:
+    return 0.0 if row.upper_bound_db is None else row.upper_bound_db - row.min_sinr_db
+
+
+def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
+    """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
+    values_db = [row.min_sinr_db for row in table.rows if math.isfinite(row.min_sinr_db)]
+    bounds_db = [row.upper_bound_db for row in table.rows if row.upper_bound_db is not None]
+    if not values_db or not bounds_db:
+        return
+    low_db, high_db = min(values_db), max(values_db)
+    room_db = max(3.0, high_db - low_db)
+    if max(bounds_db) > high_db + room_db:
+        axes.set_ylim(low_db - 0.05 * room_db, high_db + room_db)
+
+
 def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
-    """Return the figure of a sweep, its legend above the axes.
+    """Return the figure of a sweep, its legend above the axes and what is proved below them.
 
     Args:
         table: what the sweep found.
@@ -70,14 +147,17 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
     from matplotlib.figure import Figure
 
     with house_style():
-        figure = Figure(figsize=(7.0, 4.4), layout="constrained")
+        figure = Figure(figsize=(7.0, 4.6), layout="constrained")
         axes = figure.add_subplot()
         for scheme in table.schemes:
             draw_curve(axes, table, scheme)
+            draw_bounds(axes, table, scheme)
+        _keep_curves_large(axes, table)
         if log:
             axes.set_xscale("log")
         axes.set_xlabel(_axis_label(table.path))
         axes.set_ylabel("smallest SINR over the nodes  (dB)")
         axes.margins(x=0.02)
         figure.legend(loc="outside upper center", ncols=4, frameon=False, handlelength=3.2, columnspacing=1.4)
+        draw_caption(figure, _caption(table))
     return figure

@@ -1,0 +1,173 @@
+"""What is proved of a set of values, counted and in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from nullpose.solve import Scheme, Status
+from nullpose.study import SweepRow, SweepTable
+
+__all__ = ["Certainty", "at_least", "at_most", "certainty_by_scheme", "certainty_lines", "short"]
+
+_PROVED = " (relative): each point is proved to be so close to its case's global optimum"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certainty:
+    """How many values there are of each status, and how wide the widest gap to an upper bound is.
+
+    Args:
+        certified: values with a bound within the gap asked for.
+        gap_not_reached: values with a bound farther off.
+        best_found: values with no bound.
+        largest_relative_gap: of those with a bound; None if there are none.
+    """
+
+    certified: int
+    gap_not_reached: int
+    best_found: int
+    largest_relative_gap: float | None
+
+    @classmethod
+    def of(cls, rows: Iterable[SweepRow]) -> Certainty:
+        """Return the certainty of some rows.
+
+        Args:
+            rows: of any schemes.
+        """
+        rows = tuple(rows)
+        statuses = [row.status for row in rows]
+        gaps = [row.relative_gap for row in rows if row.relative_gap is not None]
+        return cls(
+            certified=statuses.count(Status.CERTIFIED),
+            gap_not_reached=statuses.count(Status.GAP_NOT_REACHED),
+            best_found=statuses.count(Status.BEST_FOUND),
+            largest_relative_gap=max(gaps, default=None),
+        )
+
+    @property
+    def values(self) -> int:
+        """How many values there are."""
+        return self.certified + self.gap_not_reached + self.best_found
+
+    @property
+    def complete(self) -> bool:
+        """Whether there are values, each of them certified."""
+        return self.certified == self.values > 0
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the counts as plain data."""
+        return {
+            "values": self.values,
+            "certified": self.certified,
+            "gap_not_reached": self.gap_not_reached,
+            "best_found": self.best_found,
+            "largest_relative_gap": self.largest_relative_gap,
+        }
+
+    def words(self) -> str:
+        """Return the counts in words, as in ``436 values, all certified; largest relative gap 1e-6``."""
+        counts = {
+            "certified": self.certified,
+            "with a bound farther off than asked for": self.gap_not_reached,
+            "best found, with no bound": self.best_found,
+        }
+        named = ", ".join(f"{count} {status}" for status, count in counts.items() if count)
+        shares = "all certified" if self.complete else named
+        gap = self.largest_relative_gap
+        widest = "" if gap is None else f"; largest relative gap {short(gap)}"
+        return f"{self.values} values, {shares}{widest}"
+
+
+def certainty_by_scheme(table: SweepTable) -> dict[str, Certainty]:
+    """Return the certainty of each curve of a table.
+
+    Args:
+        table: a sweep.
+    """
+    return {scheme: Certainty.of(table.of(scheme)) for scheme in table.schemes}
+
+
+def certainty_lines(table: SweepTable) -> list[str]:
+    """Return what is proved of a table's curves, in a sentence for each kind of certainty that occurs.
+
+    Args:
+        table: a sweep.
+    """
+    curves = certainty_by_scheme(table)
+    kinds: dict[str, list[str]] = {"proved": [], "open": [], "searched": []}
+    for scheme, certainty in curves.items():
+        kind = "searched" if certainty.best_found else "open" if certainty.gap_not_reached else "proved"
+        kinds[kind].append(scheme)
+    lines = []
+    if kinds["proved"]:
+        lines.append(
+            f"{_who(kinds['proved'], curves)}certified to {_widest(kinds['proved'], curves)}{_PROVED}"
+        )
+    if kinds["open"]:
+        missed = sum(curves[scheme].gap_not_reached for scheme in kinds["open"])
+        points = sum(curves[scheme].values for scheme in kinds["open"])
+        lines.append(
+            f"{_who(kinds['open'], curves)}no pose exceeds the bound, but the gap asked for is not reached "
+            f"at {missed} of {points} points; relative gap up to {_widest(kinds['open'], curves)}"
+        )
+    if kinds["searched"]:
+        lines.append(f"{_who(kinds['searched'], curves)}best found by searching, nothing is proved")
+    return [line[0].upper() + line[1:] for line in lines]
+
+
+def _widest(schemes: Sequence[str], curves: Mapping[str, Certainty]) -> str:
+    gaps = (curves[scheme].largest_relative_gap for scheme in schemes)
+    return short(max((gap for gap in gaps if gap is not None), default=math.inf))
+
+
+def _who(schemes: Sequence[str], curves: Collection[str]) -> str:
+    return "" if len(schemes) == len(curves) else ", ".join(_label(name) for name in schemes) + ": "
+
+
+def _label(scheme: str) -> str:
+    return Scheme(scheme).label.lower()
+
+
+def short(number: float) -> str:
+    """Return a number rounded up to two digits, small and large ones as in ``1e-6``.
+
+    Args:
+        number: at least 0.
+    """
+    if not math.isfinite(number) or number == 0.0 or 1e-3 < number < 1e3:
+        return at_most(number)
+    mantissa, exponent = f"{_rounded(number, 2, math.ceil):.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def at_most(number: float, digits: int = 2) -> str:
+    """Return a number rounded up to so many significant digits.
+
+    Args:
+        number: any.
+        digits: how many.
+    """
+    return f"{_rounded(number, digits, math.ceil):.{digits}g}"
+
+
+def at_least(number: float, digits: int = 2) -> str:
+    """Return a number rounded down to so many significant digits.
+
+    Args:
+        number: any.
+        digits: how many.
+    """
+    return f"{_rounded(number, digits, math.floor):.{digits}g}"
+
+
+def _rounded(number: float, digits: int, towards: Callable[[float], int]) -> float:
+    if number == 0.0 or not math.isfinite(number):
+        return number
+    place = digits - 1 - math.floor(math.log10(abs(number)))
+    scaled = number * 10.0**place
+    nearest = round(scaled)
+    whole = nearest if abs(scaled - nearest) < 1e-9 else towards(scaled)
+    return float(whole / 10.0**place)

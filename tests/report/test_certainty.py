@@ -1,0 +1,81 @@
+"""What is proved of a set of values, in numbers and words that never claim too much."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose import Pose
+from nullpose.report.certainty import Certainty, at_least, at_most, certainty_lines, short
+from nullpose.study import SweepRow, SweepTable
+
+POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
+SEARCHED = SweepRow(1.0, "optimum", "best-found", 1.0, 0.0, POSE, ())
+PROVED = replace(SEARCHED, status="certified", upper_bound=1.0 + 9e-7, relative_gap=9e-7)
+OPEN = replace(SEARCHED, status="gap-not-reached", upper_bound=1.25, relative_gap=0.25, reason="a limit")
+
+
+def test_statuses_are_counted() -> None:
+    """Every status is counted, and the widest gap is of those with a bound."""
+    found = Certainty.of([PROVED, PROVED, OPEN, SEARCHED])
+    assert (found.certified, found.gap_not_reached, found.best_found, found.values) == (2, 1, 1, 4)
+    assert found.largest_relative_gap == 0.25
+    assert found.to_dict()["largest_relative_gap"] == 0.25
+    assert not found.complete
+    words = found.words()
+    assert words.startswith("4 values, 2 certified, 1 with a bound farther off")
+    assert "1 best found, with no bound; largest relative gap 0.25" in words
+
+
+def test_complete_is_said_only_of_what_is() -> None:
+    """Values are all certified only if there are some and each is."""
+    assert Certainty.of([PROVED]).complete
+    assert Certainty.of([PROVED]).words() == "1 values, all certified; largest relative gap 9e-7"
+    assert not Certainty.of([]).complete
+    assert not Certainty.of([PROVED, SEARCHED]).complete
+    assert Certainty.of([SEARCHED]).words() == "1 values, 1 best found, with no bound"
+
+
+def test_lines_name_the_curves_that_are_not_proved() -> None:
+    """One line when all is proved; otherwise each curve is named with what is proved of it."""
+    (line,) = certainty_lines(SweepTable("x", (PROVED,)))
+    assert line.startswith("Certified to 9e-7 (relative)")
+    vertical, gain = replace(OPEN, scheme="vertical"), replace(SEARCHED, scheme="maximum-gain")
+    lines = certainty_lines(SweepTable("x", (PROVED, vertical, gain)))
+    assert lines[0].startswith("Optimum: certified to 9e-7")
+    assert "Vertical: no pose exceeds the bound" in lines[1]
+    assert "not reached at 1 of 1 points; relative gap up to 0.25" in lines[1]
+    assert lines[2] == "Maximum gain: best found by searching, nothing is proved"
+    assert certainty_lines(SweepTable("x", (SEARCHED,))) == ["Best found by searching, nothing is proved"]
+
+
+def test_one_point_that_is_not_proved_opens_the_curve() -> None:
+    """A curve with a single point short of its gap is not called certified."""
+    (line,) = certainty_lines(SweepTable("x", (PROVED, replace(OPEN, value=2.0))))
+    assert "certified" not in line.lower()
+    assert "1 of 2 points" in line
+
+
+@given(number=st.floats(-1e12, 1e12).filter(lambda x: x == 0.0 or abs(x) > 1e-12), digits=st.integers(1, 6))
+def test_rounding_is_outward(number: float, digits: int) -> None:
+    """What is at most a number is never told as less, nor what is at least one as more."""
+    slack = 1e-8 * abs(number)
+    assert float(at_most(number, digits)) >= number - slack
+    assert float(at_least(number, digits)) <= number + slack
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (9.99900001e-7, "1e-6"),
+        (3.21e-7, "3.3e-7"),
+        (1e-4, "1e-4"),
+        (0.25, "0.25"),
+        (6.15e4, "6.2e4"),
+        (0, "0"),
+    ],
+)
+def test_gaps_are_short(number: float, text: str) -> None:
+    """A gap is told by two digits, rounded up."""
+    assert short(number) == text
