@@ -19,6 +19,9 @@ KEYS = [
     "holds_from",
     "fails_from",
     "method",
+    "certainty",
+    "proved",
+    "unproved",
 ]
 
 
@@ -39,6 +42,16 @@ def test_claims_json(reproduction: Reproduction) -> None:
     data = json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
     assert [list(claim) for claim in data["claims"]] == [KEYS] * 8
     assert data["provenance"]["seed"] == 0
+    for claim in data["claims"]:
+        assert claim["certainty"]["certified"] == claim["certainty"]["values"] > 0
+        assert claim["certainty"]["largest_relative_gap"] <= 1e-6
+    printed = data["figure2"].pop("maximum-gain-printed")
+    assert (printed["best_found"], printed["largest_relative_gap"]) == (printed["values"], None)
+    assert {name: found["certified"] for name, found in data["figure2"].items()} == dict.fromkeys(
+        ("optimum", "zero-interference", "maximum-gain", "vertical"), 19
+    )
+    assert "certified to 1e-6" in data["note"]
+    assert "proved only where a claim says so" in data["note"]
 
 
 def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
@@ -50,6 +63,13 @@ def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
         (row.value, row.scheme) for row in reproduction.table.rows
     ]
     assert [float(row["min_sinr_db"]) for row in rows] == [r.min_sinr_db for r in reproduction.table.rows]
+    for row in rows:
+        if row["scheme"] == "maximum-gain-printed":
+            assert (row["status"], row["upper_bound_db"], row["relative_gap"]) == ("best-found", "", "")
+        else:
+            assert row["status"] == "certified"
+            assert 0.0 <= float(row["relative_gap"]) <= 1e-6
+            assert float(row["upper_bound_db"]) >= float(row["min_sinr_db"])
 
 
 def test_view(reproduction: Reproduction) -> None:
@@ -59,4 +79,6 @@ def test_view(reproduction: Reproduction) -> None:
     text = console.file.getvalue()
     assert text.count("holds ") == 7
     assert text.count("fails ") == 1
+    assert "vertical: certified to 1e-6 (relative)" in text
+    assert "as printed: best found by searching, nothing is proved" in text
     assert all(str(path) in text for path in reproduction.files)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nullpose.report.certainty import certainty_lines
 from nullpose.report.claims import (
     CLAIM_COUNT,
     Claim,
@@ -54,7 +55,10 @@ class Reproduction:
 
     def to_dict(self) -> dict[str, object]:
         """Return the claims and the files as plain data."""
-        return {**claims_json(self.claims, self.provenance), "files": [str(path) for path in self.files]}
+        return {
+            **claims_json(self.claims, self.table, self.provenance),
+            "files": [str(path) for path in self.files],
+        }
 
 
 def reproduce(
@@ -66,6 +70,8 @@ def reproduce(
     on_progress: Callable[[int, int], None] | None = None,
 ) -> Reproduction:
     """Return what the paper's section 4 looks like when computed, after writing it to a folder.
+
+    Every point of the four curves comes with an upper bound.
 
     Args:
         folder: where the files go; made if it is missing.
@@ -104,8 +110,8 @@ def reproduce(
         *write_figure(draw_figure2(table), folder, "figure2"),
         table.write_csv(folder / "figure2.csv"),
         *write_figure(draw_poses(scenario, poses), folder, "poses"),
-        write_text(folder / "claims.md", claims_markdown(claims)),
-        write_text(folder / "claims.json", json_text(claims_json(claims, provenance)) + "\n"),
+        write_text(folder / "claims.md", claims_markdown(claims, table)),
+        write_text(folder / "claims.json", json_text(claims_json(claims, table, provenance)) + "\n"),
     )
     return Reproduction(table=table, claims=claims, files=files, provenance=provenance)
 
@@ -128,4 +134,5 @@ def reproduction_view(reproduction: Reproduction) -> RenderableType:
     for claim in reproduction.claims:
         body = Text.assemble((claim.claim, "bold"), "\n", claim.finding)
         view.add_row(Text(claim.verdict.value, "green" if claim.verdict == "holds" else "red"), body)
-    return Group(view, Text("\n".join(f"Wrote {path}" for path in reproduction.files)))
+    proved = [f"Figure 2: {line[0].lower()}{line[1:]}." for line in certainty_lines(reproduction.table)]
+    return Group(view, Text("\n".join([*proved, *(f"Wrote {path}" for path in reproduction.files)])))

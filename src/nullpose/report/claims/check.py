@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
+from nullpose.report.certainty import Certainty
 from nullpose.report.claims.claim import Claim
 from nullpose.report.claims.limits import (
     strong_jamming,
@@ -28,6 +30,8 @@ _CHECKS: tuple[Callable[[JammingStudy], Claim], ...] = (
     saturation,
 )
 
+_PRINTED = "maximum-gain-printed"  # nothing is ever proved of it, which the claims that use it say
+
 CLAIM_COUNT = len(_CHECKS)
 """How many claims there are to check."""
 
@@ -35,7 +39,7 @@ CLAIM_COUNT = len(_CHECKS)
 def check_claims(
     study: JammingStudy, on_progress: Callable[[int, int], None] | None = None
 ) -> tuple[Claim, ...]:
-    """Return every claim of the paper with its verdict.
+    """Return every claim of the paper with its verdict, and what it rests on.
 
     Args:
         study: the data.
@@ -43,7 +47,10 @@ def check_claims(
     """
     claims: list[Claim] = []
     for check in _CHECKS:
-        claims.append(check(study))
+        study.forget_uses()
+        claim = check(study)
+        rows = [row for row in study.used if row.scheme != _PRINTED]
+        claims.append(replace(claim, certainty=Certainty.of(rows)))
         if on_progress is not None:
             on_progress(len(claims), len(_CHECKS))
     return tuple(claims)

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from nullpose.report.certainty import Certainty
+
 __all__ = ["Claim", "Verdict"]
 
 
@@ -37,6 +39,9 @@ class Claim:
         method: how it was decided, with the tolerance.
         finding: one or two sentences with the decisive numbers.
         evidence: the numbers, by name with their unit.
+        proved: what follows from the certified bounds, given that all values are certified.
+        unproved: what the claim rests on besides: samples, bisections, the place of a pose.
+        certainty: the status of the values that it rests on, eq. 3.5 as printed apart.
         holds_up_to: the largest P_M/P up to which it holds, where that is less than all swept.
         holds_from: the smallest P_M/P from which it holds on, where that is more than the least swept.
         fails_from: the smallest P_M/P from which it fails, where it fails.
@@ -49,9 +54,19 @@ class Claim:
     method: str
     finding: str
     evidence: Mapping[str, object]
+    proved: str
+    unproved: str
+    certainty: Certainty | None = None
     holds_up_to: float | None = None
     holds_from: float | None = None
     fails_from: float | None = None
+
+    @property
+    def proved_words(self) -> str:
+        """What is proved of the claim, which is nothing if one of its values is not certified."""
+        if self.certainty is None or not self.certainty.complete:
+            return "Nothing: not every value that it rests on is certified."
+        return self.proved
 
     def to_dict(self) -> dict[str, object]:
         """Return the claim as plain data."""
@@ -66,4 +81,7 @@ class Claim:
             "holds_from": self.holds_from,
             "fails_from": self.fails_from,
             "method": self.method,
+            "certainty": None if self.certainty is None else self.certainty.to_dict(),
+            "proved": self.proved_words,
+            "unproved": self.unproved,
         }

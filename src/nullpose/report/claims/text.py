@@ -4,36 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from nullpose.report.certainty import certainty_by_scheme, certainty_lines
 from nullpose.report.claims.claim import Claim
+from nullpose.study import SweepTable
 
 __all__ = ["claims_json", "claims_markdown"]
 
-_UNPROVED = (
-    "Each pose behind these numbers is the best of many local optima found, not proved to be the best."
+_BEYOND = (
+    "A bound is on a value at one power: where the best pose lies, a level found by bisection, and powers "
+    "between those looked at are proved only where a claim says so."
 )
 
 
-def claims_json(claims: Sequence[Claim], provenance: Mapping[str, object]) -> dict[str, object]:
+def claims_json(
+    claims: Sequence[Claim], table: SweepTable, provenance: Mapping[str, object]
+) -> dict[str, object]:
     """Return the claims as plain data.
 
     Args:
         claims: what was checked.
+        table: the data of Figure 2.
         provenance: what produced the data.
     """
     return {
         "scenario": "Bonilla Licea et al., ICASSP 2024, section 4",
         "levels_are": "P_M/P, the jamming-to-transmission power ratio",
-        "note": _UNPROVED,
+        "note": " ".join([*_sentences(table), _BEYOND]),
+        "figure2": {name: found.to_dict() for name, found in certainty_by_scheme(table).items()},
         "claims": [claim.to_dict() for claim in claims],
         "provenance": dict(provenance),
     }
 
 
-def claims_markdown(claims: Sequence[Claim]) -> str:
+def _sentences(table: SweepTable) -> list[str]:
+    return [f"{line}." for line in certainty_lines(table)]
+
+
+def claims_markdown(claims: Sequence[Claim], table: SweepTable) -> str:
     """Return a page with a table of verdicts, and a section on each claim.
 
     Args:
         claims: what was checked.
+        table: the data of Figure 2.
     """
     lines = [
         "# The paper's claims, checked",
@@ -42,7 +54,10 @@ def claims_markdown(claims: Sequence[Claim]) -> str:
         "points), for the",
         "scenario of section 4. P_M/P is the jamming-to-transmission power ratio; values are the "
         "smallest SINR over",
-        f"the nodes. {_UNPROVED}",
+        "the nodes.",
+        "",
+        *(f"- {sentence}" for sentence in _sentences(table)),
+        f"- {_BEYOND}",
         "",
         "| claim | verdict | where |",
         "|---|---|---|",
@@ -54,6 +69,9 @@ def claims_markdown(claims: Sequence[Claim]) -> str:
         lines += [
             f"- Claimed in: {claim.source} (`{claim.id}`).",
             f"- How it was decided: {claim.method}",
+            *([f"- It rests on {claim.certainty.words()}."] if claim.certainty is not None else []),
+            f"- Proved: {claim.proved_words}",
+            f"- Not proved: {claim.unproved}",
             "",
         ]
         lines += _evidence_table(claim.evidence)

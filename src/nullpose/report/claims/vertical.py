@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
+from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
-from nullpose.report.claims.study import JammingStudy
+from nullpose.report.claims.study import JammingStudy, lead_range_db
 
 __all__ = ["above_jammer", "pose_optimisation_wins"]
 
@@ -51,6 +53,9 @@ def above_jammer(study: JammingStudy) -> Claim:
                 for level in levels
             ]
         },
+        proved="The values of the poses that the distances are measured at, at every level looked at.",
+        unproved="The distances themselves, as a bound is on the value and not on the place. The level of "
+        "the jump, a bisection between two swept ones; and the powers between those looked at.",
         holds_from=limit,
     )
 
@@ -103,7 +108,39 @@ def pose_optimisation_wins(study: JammingStudy) -> Claim:
             "zero_interference_ahead_from": zero_from,
             "maximum_gain_ahead_from": gain_from,
         },
+        proved=_lead_proved(study, zero_from),
+        unproved="The levels from which something holds, each a bisection between two swept ones; that the "
+        f"lead of {_SIGNIFICANT_DB:g} dB, and maximum gain's over vertical, are kept at the powers between "
+        "those looked at.",
     )
+
+
+def _lead_proved(study: JammingStudy, zero_from: float | None) -> str:
+    """Return what the bounds show of the lead over the vertical case, at the swept powers and between."""
+    leads_db = {level: study.lead_range_db("optimum", "vertical", level)[0] for level in study.levels}
+    strong_db = min(lead_db for level, lead_db in leads_db.items() if level >= _STRONG)
+    words = (
+        f"The true lead is at least {at_least(min(leads_db.values()))} dB at every swept level, and at least "
+        f"{at_least(strong_db, 3)} dB at each from P_M/P = {_STRONG:g} on."
+    )
+    # between two levels the optimum is at least as good as at the upper, the vertical at most as at the lower
+    between_db = min(
+        lead_range_db(study.at("optimum", upper), study.at("vertical", lower))[0]
+        for lower, upper in pairwise(study.levels)
+    )
+    if between_db > 0.0:
+        words += (
+            " More jamming never raises either case, so between the levels it is at least "
+            f"{at_least(between_db)} dB."
+        )
+    if zero_from is not None:
+        least_db, _ = study.lead_range_db("zero-interference", "vertical", zero_from)
+        words += (
+            f" From P_M/P = {zero_from:.3g} on, between the levels too, zero interference is ahead of the "
+            f"vertical case, or behind by {at_most(max(-least_db, 0.0))} dB at most: the one does not "
+            "change, the other does not rise."
+        )
+    return words
 
 
 def _ahead(name: str, start: float | None, weakest: float) -> str:
