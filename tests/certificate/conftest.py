@@ -1,16 +1,21 @@
 """Scenes, certificates and plain algebra that the tests of the verifier share."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from nullpose.certificate import Certificate, Leaves
+from nullpose.certificate import Certificate, Leaves, verify
+from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.family import Family
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solve import certificate_of, solve
 
 Place = tuple[float, float, float]
+
+_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "ball", "ball_multiplier")
+_ENOUGH_S = 600.0  # the kernels may have to be compiled first
 
 
 @pytest.fixture(scope="session")
@@ -76,15 +81,48 @@ def certified() -> Callable[..., Certificate]:
     def make(
         scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3, null_jammer: str | None = None
     ) -> Certificate:
-        return certificate_of(solve(scenario, scheme, gap=gap, null_jammer=null_jammer))
+        solution = solve(scenario, scheme, gap=gap, null_jammer=null_jammer, time_limit_s=_ENOUGH_S)
+        return certificate_of(solution)
 
     return make
 
 
 @pytest.fixture(scope="session")
-def celled(random_scene: Callable[..., Scenario], certified: Callable[..., Certificate]) -> Certificate:
+def cut_into_cells() -> Callable[[Certificate], Certificate]:
+    """Returns a function: a certificate some of whose leaves are cut into cells of axes, with multipliers.
+
+    Each cell inherits its leaf's proof, and the sides' multipliers are as large as the proof bears.
+    """
+
+    def cut(certificate: Certificate) -> Certificate:
+        tree = certificate.trees[0]
+        leaves = tree.leaves
+        chosen = np.flatnonzero(np.isin(leaves.test, (WORLD, TOWARDS)))[::4]
+        cells = [[0, 0, 0, 0, 0], [1, 0, 0, 1, 0], [1, 0, 0, 1, 1], [2, 1, 0, 0, 0], [2, 1, 1, 0, 0]]
+        rest = np.setdiff1d(np.arange(len(leaves)), chosen)
+        rows = np.concatenate([rest, np.repeat(chosen, len(cells))])
+        columns = {name: getattr(leaves, name)[rows] for name in _COLUMNS}
+        columns["cell"][len(rest) :] = np.tile(cells, (len(chosen), 1))
+        for power in range(12):
+            columns["sides"] = np.zeros((len(rows), 2))
+            columns["sides"][len(rest) :] = 4.0**-power * np.mean(leaves.level)
+            cut = replace(tree, leaves=Leaves(mixes=leaves.mixes, **columns))
+            result = replace(certificate, trees=(cut, *certificate.trees[1:]))
+            if verify(result).proved:
+                return result
+        raise AssertionError("no multiplier of the sides is small enough")
+
+    return cut
+
+
+@pytest.fixture(scope="session")
+def celled(
+    paper: Callable[..., Scenario],
+    certified: Callable[..., Certificate],
+    cut_into_cells: Callable[[Certificate], Certificate],
+) -> Certificate:
     """Returns a certificate some of whose leaves have cells of axes."""
-    return certified(random_scene(51, 5, 1))
+    return cut_into_cells(certified(paper()))
 
 
 @pytest.fixture(scope="session")
