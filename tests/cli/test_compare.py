@@ -56,7 +56,9 @@ def test_table_has_a_column_for_each_case(run: Run, paper: str) -> None:
     for words in ("Optimum", "Zero interference", "Maximum gain", "Vertical", "axis to M (deg)", "binding"):
         assert words in result.stdout
     assert "0.9836997" in result.stdout
-    assert "not proved" in result.stdout
+    (bounds,) = [line for line in result.stdout.splitlines() if "at most (dB)" in line]
+    assert bounds.split()[3:] == ["0.9837041", "0.8123593", "-0.6998429", "-2.1602567"]
+    assert "All: certified" in result.stdout
 
 
 def test_a_case_that_does_not_apply_says_why(run: Run, tmp_path: Path, paper: str) -> None:
@@ -79,3 +81,26 @@ def test_ten_nodes_and_two_jammers(run: Run, paper: str) -> None:
     assert result.exit_code == 0
     assert "orchard" in result.stdout
     assert "null on jammer" in result.stdout
+
+
+def test_every_case_is_certified(run: Run, paper: str) -> None:
+    """Each case has its own bound and status; --fast proves nothing, and says so."""
+    cases = json.loads(run("compare", paper, "--gap", "1e-7", "--json").stdout)["cases"]
+    assert [case["status"] for case in cases] == ["certified"] * 4
+    assert all(0.0 <= case["objective"]["relative_gap"] <= 1e-7 for case in cases)
+    fast = json.loads(run("compare", paper, "--fast", "--json").stdout)["cases"]
+    assert [(case["status"], case["objective"]["upper_bound"]) for case in fast] == [("best-found", None)] * 4
+    assert all(
+        one["stats"]["starts"] > other["stats"]["starts"] for one, other in zip(fast, cases, strict=True)
+    )
+    assert "not proved" in run("compare", paper, "--fast").stdout
+
+
+def test_a_limit_holds_for_each_case(run: Run, paper: str) -> None:
+    """Stopped short, the cases say why and keep bounds."""
+    result = run("compare", paper, "--node-limit", 5)
+    assert result.exit_code == 0
+    assert "the node limit of 5" in result.stdout
+    cases = json.loads(run("compare", paper, "--node-limit", 5, "--json").stdout)["cases"]
+    assert cases[0]["status"] == "gap-not-reached"
+    assert all(case["objective"]["upper_bound"] >= case["objective"]["value"] for case in cases)

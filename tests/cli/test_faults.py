@@ -171,6 +171,38 @@ def test_bad_usage(run: Run, arguments: list[str], words: list[str]) -> None:
     assert_refused(run(*arguments), *words)
 
 
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--gap", "0", ["gap: given 0.0", "1e-9 to 10"]),
+        ("--gap", "-1e-6", ["gap: given -1e-06"]),
+        ("--gap", "nan", ["gap: given nan"]),
+        ("--gap", "tight", ["--gap", "valid number"]),
+        ("--time-limit", "0", ["time limit: given 0.0", "more than 0 seconds"]),
+        ("--time-limit", "nan", ["time limit: given nan"]),
+        ("--time-limit", "soon", ["--time-limit", "valid number"]),
+        ("--node-limit", "0", ["node limit: given 0", "at least 1"]),
+        ("--node-limit", "1.5", ["--node-limit", "valid integer"]),
+    ],
+)
+@pytest.mark.parametrize("verb", ["solve", "compare", "sweep"])
+def test_bad_limit(
+    run: Run, good: Path, tmp_path: Path, verb: str, option: str, value: str, words: list[str]
+) -> None:
+    """A limit that means nothing is refused with what is allowed, before any work."""
+    out = tmp_path / "out"
+    power = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--out", out)
+    assert_refused(run(verb, good, option, value, *(power if verb == "sweep" else ())), *words)
+    assert not out.exists()
+
+
+def test_a_certificate_of_nothing(run: Run, good: Path, tmp_path: Path) -> None:
+    """--fast proves nothing that could be written down."""
+    path = tmp_path / "proof.json"
+    assert_refused(run("solve", good, "--fast", "--certificate", path), "--certificate", "--fast")
+    assert not path.exists()
+
+
 def test_bad_range(run: Run, good: Path, tmp_path: Path) -> None:
     """A sweep's range is refused with all that is wrong with it, and nothing is written."""
     out = tmp_path / "out"

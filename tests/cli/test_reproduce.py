@@ -33,3 +33,6 @@ def test_reproduce(run: Run, tmp_path: Path) -> None:
     written = json.loads((tmp_path / "out" / "claims.json").read_text(encoding="utf-8"))
     assert printed["claims"] == written["claims"]
     assert {claim["verdict"] for claim in printed["claims"]} == {"holds", "fails"}
+    assert all(claim["certainty"]["certified"] == claim["certainty"]["values"] for claim in printed["claims"])
+    assert printed["figure2"]["optimum"]["certified"] == 10
+    assert printed["figure2"]["optimum"]["largest_relative_gap"] <= 1e-6

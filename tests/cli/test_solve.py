@@ -2,13 +2,18 @@
 
 import json
 import math
+import os
+import signal
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from typer.testing import Result
 
+from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import SchemeName
 
 Run = Callable[..., Result]
@@ -30,6 +35,7 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
         "scenario",
         "scheme",
         "status",
+        "reason",
         "objective",
         "pose",
         "links",
@@ -40,7 +46,7 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
     assert list(answer["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
     assert list(answer["pose"]) == ["position_m", "roll_rad", "pitch_rad", "yaw_rad", "antenna_axis"]
     assert [link["node"] for link in answer["links"]] == ["S1", "S2"]
-    assert set(answer["stats"]) == {"wall_s", "starts", "evaluations"}
+    assert set(answer["stats"]) == {"wall_s", "starts", "evaluations", "boxes"}
 
 
 def test_json_of_a_real_process_is_one_object(process: Process, paper: str) -> None:
@@ -70,8 +76,11 @@ def test_every_scheme_prints_tables(run: Run, paper: str, scheme: SchemeName) ->
     """Each scheme's tables name the value, the pose, the links and the jammer."""
     result = run("solve", paper, "--scheme", scheme.value)
     assert result.exit_code == 0
-    for words in ("smallest SINR", "position", "roll", "deg from vertical", "Links", "Jammers", "not proved"):
+    proved = scheme is not SchemeName.MAXIMUM_GAIN_PRINTED
+    status = "certified" if proved else "not proved"
+    for words in ("smallest SINR", "position", "roll", "deg from vertical", "Links", "Jammers", status):
         assert words in result.stdout
+    assert ("\nat most " in result.stdout) is proved
 
 
 def test_null_jammer(run: Run, paper: str) -> None:
@@ -109,3 +118,103 @@ def test_known_statistics_are_plausible(run: Run, paper: str) -> None:
         assert link["sinr_db"] == pytest.approx(10.0 * math.log10(link["sinr"]))
     assert answer["objective"]["value"] == min(link["sinr"] for link in answer["links"])
     assert math.hypot(*answer["pose"]["antenna_axis"]) == pytest.approx(1.0)
+
+
+def test_the_bound_is_printed_below_the_value(run: Run, paper: str) -> None:
+    """The table's bound is the JSON's, rounded up, with the gap beside it."""
+    objective = _solve_json(run, paper)["objective"]
+    assert objective["value"] <= objective["upper_bound"] <= objective["value"] * (1.0 + 1e-6)
+    lines = run("solve", paper).stdout.splitlines()
+    assert lines[2] == "at most 0.9837041 dB (relative gap 1.0e-06)"
+    assert 10.0 * math.log10(objective["upper_bound"]) <= 0.9837041
+
+
+def test_fast_proves_nothing(run: Run, paper: str) -> None:
+    """--fast searches from more starts, has no bound, and the table says that nothing is proved."""
+    answer, fast = _solve_json(run, paper), _solve_json(run, paper, "--fast")
+    assert (answer["status"], fast["status"]) == ("certified", "best-found")
+    assert (fast["objective"]["upper_bound"], fast["objective"]["relative_gap"]) == (None, None)
+    assert fast["stats"]["starts"] > answer["stats"]["starts"]
+    assert fast["stats"]["boxes"] == 0 < answer["stats"]["boxes"]
+    shown = run("solve", paper, "--fast").stdout
+    assert "not proved" in shown
+    assert "at most" not in shown
+
+
+def test_the_gap_can_be_asked_for(run: Run, paper: str) -> None:
+    """A wider gap is met with fewer boxes, and recorded."""
+    close, wide = (_solve_json(run, paper, "--gap", gap) for gap in ("1e-8", "0.1"))
+    assert close["objective"]["relative_gap"] <= 1e-8
+    assert 1e-8 < wide["objective"]["relative_gap"] <= 0.1
+    assert wide["stats"]["boxes"] < close["stats"]["boxes"]
+    assert (close["provenance"]["gap"], wide["provenance"]["gap"]) == (1e-8, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("limit", "reason"),
+    [
+        (("--node-limit", "50"), "the node limit of 50"),
+        (("--time-limit", "1e-6"), "the time limit of 1e-06 s"),
+    ],
+)
+def test_a_limit_is_no_failure(run: Run, paper: str, limit: tuple[str, str], reason: str) -> None:
+    """A proof that ends early exits 0 with a bound that holds, and says what ended it."""
+    field = paper.replace("paper.toml", "field.toml")
+    answer = _solve_json(run, field, *limit)
+    assert (answer["status"], answer["reason"]) == ("gap-not-reached", reason)
+    best = _solve_json(run, field, "--fast")["objective"]["value"]
+    assert answer["objective"]["upper_bound"] >= best
+    shown = run("solve", field, *limit).stdout
+    assert f"the gap asked for was not reached: {reason}" in shown
+    assert "\nat most " in shown
+
+
+def test_an_interrupted_proof_prints_its_result(
+    run: Run, paper: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C during a proof ends with the result so far on standard output and code 130."""
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(GapBar, "__call__", interrupt)
+    result = run("solve", paper.replace("paper.toml", "field.toml"))
+    assert result.exit_code == INTERRUPTED
+    assert "the gap asked for was not reached: an interrupt" in result.stdout
+    assert "\nat most " in result.stdout
+    result = run("solve", paper.replace("paper.toml", "field.toml"), "--json")
+    assert result.exit_code == INTERRUPTED
+    answer = json.loads(result.stdout)
+    assert (answer["status"], answer["reason"]) == ("gap-not-reached", "an interrupt")
+
+
+TOLD_AT_ONCE = """
+import sys
+import nullpose.cli.gap_bar as gap_bar
+from nullpose.cli.app import main
+
+gap_bar._QUIET_S = gap_bar._LOG_EVERY_S = 0.0
+sys.argv[0] = "nullpose"
+main()
+"""
+
+
+def test_an_interrupt_of_the_real_program_keeps_the_result(paper: str) -> None:
+    """A signal that arrives once the proof has begun ends it, and the tables are printed all the same."""
+    arguments = ["solve", paper.replace("paper.toml", "field.toml"), "--gap", "1e-9", "--time-limit", "300"]
+    program = subprocess.Popen(
+        [sys.executable, "-c", TOLD_AT_ONCE, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"COLUMNS": "200"},
+    )
+    assert program.stderr is not None
+    while "proving:" not in (line := program.stderr.readline()):
+        assert line or program.poll() is None
+    program.send_signal(signal.SIGINT)
+    stdout, stderr = program.communicate(timeout=100)
+    assert program.returncode == INTERRUPTED
+    assert "smallest SINR 1.58" in stdout
+    assert "not reached: an interrupt" in stdout
+    assert "Traceback" not in stderr

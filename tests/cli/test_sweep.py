@@ -24,7 +24,12 @@ def test_files_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
     assert {row["scheme"] for row in rows} == {"optimum", "zero-interference", "maximum-gain", "vertical"}
     optimum = [row for row in rows if row["scheme"] == "optimum"]
     assert float(optimum[2]["min_sinr_db"]) == pytest.approx(0.9836997, abs=1e-6)
+    for row in rows:
+        assert row["status"] == "certified"
+        assert 0.0 <= float(row["relative_gap"]) <= 1e-6
+        assert float(row["upper_bound_db"]) > float(row["min_sinr_db"])
     assert "0.9837" in result.stdout
+    assert "Certified to 1e-6" in result.stdout
     assert str(out / "sweep.png") in result.stdout
 
 
@@ -51,3 +56,35 @@ def test_a_case_that_does_not_apply_is_named(run: Run, paper: str, tmp_path: Pat
     result = run("sweep", calm, "--set", "nodes.S1.power_w", *arguments)
     assert result.exit_code == 0
     assert "zero-interference does not apply" in result.stdout
+
+
+def test_proofs_can_be_limited_or_left_out(run: Run, paper: str, tmp_path: Path) -> None:
+    """The options of a proof hold for every row, and the file says what became of it."""
+    arguments = ("--from", 0.5, "--to", 2, "--points", 2, "--scheme", "optimum", "--json", "--out", tmp_path)
+    swept = ("sweep", paper, "--set", "jammers.M.power_w", *arguments)
+    for options, status, reason in (
+        ((), "certified", ""),
+        (("--gap", "0.1"), "certified", ""),
+        (("--fast",), "best-found", ""),
+        (("--node-limit", 5), "gap-not-reached", "the node limit of 5"),
+    ):
+        result = run(*swept, *options)
+        assert result.exit_code == 0
+        rows = json.loads(result.stdout)["rows"]
+        assert [(row["status"], row["reason"]) for row in rows] == [(status, reason)] * 2
+        with (tmp_path / "sweep.csv").open(encoding="utf-8", newline="") as file:
+            written = list(csv.DictReader(file))
+        assert [(row["status"], row["reason"]) for row in written] == [(status, reason)] * 2
+        assert all((row["upper_bound_db"] == "") is (status == "best-found") for row in written)
+        assert all(row["upper_bound"] is None or row["upper_bound"] >= row["min_sinr"] for row in rows)
+
+
+def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -> None:
+    """Each proof that runs out of time says so in its row, and its bound still holds."""
+    arguments = ("--from", 30, "--to", 40, "--points", 2, "--scheme", "optimum", "--json", "--out", tmp_path)
+    field = paper.replace("paper.toml", "field.toml")
+    result = run("sweep", field, "--set", "jammers.van.power_dbm", *arguments, "--time-limit", "1e-6")
+    assert result.exit_code == 0
+    for row in json.loads(result.stdout)["rows"]:
+        assert (row["status"], row["reason"]) == ("gap-not-reached", "the time limit of 1e-06 s")
+        assert row["upper_bound"] >= row["min_sinr"]

@@ -11,6 +11,7 @@ import pytest
 from nullpose.physics import Link, Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Scheme, Solution, Stats, Status, solve
+from nullpose.solve.proof import INTERRUPT
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +27,7 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
         "scenario",
         "scheme",
         "status",
+        "reason",
         "objective",
         "pose",
         "links",
@@ -36,8 +38,8 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
     assert list(data["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
     assert list(data["pose"]) == ["position_m", "roll_rad", "pitch_rad", "yaw_rad", "antenna_axis"]
     assert [list(link) for link in data["links"]] == [["node", "sinr", "sinr_db"]] * 2
-    assert list(data["stats"]) == ["wall_s", "starts", "evaluations"]
-    assert {"nullpose", "seed"} <= set(data["provenance"])
+    assert list(data["stats"]) == ["wall_s", "starts", "evaluations", "boxes"]
+    assert {"nullpose", "seed", "gap"} <= set(data["provenance"])
 
 
 def test_the_json_object_survives_json(solution: Solution) -> None:
@@ -47,17 +49,48 @@ def test_the_json_object_survives_json(solution: Solution) -> None:
     assert Scenario.from_dict(data["scenario"]) == solution.scenario
     assert (data["scheme"], data["status"], data["objective"]["name"]) == (
         "optimum",
-        "best-found",
+        "certified",
         "min_sinr",
     )
 
 
-def test_nothing_is_proved_yet(solution: Solution) -> None:
-    """A multistart claims no bound: upper bound and gap are null, and the status says so in a sentence."""
-    assert solution.status is Status.BEST_FOUND
+def test_a_certified_solution_has_its_bound(solution: Solution) -> None:
+    """Bound and gap are numbers that agree, boxes were examined, and no reason is given."""
+    data = solution.to_dict()
+    objective = data["objective"]
+    assert solution.status is Status.CERTIFIED
+    assert data["reason"] == ""
+    assert objective["value"] <= objective["upper_bound"] <= objective["value"] * (1.0 + 1e-6)
+    assert objective["relative_gap"] == objective["upper_bound"] / objective["value"] - 1.0
+    assert data["stats"]["boxes"] > 0
+    assert data["provenance"]["gap"] == 1e-6
+    assert len(solution.proofs) == 1
+
+
+def test_without_a_proof_nothing_is_claimed(paper: Callable) -> None:
+    """A search alone has neither bound nor gap, asks for no gap, and its status says so in a sentence."""
+    fast = solve(paper(1.0), certify=False)
+    data = fast.to_dict()
+    assert fast.status is Status.BEST_FOUND
     assert "not proved" in Status.BEST_FOUND.message
-    assert solution.to_dict()["objective"]["upper_bound"] is None
-    assert solution.to_dict()["objective"]["relative_gap"] is None
+    assert (data["objective"]["upper_bound"], data["objective"]["relative_gap"]) == (None, None)
+    assert data["stats"]["boxes"] == 0
+    assert "gap" not in data["provenance"]
+    assert fast.proofs == ()
+
+
+def test_statuses_have_sentences() -> None:
+    """Only one status claims the gap, and only one claims nothing."""
+    assert [status.value for status in Status] == ["certified", "gap-not-reached", "best-found"]
+    assert len({status.message for status in Status}) == 3
+    assert "not reached" in Status.GAP_NOT_REACHED.message
+
+
+def test_an_interrupt_is_told_by_its_reason(solution: Solution) -> None:
+    """Ctrl-C is one reason among others."""
+    assert not solution.interrupted
+    assert dataclasses.replace(solution, reason=INTERRUPT).interrupted
+    assert not dataclasses.replace(solution, reason="the time limit of 1 s").interrupted
 
 
 def test_the_value_is_that_of_the_reported_angles(solution: Solution) -> None:

@@ -9,7 +9,7 @@ from scipy.optimize import differential_evolution
 
 from nullpose.family import AxisField, build_family
 from nullpose.physics import antenna_gain, maximum_gain_axis, maximum_gain_sinr
-from nullpose.solve import Scheme, solve
+from nullpose.solve import Scheme, Status, solve
 from nullpose.solve.kernels.maximum_gain import maximum_gain_value
 
 
@@ -79,3 +79,24 @@ def test_equal_distances_keep_the_value(scene: Callable) -> None:
     solution = solve(square, Scheme.MAXIMUM_GAIN)
     assert solution.objective.value <= solve(square).objective.value
     assert solution.objective.value > 0.5 * solve(square).objective.value
+
+
+def test_two_nodes_are_certified(paper: Callable) -> None:
+    """With two nodes the axis follows from the position, and the bound is its own."""
+    for ratio in (1e-3, 1.0, 1.14, 1e6):
+        solution = solve(paper(ratio), Scheme.MAXIMUM_GAIN)
+        assert solution.status is Status.CERTIFIED
+        assert solution.objective.relative_gap <= 1e-6
+
+
+@pytest.mark.parametrize("nodes", [1, 3])
+def test_another_number_has_the_optimum_s_bound(nodes: int, random_scene: Callable) -> None:
+    """For another number the bound is that of the free axis, seldom tight, and the reason says so."""
+    one = random_scene(np.random.default_rng(nodes), nodes, 1)
+    solution, optimum = solve(one, Scheme.MAXIMUM_GAIN), solve(one)
+    assert solution.status is Status.GAP_NOT_REACHED
+    assert "the bound is that of the optimum" in solution.reason
+    assert solution.objective.upper_bound == optimum.objective.upper_bound
+    assert solution.objective.value <= optimum.objective.value * (1.0 + 1e-9)
+    fast = solve(one, Scheme.MAXIMUM_GAIN, certify=False)
+    assert (fast.status, fast.reason) == (Status.BEST_FOUND, "")

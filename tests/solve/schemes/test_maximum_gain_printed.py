@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import differential_evolution
 
 from nullpose.physics import evaluate, maximum_gain_sinr_as_printed, to_db
-from nullpose.solve import Scheme, solve
+from nullpose.solve import Scheme, Status, solve
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
@@ -48,3 +48,11 @@ def test_it_stays_equidistant_and_does_not_saturate(paper: Callable) -> None:
         assert solution.pose.position_m[1] == pytest.approx(25.0, abs=1e-3)
     drops = np.diff([solution.objective.value_db for solution in solutions])
     assert np.all(drops < -5.0)
+
+
+def test_nothing_is_proved_of_it(paper: Callable) -> None:
+    """Asked for a proof or not, the printed form has none, and says why."""
+    solution = solve(paper(1.0), Scheme.MAXIMUM_GAIN_PRINTED)
+    assert solution.status is Status.BEST_FOUND
+    assert solution.objective.upper_bound is None
+    assert "nothing is proved of it" in solution.reason
