@@ -54,7 +54,8 @@ def null_at_jammer(study: JammingStudy) -> Claim:
                 for level in levels
             ]
         },
-        proved="The values of the poses that the angles are measured at, at every level looked at.",
+        proved="At every level looked at, no pose of the case is better, by more than the gap, than the one "
+        "whose angle is measured.",
         unproved="The angles themselves, as a bound is on the value and not on the place: a pose elsewhere "
         "could come as near to it. The level from which they are so small, a bisection between two swept "
         "ones; and the powers between those looked at.",

@@ -53,7 +53,8 @@ def above_jammer(study: JammingStudy) -> Claim:
                 for level in levels
             ]
         },
-        proved="The values of the poses that the distances are measured at, at every level looked at.",
+        proved="At every level looked at, no upright pose is better, by more than the gap, than the one "
+        "whose distance is measured.",
         unproved="The distances themselves, as a bound is on the value and not on the place. The level of "
         "the jump, a bisection between two swept ones; and the powers between those looked at.",
         holds_from=limit,
@@ -135,10 +136,10 @@ def _lead_proved(study: JammingStudy, zero_from: float | None) -> str:
         )
     if zero_from is not None:
         least_db, _ = study.lead_range_db("zero-interference", "vertical", zero_from)
+        behind = "" if least_db >= 0.0 else f", or behind by at most {at_most(-least_db)} dB"
         words += (
             f" From P_M/P = {zero_from:.3g} on, between the levels too, zero interference is ahead of the "
-            f"vertical case, or behind by {at_most(max(-least_db, 0.0))} dB at most: the one does not "
-            "change, the other does not rise."
+            f"vertical case{behind}: the one does not change, the other does not rise."
         )
     return words
 
