@@ -6,6 +6,7 @@ Shared by the validation page and by tests/docs/test_validation.py, which need n
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,6 +52,8 @@ class Row:
     known: Known
     min_sinr_db: float
     position_m: tuple[float, ...]
+    certified: bool
+    upper_bound_db: float
 
     @property
     def error_db(self) -> float:
@@ -59,10 +62,11 @@ class Row:
 
     @property
     def agrees(self) -> bool:
-        """Whether value and position are within their tolerances."""
+        """Whether value and position are within their tolerances, and the value is certified."""
         pairs = zip(self.position_m, self.known.position_m, strict=False)
         apart_m = max((abs(ours - theirs) for ours, theirs in pairs), default=0.0)
-        return abs(self.error_db) <= self.known.tolerance_db and apart_m <= POSITION_TOLERANCE_M
+        close = abs(self.error_db) <= self.known.tolerance_db and apart_m <= POSITION_TOLERANCE_M
+        return close and self.certified
 
 
 def known_answers() -> list[Known]:
@@ -89,4 +93,11 @@ def solve(known: Known) -> Row:
     scenario = nullpose.apply_overrides(scenario, [f"jammers.M.power_w={known.jamming_ratio!r}"])
     solution = nullpose.solve(scenario, scheme=known.scheme)
     position_m = tuple(float(x) for x in solution.pose.position_m)
-    return Row(known, min_sinr_db=solution.objective.value_db, position_m=position_m)
+    upper_bound = solution.objective.upper_bound
+    return Row(
+        known,
+        min_sinr_db=solution.objective.value_db,
+        position_m=position_m,
+        certified=solution.status is nullpose.Status.CERTIFIED,
+        upper_bound_db=math.inf if upper_bound is None else 10.0 * math.log10(upper_bound),
+    )

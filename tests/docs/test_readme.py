@@ -6,10 +6,14 @@ import re
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from nullpose.cli.app import app
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 EXAMPLE = re.search(r"```python\n(.*?)```.*?```text\n(.*?)```", README, flags=re.DOTALL)
+SCREEN = re.search(r"```console\n(\$ nullpose solve .*?)```", README, flags=re.DOTALL)
 
 
 def test_example_prints_what_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -21,6 +25,28 @@ def test_example_prints_what_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     with contextlib.redirect_stdout(printed):
         exec(compile(code, "README.md", "exec"), {"__name__": "__main__"})
     assert printed.getvalue() == shown
+
+
+def test_first_screen_is_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every line that the README shows of solve and verify is printed, but for the number of leaves."""
+    assert SCREEN is not None
+    command, *shown = SCREEN[1].splitlines()
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.chdir(ROOT)
+    printed = ""
+    for words in command.removeprefix("$ ").split(" && "):
+        arguments = [
+            str(tmp_path / word) if word == "paper.cert.json" else word for word in words.split()[1:]
+        ]
+        result = CliRunner().invoke(app, arguments)
+        assert (words.split()[0], result.exit_code) == ("nullpose", 0)
+        printed += result.stdout
+    lines = [_without_leaves(line) for line in printed.splitlines()]
+    assert [line for line in shown if line != "..." and _without_leaves(line) not in lines] == []
+
+
+def _without_leaves(line: str) -> str:
+    return re.sub(r"\d+ leaves", "N leaves", line.rstrip())
 
 
 def test_example_is_short() -> None:
