@@ -133,7 +133,7 @@ def _pose_fault(certificate: Certificate, family: Family, fields: dict[str, Axis
     p = [Fraction(float(x)) for x in certificate.position_m]
     for i, name in enumerate("xyz"):
         if not family.low_m[i] <= certificate.position_m[i] <= family.high_m[i]:
-            return f"pose: {name} = {certificate.position_m[i]!r} m is outside the airspace"
+            return f"pose: {name} = {float(certificate.position_m[i])!r} m is outside the airspace"
     least = Fraction(family.keep_out_m) - Fraction(_EDGE_M)
     for point in family.points_m:
         away2 = sum(((Fraction(float(q)) - x) ** 2 for q, x in zip(point, p, strict=True)), Fraction(0))

@@ -1,0 +1,345 @@
+"""The verifier accepts the solver's certificates of every kind, and says why it rejects others."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import Certificate, Leaves, parse_certificate, read_certificate, verify
+from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS, WORLD
+from nullpose.scenario import Scenario, apply_overrides, load
+
+PAPER = Path(__file__).parents[2] / "examples" / "paper.toml"
+SCHEMES = ["optimum", "zero-interference", "maximum-gain", "vertical"]
+
+
+def accepted(certificate: Certificate) -> str:
+    """Return the words with which a certificate is accepted."""
+    verdict = verify(certificate)
+    assert verdict.proved, verdict.message
+    assert verdict.leaves == sum(len(tree.leaves) for tree in certificate.trees)
+    return verdict.message
+
+
+def with_tree(certificate: Certificate, **changes: object) -> Certificate:
+    """Return a certificate whose first tree is another."""
+    tree = replace(certificate.trees[0], **changes)
+    return replace(certificate, trees=(tree, *certificate.trees[1:]))
+
+
+def with_leaves(certificate: Certificate, **columns: object) -> Certificate:
+    """Return a certificate whose first tree's leaves have other columns."""
+    return with_tree(certificate, leaves=replace(certificate.trees[0].leaves, **columns))
+
+
+def rejected(certificate: Certificate) -> str:
+    """Return the words with which a certificate is rejected."""
+    verdict = verify(certificate)
+    assert not verdict.proved
+    assert verdict.message.startswith("rejected: ")
+    return verdict.message
+
+
+@pytest.mark.parametrize("power_w", [1e-3, 0.1, 1.0, 100.0, 1e6])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_papers_scenario_is_proved(scheme: str, power_w: float, certified: Callable) -> None:
+    """Every case of the paper, from hardly any jamming to a deafening one."""
+    scenario = apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"])
+    certificate = certified(scenario, scheme)
+    assert certificate.upper_bound <= certificate.value * 1.0011
+    assert "proved: in this scenario no position" in accepted(certificate)
+
+
+def test_the_default_gap_is_proved(certified: Callable) -> None:
+    """The paper's optimum to one part in a million."""
+    certificate = certified(load(PAPER), gap=1e-6)
+    assert certificate.upper_bound <= certificate.value * 1.0000011
+    accepted(certificate)
+
+
+@pytest.mark.parametrize("jammers", [1, 2, 3])
+@pytest.mark.parametrize("nodes", [1, 3])
+def test_few_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, certified: Callable) -> None:
+    """Random scenes of up to three nodes."""
+    accepted(certified(random_scene(10 * nodes + jammers, nodes, jammers)))
+
+
+@pytest.mark.parametrize(("nodes", "jammers"), [(5, 1), (5, 2), (8, 1), (8, 3)])
+def test_many_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, certified: Callable) -> None:
+    """Random scenes where forms may have a duality gap, so that axes may have to be split."""
+    certificate = certified(random_scene(10 * nodes + jammers, nodes, jammers), gap=1e-2)
+    accepted(certificate)
+    if (nodes, jammers) == (5, 1):
+        cells = certificate.trees[0].leaves.cell[:, 0] >= 0
+        assert np.any(cells)
+        assert np.any(certificate.trees[0].leaves.sides[cells] > 0.0)
+
+
+def test_cells_are_proved(celled: Certificate) -> None:
+    """A certificate with cells of axes passes, and needs each of its faces."""
+    cell = celled.trees[0].leaves.cell
+    accepted(celled)
+    last = int(np.flatnonzero(cell[:, 0] == 2)[-1])
+    kept = np.delete(np.arange(len(cell)), last)
+    leaves = celled.trees[0].leaves
+    columns = {name: getattr(leaves, name)[kept] for name in Leaves.__slots__ if name != "mixes"}
+    assert "face2" in rejected(with_tree(celled, leaves=Leaves(mixes=leaves.mixes, **columns)))
+
+
+def test_multipliers_of_sides_count(celled: Certificate) -> None:
+    """The sides' multipliers are used: a thousand times larger they prove nothing any more."""
+    sides = 1e3 * celled.trees[0].leaves.sides
+    assert "is not excluded" in rejected(with_leaves(celled, sides=sides))
+
+
+def test_multipliers_of_balls_count(walled: Certificate) -> None:
+    """Keep-out balls with a multiplier are proved, and needed: without them the same leaves fail."""
+    leaves = walled.trees[0].leaves
+    assert np.any(leaves.ball_multiplier > 0.0)
+    assert np.any(leaves.test == KEPT_OUT)
+    accepted(walled)
+    without = with_leaves(walled, ball_multiplier=np.zeros(len(leaves)))
+    assert "is not excluded" in rejected(without)
+    assert "is not excluded" in rejected(with_leaves(walled, ball=np.full(len(leaves), -1)))
+
+
+def test_balls_count_for_given_axes_too(paper: Callable, certified: Callable) -> None:
+    """Where the best position lies on a keep-out ball, leaves of a given axis use it."""
+    certificate = certified(paper(keep_out_m=26.5), "vertical")
+    assert np.any(certificate.trees[0].leaves.ball_multiplier > 0.0)
+    accepted(certificate)
+
+
+ROOMS = [
+    {"x_m": (-50.0, 60.0), "y_m": (-20.0, 30.0)},
+    {"x_m": (20.0, 60.0), "y_m": (30.0, 90.0), "altitude_m": (12.0, 20.0)},
+    {"altitude_m": (8.0, 8.0)},
+    {"x_m": (-50.0, 60.0), "y_m": (10.0, 10.0), "altitude_m": (9.0, 9.0)},
+    {"x_m": (3.0, 3.0), "y_m": (10.0, 10.0), "altitude_m": (9.0, 9.0)},
+    {"altitude_m": (-5.0, 100.0)},
+]
+
+
+# in the last room maximum gain has no axis in line with both nodes, and no proof closes there
+@pytest.mark.parametrize(
+    ("scheme", "airspace"),
+    [(scheme, room) for scheme in SCHEMES for room in ROOMS if (scheme, room) != ("maximum-gain", ROOMS[-1])],
+)
+def test_every_room_is_proved(scheme: str, airspace: dict, paper: Callable, certified: Callable) -> None:
+    """Bounded rooms, planes, lines, a single position, and room below the ground."""
+    accepted(certified(paper(**airspace), scheme, gap=1e-2))
+
+
+def test_several_jammers_need_a_tree_each(random_scene: Callable, certified: Callable) -> None:
+    """Zero interference is proved for every jammer, or for the one that was to be nulled."""
+    scenario = random_scene(3, 3, 2)
+    both = certified(scenario, "zero-interference")
+    one = certified(scenario, "zero-interference", null_jammer="M2")
+    assert [tree.axis for tree in both.trees] == ["null M1", "null M2"]
+    assert [tree.axis for tree in one.trees] == ["null M2"]
+    assert "whose null is on a jammer" in accepted(both)
+    assert "whose null is on jammer M2" in accepted(one)
+    for trees in (both.trees[:1], both.trees[::-1][:1], (), (*both.trees, both.trees[0])):
+        assert "needs a tree for each of" in rejected(replace(both, trees=trees))
+    assert accepted(replace(both, trees=both.trees[::-1]))
+    assert "needs a tree for each of" in rejected(replace(one, null_jammer="M1"))
+    assert "has no certificate" in rejected(replace(one, null_jammer="M3"))
+
+
+def test_a_null_jammer_goes_with_zero_interference_only(paper: Callable, certified: Callable) -> None:
+    """A proof of the optimum is none of a pose whose null is on a jammer."""
+    certificate = certified(paper(), gap=0.1)
+    assert "null jammer 'M1' has no certificate" in rejected(replace(certificate, null_jammer="M1"))
+    assert "'no such' has no certificate" in rejected(replace(certificate, scheme="no such"))
+
+
+def test_the_words_state_the_claim(paper: Callable, certified: Callable) -> None:
+    """The message has the bound, the value and how near they are; axes in the words of the scheme."""
+    words = {
+        "optimum": "no position and no antenna axis gives",
+        "vertical": "with a vertical antenna",
+        "maximum-gain": "broadside to both nodes",
+        "zero-interference": "whose null is on a jammer",
+    }
+    for scheme, expected in words.items():
+        certificate = certified(paper(), scheme, gap=1e-2)
+        message = accepted(certificate)
+        assert expected in message
+        assert f"{certificate.upper_bound:.10g}" in message
+        assert f"{certificate.value:.10g}" in message
+        assert f"{len(certificate.trees[0].leaves)} leaves" in message
+
+
+def test_every_test_of_a_leaf_occurs(paper: Callable, certified: Callable, walled: Certificate) -> None:
+    """The certificates above contain every kind of test."""
+    kinds = {int(t) for t in walled.trees[0].leaves.test}
+    for scenario, scheme in ((paper(1e-3), "optimum"), (paper(), "vertical")):
+        kinds |= {int(t) for t in certified(scenario, scheme).trees[0].leaves.test}
+    assert kinds == {WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT}
+
+
+def test_the_pose_is_checked(paper: Callable, certified: Callable) -> None:
+    """Each way in which a pose can fail is told."""
+    certificate = certified(paper(x_m=(-50.0, 60.0)), "vertical", gap=0.1)
+    p = certificate.position_m
+    for shift, words in (
+        ((0.0, 0.0, -0.1), "z = 7.9"),
+        ((0.0, 0.0, 100.0), "outside the airspace"),
+        ((200.0, 0.0, 0.0), "x = "),
+        ((1e-3, 0.0, 0.0), "smallest SINR is"),
+    ):
+        assert words in rejected(replace(certificate, position_m=p + np.array(shift)))
+    assert "not one that the scheme allows" in rejected(replace(certificate, roll_rad=1e-5))
+    assert "beyond 4 rad" in rejected(replace(certificate, yaw_rad=7.0))
+    assert "smallest SINR is" in rejected(replace(certificate, value=certificate.value * (1.0 - 1e-9)))
+    assert "the bound is below" in rejected(replace(certificate, upper_bound=certificate.value * 0.999))
+    assert "positive and finite" in rejected(replace(certificate, value=-1.0))
+    accepted(replace(certificate, value=certificate.value * (1.0 - 1e-11)))
+    accepted(replace(certificate, yaw_rad=1.234))
+
+
+def test_a_pose_in_a_keep_out_ball_is_rejected(walled: Certificate) -> None:
+    """A pose a centimetre too near to a ground point is not allowed."""
+    points = walled.scenario.node_positions_m
+    nearest = points[np.argmin(np.linalg.norm(points - walled.position_m, axis=1))]
+    way = nearest - walled.position_m
+    shift = np.array([*(way[:2] / np.linalg.norm(way[:2])), 0.0]) * (np.linalg.norm(way) - 26.5 + 0.05)
+    assert "closer than keep_out_m" in rejected(replace(walled, position_m=walled.position_m + shift))
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"level": lambda x: x * 1.01}, "its level is above the bound"),
+        ({"level": lambda x: -x}, "its level is not positive"),
+        ({"test": lambda x: x + 5}, "its test is unknown"),
+        ({"test": lambda x: x * 0 + AFFINE}, "the tree's is free"),
+        ({"point": lambda x: x + 100}, "its point does not exist"),
+        ({"point": lambda x: x * 0 - 1}, "its point does not exist"),
+        ({"mix": lambda x: x + 10**6}, "its multipliers do not exist"),
+        ({"mix": lambda x: x * 0 - 1}, "its multipliers do not exist"),
+        ({"ball": lambda x: x + 100}, "its keep-out ball does not exist"),
+        ({"ball_multiplier": lambda x: -x}, "a multiplier is negative"),
+        ({"sides": lambda x: x - 1.0}, "a multiplier is negative"),
+        ({"cell": lambda x: x * 0 + np.array([3, 0, 0, 0, 0])}, "its cell does not exist"),
+        ({"box": lambda x: x + np.array([51, 0, 0, 0, 0, 0])}, "its depth is out of range"),
+        ({"box": lambda x: x - [60, 0, 0, 0, 0, 0]}, "its depth is out of range"),
+        ({"box": lambda x: x + np.array([0, 2**40, 0, 0, 0, 0])}, "its index is out of range"),
+        ({"box": lambda x: x - [0, 2**40, 0, 0, 0, 0]}, "its index is out of range"),
+    ],
+)
+def test_numbers_out_of_range_are_named(columns: dict, words: str, walled: Certificate) -> None:
+    """The first leaf whose numbers cannot be is named with what is wrong."""
+    leaves = walled.trees[0].leaves
+    changed = {name: change(getattr(leaves, name)) for name, change in columns.items()}
+    message = rejected(with_leaves(walled, **changed))
+    assert words in message
+    assert "tree 'free': leaf " in message
+
+
+@pytest.mark.parametrize("mix", [{}, {0: -0.1, 1: 1.1}, {2: 1.0}, {0: 1.0, 10**30: 1.0}])
+def test_multipliers_that_cannot_be_are_named(mix: dict, walled: Certificate) -> None:
+    """No ratio, one that is not there, or a negative weight."""
+    mixes = (mix, *walled.trees[0].leaves.mixes[1:])
+    assert "multipliers 0: " in rejected(with_leaves(walled, mixes=mixes))
+
+
+def test_huge_numbers_end_in_words(paper: Callable, certified: Callable, walled: Certificate) -> None:
+    """Numbers near the largest there are overflow into a rejection, not into an exception."""
+    for certificate in (walled, certified(paper(keep_out_m=26.5), "vertical", gap=0.1)):
+        leaves = certificate.trees[0].leaves
+        for size in (1e300,):
+            balls = {"ball": leaves.ball * 0, "ball_multiplier": np.full(len(leaves), size)}
+            assert "is not excluded" in rejected(with_leaves(certificate, **balls))
+            wide = np.array([[-size] * 3, [size] * 3])
+            assert "is not excluded" in rejected(with_tree(certificate, root_m=wide))
+            mixes = tuple(dict.fromkeys(mix, size) for mix in leaves.mixes)
+            assert verify(with_leaves(certificate, mixes=mixes)).message
+            assert "leaf 0" in rejected(
+                replace(
+                    certificate,
+                    upper_bound=size,
+                    trees=with_leaves(
+                        certificate,
+                        level=np.full(len(leaves), size),
+                        test=np.full(len(leaves), KEPT_OUT),
+                        point=leaves.point * 0,
+                    ).trees,
+                )
+            )
+
+
+def test_a_root_that_is_too_small_is_rejected(walled: Certificate) -> None:
+    """A face moved in leaves out positions; an inverted box holds none."""
+    root_m = walled.trees[0].root_m.copy()
+    root_m[0, 1] = walled.position_m[1] + 1.0
+    assert "the root box ends at y" in rejected(with_tree(walled, root_m=root_m))
+    assert "the root box is empty" in rejected(with_tree(walled, root_m=walled.trees[0].root_m[::-1].copy()))
+
+
+def test_no_leaves_prove_nothing(walled: Certificate) -> None:
+    """An empty tree is a hole as large as the root."""
+    leaves = walled.trees[0].leaves
+    columns = {name: getattr(leaves, name)[:0] for name in Leaves.__slots__ if name != "mixes"}
+    empty = with_tree(walled, leaves=Leaves(mixes=(), **columns))
+    assert "nothing covers root" in rejected(empty)
+
+
+def test_a_failing_leaf_is_placed(walled: Certificate) -> None:
+    """The message says which leaf fails, where it is, at what level and by which test."""
+    level = walled.trees[0].leaves.level.copy()
+    row = int(np.flatnonzero(walled.trees[0].leaves.test == TOWARDS)[3])
+    level[row] *= 0.5
+    message = rejected(with_leaves(walled, level=level))
+    assert f"leaf {row} (x, y, z: " in message
+    assert f"{level[row]:.12g}" in message
+    assert "turning frame" in message
+
+
+def test_the_order_of_leaves_does_not_matter(celled: Certificate) -> None:
+    """Shuffled leaves prove the same."""
+    leaves = celled.trees[0].leaves
+    order = np.random.default_rng(1).permutation(len(leaves))
+    columns = {name: getattr(leaves, name)[order] for name in Leaves.__slots__ if name != "mixes"}
+    accepted(with_tree(celled, leaves=Leaves(mixes=leaves.mixes, **columns)))
+
+
+def test_leaves_that_fail_by_a_hair_are_cut(walled: Certificate) -> None:
+    """Two leaves joined into their parent pass if the parts that the verifier tries by itself do."""
+    leaves = walled.trees[0].leaves
+    out = np.flatnonzero((leaves.test == FAR) & (leaves.box[:, 0] > 0))
+    level = leaves.level.copy()
+    for row in out:
+        level[row] *= 1.0 - 1e-13
+    accepted(with_leaves(walled, level=level))
+
+
+def test_progress_is_told(random_scene: Callable, certified: Callable) -> None:
+    """Reports count up to the number of leaves over all trees."""
+    certificate = certified(random_scene(3, 3, 2), "zero-interference")
+    seen: list[tuple[int, int]] = []
+    verify(certificate, on_progress=lambda done, total: seen.append((done, total)))
+    total = sum(len(tree.leaves) for tree in certificate.trees)
+    assert seen[-1] == (total, total)
+    assert [done for done, _ in seen] == sorted(done for done, _ in seen)
+    assert {everything for _, everything in seen} == {total}
+
+
+def test_a_written_certificate_is_proved(celled: Certificate, tmp_path: Path) -> None:
+    """What was written and read is proved as before: no digit is lost."""
+    from nullpose.certificate import certificate_text, write_certificate
+
+    write_certificate(celled, tmp_path / "proof.json.gz")
+    assert accepted(read_certificate(tmp_path / "proof.json.gz")) == accepted(celled)
+    assert accepted(parse_certificate(certificate_text(celled))) == accepted(celled)
+
+
+def test_another_scenario_is_not_proved(paper: Callable, certified: Callable) -> None:
+    """The leaves of one scene do not prove another's bound, even with the pose's value corrected."""
+    certificate = certified(paper(1.0), gap=1e-2)
+    other: Scenario = paper(0.01)
+    assert "smallest SINR" in rejected(replace(certificate, scenario=other))
+    weaker = certified(other, gap=1e-2)
+    assert rejected(replace(weaker, trees=certificate.trees))
