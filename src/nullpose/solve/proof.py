@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
+from nullpose.solve.crew import Crew, Task, processors
 from nullpose.solve.found import Found
 from nullpose.solve.limits import Limits
 
@@ -20,9 +23,8 @@ FloatArray = NDArray[np.float64]
 
 _DIRECT_NODES = 20_000  # a first try at the target; most problems of the paper's size need a few hundred
 _STAGE = 0.25  # each stage's gap, as a share of the one before
-_FIRST_CHUNK = 4096  # nodes times ratios
-_CHUNK_S = 0.05
-_MOST_LEAVES = 700_000
+_CHUNK = 4096  # nodes between two looks at the clock, for few ratios
+_MOST_LEAVES = 500_000
 _WIDEST_GAP = 1e6
 _INSIDE = 1.0 - 1e-4  # the gap that is aimed at, of the gap that is asked for: value and bound are rounded
 
@@ -84,7 +86,8 @@ class _Run:
         self.deadline = time.perf_counter() + limits.time_limit_s - spent.seconds
         self.node_limit = max(1, limits.node_limit - spent.nodes)
         self.nodes = 0
-        self.chunk = max(16, _FIRST_CHUNK // len(family.numerator_point))
+        # the same on every machine: where improvements are noticed decides which pose is found
+        self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
         self.doubt = 0.0
         self.favourite = self._favourite()
@@ -113,52 +116,38 @@ class _Run:
         row[self.node.FACE] = -1.0
         return row[None]
 
-    def stage(self, gap: float, start: FloatArray, most: int) -> tuple[FloatArray, str]:
+    def stage(self, gap: float, start: FloatArray, most: int, threads: int = 1) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
-        top = len(start)
-        stack = np.empty((max(256, 2 * top), self.node.COLUMNS))
-        stack[:top] = start
-        leaves = np.empty((max(1024, 2 * top), self.node.COLUMNS))
-        filled = 0
-        position_m, axis = np.empty(3), np.empty(3)
+        crew = Crew(start, threads)
+        none = start[:0]
         until = self.nodes + most
-        while True:
-            began = time.perf_counter()
-            budget = min(self.chunk, until - self.nodes)
-            code, top, filled, done, _ = self.kernel.branch(
-                self.family.arrays,
-                self.family.domain,
-                self.axis_field.arrays,
-                self.value * (1.0 + gap),
-                self.value * (1.0 + self.doubt),
-                self.favourite,
-                stack,
-                top,
-                leaves,
-                filled,
-                budget,
-                position_m,
-                axis,
-            )
-            self.nodes += done
-            if code == self.kernel.DONE:
-                self.proved = min(self.proved, self.value * (1.0 + gap))
-                return leaves[:filled], ""
-            if code == self.kernel.BETTER:
-                self._improve(position_m, axis)
-            elif code == self.kernel.FULL:
-                stack, leaves = _grown(stack, top, 16), _grown(leaves, filled, 1)
-                if filled > _MOST_LEAVES:
-                    return leaves[:0], f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
-            now = time.perf_counter()
-            if self.on_progress is not None:
-                self.on_progress(self.proved / self.value - 1.0, self.nodes)
-            if now > self.deadline:
-                return leaves[:0], f"the time limit of {self.limits.time_limit_s:g} s"
-            if self.nodes >= until:
-                return leaves[:0], f"the node limit of {self.limits.node_limit}"
-            if code == self.kernel.LIMIT and now - began < 0.5 * _CHUNK_S:
-                self.chunk *= 2
+        with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
+            while True:
+                self.nodes += crew.work(self._task(gap, until), pool)
+                for position_m, axis in crew.better():
+                    self._improve(position_m, axis)
+                if crew.done:
+                    self.proved = min(self.proved, self.value * (1.0 + gap))
+                    return crew.leaves(), ""
+                if self.on_progress is not None:
+                    self.on_progress(self.proved / self.value - 1.0, self.nodes)
+                if time.perf_counter() > self.deadline:
+                    return none, f"the time limit of {self.limits.time_limit_s:g} s"
+                if self.nodes >= until:
+                    return none, f"the node limit of {self.limits.node_limit}"
+                if crew.filled > _MOST_LEAVES:
+                    return none, f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
+
+    def _task(self, gap: float, until: int) -> Task:
+        arguments = (
+            self.family.arrays,
+            self.family.domain,
+            self.axis_field.arrays,
+            self.value * (1.0 + gap),
+            self.value * (1.0 + self.doubt),
+            self.favourite,
+        )
+        return Task(self.kernel, arguments, max(1, min(self.chunk, until - self.nodes)))
 
     def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
         from nullpose.solve.kernels.links import min_log_ratio
@@ -230,10 +219,11 @@ def prove(
         if not reason:
             leaves = done
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
+            threads = processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = max(target, _STAGE * gap)
-                done, reason = run.stage(gap, start, run.node_limit - run.nodes)
+                done, reason = run.stage(gap, start, run.node_limit - run.nodes, threads)
                 if reason:
                     break
                 leaves = start = done
@@ -262,12 +252,3 @@ def _reach(family: Family) -> tuple[float, int]:
     isotropic = family.denominator_isotropic[family.denominator_of]
     ratios = (family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic
     return float(np.min(ratios)) * (1.0 + 1e-9), int(np.argmin(ratios))
-
-
-def _grown(array: FloatArray, used: int, spare: int) -> FloatArray:
-    """Return the array, twice as long if its used part leaves fewer than ``spare`` rows."""
-    if used + spare < len(array):
-        return array
-    larger = np.empty((2 * len(array), array.shape[1]))
-    larger[:used] = array[:used]
-    return larger

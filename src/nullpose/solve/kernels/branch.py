@@ -50,7 +50,6 @@ _BY_AXIS = 2
 _BETTER = 3
 
 _COARSENESS = 8.0  # how far a duality gap must outweigh a box's size before axes are split
-_STRONG = 0.5  # an interferer this strong, in units of the noise, is worth a frame that turns with it
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
@@ -58,7 +57,7 @@ _BEATS = 1e-9
 
 @inner_kernel
 def strongest_point(family, centre):
-    """Return the denominators' point that is received most strongly at the centre, and how strongly."""
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
     points, dpt, dw = family[0], family[7], family[8]
     strongest = 0.0
     anchor = -1
@@ -68,7 +67,37 @@ def strongest_point(family, centre):
             d += (points[dpt[e], i] - centre[i]) ** 2
         if dw[e] > strongest * d:
             strongest, anchor = dw[e] / d, dpt[e]
-    return anchor, strongest
+    return anchor
+
+
+@inner_kernel
+def best_frame(family, row):
+    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+
+    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
+    larger: worth it where one interferer outweighs the rest.
+    """
+    points, _, nw, npt = family[:4]
+    dpt, dw = family[7], family[8]
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    anchor = strongest_point(family, centre)
+    if anchor < 0:
+        return WORLD, anchor
+    rho = min_distance(points, anchor, centre, half)
+    still = turning = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        a = min_distance(points, npt[k], centre, half)
+        scale = row[WEIGHT + s] * nw[k] / (a * a * a * a)
+        still += 6.0 * scale
+        turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
+    for e in range(dw.shape[0]):
+        a = min_distance(points, dpt[e], centre, half)
+        scale = row[LEVEL] * dw[e] / (a * a * a * a)
+        still += 4.0 * scale
+        if dpt[e] != anchor:
+            turning += scale * (4.0 + a / rho * (12.0 + 6.31 * a / rho))
+    return (TOWARDS_POINT if turning < still else WORLD), anchor
 
 
 @inner_kernel
@@ -121,8 +150,7 @@ def examine_free(family, domain, best, favourite, row, nearest, weights, axis, i
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = np.empty((3, 3))
-    anchor, strength = strongest_point(family, centre)
-    kind = TOWARDS_POINT if strength > _STRONG * family[5][0] else WORLD
+    kind, anchor = best_frame(family, row)
     rho, rho_min = set_frame(family[0], kind, anchor, centre, half, basis)
     view = (kind, anchor, basis, rho, rho_min)
     denominator, slopes = np.empty(6), np.empty((3, 6))
