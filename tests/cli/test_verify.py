@@ -1,0 +1,123 @@
+"""The verb `verify`: what was proved, or why not, and the exit code that goes with it."""
+
+import gzip
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+Process = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def proof(run: Run, paper: str, tmp_path: Path) -> Path:
+    """Returns a certificate of the paper's optimum."""
+    path = tmp_path / "proof.json"
+    assert run("solve", paper, "--gap", "1e-3", "--certificate", path).exit_code == 0
+    return path
+
+
+def spoil(path: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    """Change a certificate's data."""
+    data = json.loads(path.read_text(encoding="utf-8"))
+    change(data)
+    path.write_text(json.dumps(data), encoding="utf-8")
+
+
+def test_a_proof_is_told(run: Run, proof: Path) -> None:
+    """What is proved goes to standard output, with exit code 0."""
+    result = run("verify", proof)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.startswith(
+        "proved: in this scenario no position and no antenna axis gives every node"
+    )
+    assert "leaves checked" in result.stdout
+    assert len(result.stdout.splitlines()) == 1
+
+
+def test_a_proof_as_json(run: Run, proof: Path) -> None:
+    """One object says whether it is proved, in which words, and how many leaves there were."""
+    result = run("verify", proof, "--json")
+    answer = json.loads(result.stdout)
+    assert (result.exit_code, list(answer)) == (0, ["proved", "message", "leaves"])
+    assert answer["proved"] is True
+    assert answer["leaves"] == len(json.loads(proof.read_text())["trees"][0]["leaves"]["test"])
+
+
+def test_a_rejected_certificate_names_the_leaf(run: Run, proof: Path) -> None:
+    """A level lowered too far is found, and told on standard error with exit code 1."""
+
+    def lower(data: dict[str, Any]) -> None:
+        data["trees"][0]["leaves"]["level"][7] *= 1e-6
+
+    spoil(proof, lower)
+    result = run("verify", proof)
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr.startswith("rejected: tree 'free': leaf 7 (x, y, z: ")
+    answer = run("verify", proof, "--json")
+    assert answer.exit_code == 1
+    assert json.loads(answer.stdout)["proved"] is False
+    assert "leaf 7" in json.loads(answer.stdout)["message"]
+
+
+def test_a_missing_leaf_is_told(run: Run, proof: Path) -> None:
+    """Without one of its leaves the certificate is rejected for the hole."""
+
+    def drop(data: dict[str, Any]) -> None:
+        leaves = data["trees"][0]["leaves"]
+        for name, column in leaves.items():
+            if name != "mixes":
+                del column[3]
+
+    spoil(proof, drop)
+    result = run("verify", proof)
+    assert result.exit_code == 1
+    assert "the leaves do not cover the root" in result.stderr
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b"\x1f\x8b\x08\x00", b'{"format": 1}'])
+def test_what_is_no_certificate_is_refused(content: bytes, run: Run, tmp_path: Path) -> None:
+    """A malformed file is bad input: exit code 2, the file named on standard error."""
+    path = tmp_path / "proof.json"
+    path.write_bytes(content)
+    result = run("verify", path)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: {path}: ")
+
+
+def test_malformed_parts_are_named(run: Run, proof: Path) -> None:
+    """A missing key, a changed scenario and a missing file are told by name, with exit code 2."""
+    spoil(proof, lambda data: data["pose"].pop("roll_rad"))
+    result = run("verify", proof)
+    assert (result.exit_code, result.stderr) == (
+        2,
+        f"error: {proof}: pose.roll_rad: is missing; must be a finite number\n",
+    )
+    spoil(proof, lambda data: data["scenario"]["nodes"][0].update(power_w=2.0))
+    result = run("verify", proof)
+    assert result.exit_code == 2
+    assert "scenario_sha256" in result.stderr
+    result = run("verify", proof.with_name("none.json"))
+    assert result.exit_code == 2
+    assert "cannot be read" in result.stderr
+
+
+def test_a_toml_file_is_no_certificate(run: Run, paper: str) -> None:
+    """The scenario file given by mistake is refused in words."""
+    result = run("verify", paper)
+    assert result.exit_code == 2
+    assert "is no certificate: not JSON" in result.stderr
+
+
+def test_a_process_of_its_own_needs_no_solver(process: Process, proof: Path) -> None:
+    """The whole program verifies a compressed certificate and says so in one line."""
+    packed = proof.with_name("proof.json.gz")
+    packed.write_bytes(gzip.compress(proof.read_bytes()))
+    done = process("verify", packed)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("proved: ")
