@@ -227,7 +227,7 @@ def mixes_of(rng: np.random.Generator, ratios: int, count: int) -> tuple[dict[in
 
 
 @pytest.mark.parametrize("keep_out_m", [1.0, 20.0])
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seed=seeds)
 def test_no_pose_of_an_excluded_box_reaches_the_level(
     keep_out_m: float, seed: int, random_family: Callable, make_leaves: Callable, dense_ratios: Callable

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nullpose.certificate.pose_value import antenna_axis, field_offset, sine_cosine, smallest_ratio
@@ -33,6 +33,7 @@ def test_sine_and_cosine(x: float) -> None:
     assert float(cosine) == pytest.approx(math.cos(x), abs=2e-16)
 
 
+@settings(max_examples=30)
 @given(x=angles, y=angles)
 def test_sums_of_angles(x: float, y: float) -> None:
     """The sine of half a sum obeys the addition theorem, to thirty digits."""

@@ -69,7 +69,7 @@ def test_few_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, 
 @pytest.mark.parametrize(("nodes", "jammers"), [(5, 1), (5, 2), (8, 1), (8, 3)])
 def test_many_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, certified: Callable) -> None:
     """Random scenes where forms may have a duality gap, so that axes may have to be split."""
-    certificate = certified(random_scene(10 * nodes + jammers, nodes, jammers), gap=1e-2)
+    certificate = certified(random_scene(10 * nodes + jammers, nodes, jammers))
     accepted(certificate)
     if (nodes, jammers) == (5, 1):
         cells = certificate.trees[0].leaves.cell[:, 0] >= 0
@@ -175,7 +175,7 @@ def test_the_words_state_the_claim(paper: Callable, certified: Callable) -> None
 def test_every_test_of_a_leaf_occurs(paper: Callable, certified: Callable, walled: Certificate) -> None:
     """The certificates above contain every kind of test."""
     kinds = {int(t) for t in walled.trees[0].leaves.test}
-    for scenario, scheme in ((paper(1e-3), "optimum"), (paper(), "vertical")):
+    for scenario, scheme in ((paper(1e-3), "optimum"), (paper(1e6), "optimum"), (paper(), "vertical")):
         kinds |= {int(t) for t in certified(scenario, scheme).trees[0].leaves.test}
     assert kinds == {WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT}
 
@@ -290,12 +290,12 @@ def test_no_leaves_prove_nothing(walled: Certificate) -> None:
 def test_a_failing_leaf_is_placed(walled: Certificate) -> None:
     """The message says which leaf fails, where it is, at what level and by which test."""
     level = walled.trees[0].leaves.level.copy()
-    row = int(np.flatnonzero(walled.trees[0].leaves.test == TOWARDS)[3])
+    row = int(np.flatnonzero(walled.trees[0].leaves.test <= TOWARDS)[3])
     level[row] *= 0.5
     message = rejected(with_leaves(walled, level=level))
     assert f"leaf {row} (x, y, z: " in message
     assert f"{level[row]:.12g}" in message
-    assert "turning frame" in message
+    assert "by its test (free axis" in message
 
 
 def test_the_order_of_leaves_does_not_matter(celled: Certificate) -> None:

@@ -415,12 +415,12 @@ def sound(
     three = scene([(0, 0, 0), (40, 5, 2), (10, 40, 1)], [(17, 15, 4), (30, 30, 0)])
     room = {"x_m": (-20.0, 30.0), "y_m": (5.0, 60.0)}
     return {
-        "optimum": certified(paper(10.0), gap=0.05),
-        "cells": cut_into_cells(certified(paper(0.1), gap=0.05)),
-        "ball": certified(paper(keep_out_m=26.5), gap=0.05),
-        "vertical": certified(paper(), "vertical", gap=0.1),
-        "broadside": certified(paper(**room), "maximum-gain", gap=0.1),
-        "null": certified(three, "zero-interference", gap=0.1),
+        "optimum": certified(paper(10.0), gap=0.2),
+        "cells": cut_into_cells(certified(paper(0.1), gap=0.2)),
+        "ball": certified(paper(keep_out_m=26.5), gap=0.02),
+        "vertical": certified(paper(), "vertical", gap=0.4),
+        "broadside": certified(paper(**room), "maximum-gain", gap=0.4),
+        "null": certified(three, "zero-interference", gap=0.4),
     }
 
 
