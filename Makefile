@@ -34,6 +34,7 @@ bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
 
 figures: .venv/.with-core ## the pictures and the claims that README and pages show, made anew
 	$(BIN)/python docs/make_figures.py
+	$(BIN)/python docs/figures/certificate_boxes.py
 
 clean: ## take away .venv, out and docs/_build
 	rm -rf .venv out docs/_build
