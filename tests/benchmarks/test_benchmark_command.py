@@ -92,7 +92,7 @@ def test_stored_run_is_told_again(tmp_path: Path) -> None:
         assert (tmp_path / name / "images" / "benchmark-profile.png").stat().st_size > 10_000
         assert (tmp_path / name / "images" / "benchmark-growth.png").stat().st_size > 10_000
     assert pages[0] == pages[1]
-    assert "**nullpose hits in 2 of 4 scenes" in pages[0]
+    assert "**nullpose's search hits in 2 of 4 scenes" in pages[0]
     assert "| N=2 K=1 P_M/P=1 seed=1 | SciPy direct" not in pages[0]
     assert "N=2 K=1 P_M/P=1 seed=1" in pages[0]
     assert "ValueError: too hard" in pages[0]

@@ -174,7 +174,7 @@ def test_bad_usage(run: Run, arguments: list[str], words: list[str]) -> None:
 @pytest.mark.parametrize(
     ("option", "value", "words"),
     [
-        ("--gap", "0", ["gap: given 0.0", "1e-9 to 10"]),
+        ("--gap", "0", ["gap: given 0.0", "1e-8 to 10"]),
         ("--gap", "-1e-6", ["gap: given -1e-06"]),
         ("--gap", "nan", ["gap: given nan"]),
         ("--gap", "tight", ["--gap", "valid number"]),

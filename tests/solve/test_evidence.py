@@ -95,7 +95,6 @@ def test_equal_mixes_are_shared() -> None:
     assert leaves.point.tolist() == [-1, -1, -1, 2]
 
 
-@pytest.mark.xfail(reason="a ratio that stands twice in a row keeps its last weight only")
 def test_a_ratio_that_stands_twice_has_both_weights() -> None:
     """A row may name one ratio twice, its index overwritten by a distance test of an earlier stage."""
     proof = proof_of(np.empty(0))
@@ -144,14 +143,11 @@ def test_the_certificate_is_of_the_solution(paper: Callable) -> None:
 def test_an_unfinished_proof_has_a_certificate(paper: Callable) -> None:
     """The bound from distances alone, and that of any limit, can be checked too."""
     for node_limit in (1, 10, 100, 1000):
-        solution = solve(paper(1.0), gap=1e-9, node_limit=node_limit, time_limit_s=ENOUGH_S)
+        solution = solve(paper(1.0), gap=1e-8, node_limit=node_limit, time_limit_s=ENOUGH_S)
         assert solution.objective.upper_bound > solution.objective.value
         assert verify(certificate_of(solution)).proved
 
 
-@pytest.mark.xfail(
-    reason="leaves of the stage have another level than the bound from distances, which is kept"
-)
 @pytest.mark.parametrize("altitude_m", [(8.0, 30.0), (8.0, 8.0)])
 def test_a_bound_from_distances_has_leaves_that_show_it(altitude_m: tuple, scene: Callable) -> None:
     """Above a lone node the distance says it all: the certificate must prove the bound that is stated."""

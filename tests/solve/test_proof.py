@@ -99,7 +99,7 @@ def test_a_limit_leaves_a_valid_bound(random_scene: Callable) -> None:
     short = proof_of(family, AxisField.free(), gap=1e-6, node_limit=300)
     assert "node limit" in short.reason
     assert short.upper_bound >= np.exp(full.found.log_value)
-    hasty = proof_of(family, AxisField.free(), gap=1e-9, time_limit_s=1e-3)
+    hasty = proof_of(family, AxisField.free(), gap=1e-8, time_limit_s=1e-3)
     assert "time limit" in hasty.reason
     assert hasty.upper_bound >= np.exp(full.found.log_value)
 
@@ -123,9 +123,7 @@ def test_progress_is_told(random_scene: Callable) -> None:
     seen: list[tuple[float, int]] = []
     family = build_family(random_scene(np.random.default_rng(7), 6, 2, 30.0))
     found = multistart(family, AxisField.free(), seed=1)
-    prove(
-        family, AxisField.free(), found, Limits(gap=1e-3), lambda gap, n: seen.append((gap, n))
-    )
+    prove(family, AxisField.free(), found, Limits(gap=1e-3), lambda gap, n: seen.append((gap, n)))
     gaps, nodes = zip(*seen, strict=True)
     assert list(nodes) == sorted(nodes)
     assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(gaps))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from fractions import Fraction
 
 import numpy as np
@@ -104,12 +105,21 @@ def _sentence(certificate: Certificate, leaves: int) -> str:
         axes = f"an antenna whose null is on jammer {certificate.null_jammer}"
     who = f"with {axes}" if axes.startswith("a") else f"and {axes}"
     bound, value = certificate.upper_bound, certificate.value
+    most, least = _rounded(bound, ROUND_CEILING), _rounded(value * (1.0 - VALUE_RTOL), ROUND_FLOOR)
+    most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
+    least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
     return (
-        f"proved: in this scenario no position {who} gives every node an SINR above "
-        f"{bound:.10g} ({10.0 * math.log10(bound):.7f} dB), and the stated pose gives every node "
-        f"{value:.10g} ({10.0 * math.log10(value):.7f} dB) or more, which is within "
+        f"proved: in this scenario no position {who} gives every node an SINR above {most} ({most_db} dB), "
+        f"and the stated pose gives every node {least} ({least_db} dB) or more, which is within "
         f"{bound / value - 1.0:.2e} of it; {leaves} leaves checked"
     )
+
+
+def _rounded(number: float, direction: str, digits: int = 9) -> str:
+    """Return a number with so many decimals that claims no more than it does; in full if it is small."""
+    if 0.0 < number < 1e-3:
+        return repr(number)
+    return str(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction))
 
 
 def _claim_fault(certificate: Certificate, fields: dict[str, AxisField] | None) -> str:

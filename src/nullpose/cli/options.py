@@ -62,13 +62,9 @@ TimeLimit = Annotated[
     float, typer.Option("--time-limit", metavar="S", help="Seconds after which a proof stops.")
 ]
 
-NodeLimit = Annotated[
-    int, typer.Option("--node-limit", metavar="N", help="Boxes after which a proof stops.")
-]
+NodeLimit = Annotated[int, typer.Option("--node-limit", metavar="N", help="Boxes after which a proof stops.")]
 
-Fast = Annotated[
-    bool, typer.Option("--fast", help="Search only, more thoroughly, and prove nothing.")
-]
+Fast = Annotated[bool, typer.Option("--fast", help="Search only, more thoroughly, and prove nothing.")]
 
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 

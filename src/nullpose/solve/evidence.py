@@ -72,7 +72,10 @@ def leaves_of(proof: Proof) -> Leaves:
         key = (*ratios[i, :used], *weights[i, :used])
         if key not in table:
             table[key] = len(mixes)
-            mixes.append({int(k): float(w) for k, w in zip(ratios[i, :used], weights[i, :used], strict=True)})
+            mixed: dict[int, float] = {}
+            for k, w in zip(ratios[i, :used], weights[i, :used], strict=True):
+                mixed[int(k)] = mixed.get(int(k), 0.0) + float(w)  # a row may name a ratio twice
+            mixes.append(mixed)
         mix[i] = table[key]
     point = np.where(test == TOWARDS, rows[:, node.ANCHOR], rows[:, node.INDEX])
     point = np.where(np.isin(test, (WORLD, AFFINE)), -1, point)

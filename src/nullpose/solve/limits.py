@@ -42,8 +42,8 @@ class Limits:
     node_limit: int = NODE_LIMIT
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.gap) and 1e-9 <= self.gap <= 10.0):
-            raise UsageError(f"gap: given {self.gap!r}; allowed: 1e-9 to 10, relative")
+        if not (math.isfinite(self.gap) and 1e-8 <= self.gap <= 10.0):
+            raise UsageError(f"gap: given {self.gap!r}; allowed: 1e-8 to 10, relative")
         if math.isnan(self.time_limit_s) or not self.time_limit_s > 0.0:
             raise UsageError(f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds")
         if isinstance(self.node_limit, bool) or not isinstance(self.node_limit, int) or self.node_limit < 1:

@@ -178,6 +178,23 @@ class _Run:
         else:  # the two evaluations differ in their rounding: do not ask again
             self.doubt = max(1e-9, 10.0 * self.doubt)
 
+    def result(self, root: FloatArray, leaves: FloatArray, reason: str) -> Proof:
+        """Return what the run has come to."""
+        middle = root[0, self.node.CENTRE : self.node.CENTRE + 3]
+        side = root[0, self.node.HALF : self.node.HALF + 3]
+        return Proof(
+            found=self.found,
+            upper_bound=max(self.proved, self.value),
+            root=np.array([middle - side, middle + side]),
+            leaves=leaves,
+            reason=reason,
+            nodes=self.nodes,
+        )
+
+    def shown(self, done: FloatArray, leaves: FloatArray) -> FloatArray:
+        """Return the leaves that show the bound: a stage's, unless the bound was better before."""
+        return done if np.max(done[:, self.node.LEVEL]) <= self.proved else leaves
+
     def by_distance(self, root: FloatArray) -> FloatArray:
         """Return the leaf that shows the bound from distances alone, by which a run begins."""
         leaf = root.copy()
@@ -215,9 +232,11 @@ def prove(
     target = _INSIDE * limits.gap
     reason = ""
     try:
+        if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
+            return run.result(root, leaves, "")
         done, reason = run.stage(target, root, min(_DIRECT_NODES, run.node_limit))
         if not reason:
-            leaves = done
+            leaves = run.shown(done, leaves)
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
             threads = processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
@@ -226,22 +245,10 @@ def prove(
                 done, reason = run.stage(gap, start, run.node_limit - run.nodes, threads)
                 if reason:
                     break
-                leaves = start = done
+                leaves, start = run.shown(done, leaves), done
     except KeyboardInterrupt:
         reason = INTERRUPT
-    return Proof(
-        found=run.found,
-        upper_bound=max(run.proved, run.value),
-        root=_corners(root, run.node.CENTRE, run.node.HALF),
-        leaves=leaves,
-        reason=reason,
-        nodes=run.nodes,
-    )
-
-
-def _corners(root: FloatArray, centre: int, half: int) -> FloatArray:
-    middle, side = root[0, centre : centre + 3], root[0, half : half + 3]
-    return np.array([middle - side, middle + side])
+    return run.result(root, leaves, reason)
 
 
 def _reach(family: Family) -> tuple[float, int]:

@@ -13,7 +13,7 @@ from types import FunctionType
 
 from nullpose.family import AxisField, Family
 
-__all__ = ["warm_kernels"]
+__all__ = ["ready", "warm_kernels"]
 
 _WAIT_S = 60.0
 
@@ -52,6 +52,34 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
         other.wait()
 
 
+def ready(family: Family, axis_field: AxisField) -> None:
+    """Compile search and branch and bound, or load them from the cache, unless this process has them.
+
+    Args:
+        family: any family.
+        axis_field: any axis field.
+    """
+    from nullpose.solve.kernels.branch import branch
+
+    if isinstance(branch, FunctionType) or branch.signatures:
+        return
+    warm_kernels(family, axis_field)
+    compile_search(family, axis_field)
+    compile_branch(family, axis_field)
+
+
+def compile_branch(family: Family, axis_field: AxisField) -> None:
+    """Compile the branch and bound by giving it no node to work off."""
+    import numpy as np
+
+    from nullpose.solve.kernels import branch, node
+
+    row, rows = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS))
+    node.keep_largest(np.ones(1), 1, row)
+    none = (0, rows.copy(), 0, 1, np.empty(3), np.empty(3))
+    branch.branch(family.arrays, family.domain, axis_field.arrays, 1.0, 1.0, row, rows, *none)
+
+
 def compile_search(family: Family, axis_field: AxisField) -> None:
     """Compile the polish, by running no step of it, and the search, by running no round of it."""
     import numpy as np
@@ -71,7 +99,6 @@ def compile_other_half() -> None:
     """Compile the choice of a starting axis and the branch and bound; run by the second process."""
     import numpy as np
 
-    from nullpose.solve.kernels import branch, node
     from nullpose.solve.kernels.search import likely_axis
 
     family = Family(
@@ -90,8 +117,4 @@ def compile_other_half() -> None:
         keep_out_m=1.0,
     )
     likely_axis(family.arrays, np.array([0.0, 0.0, 10.0]), np.empty(3))
-    row, rows, field = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), AxisField.free()
-    node.keep_largest(np.ones(1), 1, row)
-    p, u = np.empty(3), np.empty(3)
-    none = (0, rows.copy(), 0, 1, p, u)  # no node to work off
-    branch.branch(family.arrays, family.domain, field.arrays, 1.0, 1.0, row, rows, *none)
+    compile_branch(family, AxisField.free())

@@ -7,7 +7,9 @@ from nullpose.solve.kernels.curved import box_maximum
 from nullpose.solve.kernels.enclosure import JET
 
 
-def quadratic(rng: np.random.Generator, curvature: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def quadratic(
+    rng: np.random.Generator, curvature: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return a jet, and the quadratic that it stands for: (jet, half sides, gradient, Hessian)."""
     half = 10.0 ** rng.uniform(-1.0, 0.5, size=3)
     gradient = rng.normal(size=3)

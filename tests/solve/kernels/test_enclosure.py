@@ -37,7 +37,9 @@ def test_value_and_gradient_at_the_centre(field: AxisField) -> None:
     for centre, half in boxes(1, 30):
         link_jet(POINT, 0, field.arrays, centre, half, jet)
         assert jet[0] == pytest.approx(link(field, centre), rel=1e-9, abs=1e-15)
-        slopes = [(link(field, centre + step * e) - link(field, centre - step * e)) / (2 * step) for e in np.eye(3)]
+        slopes = [
+            (link(field, centre + step * e) - link(field, centre - step * e)) / (2 * step) for e in np.eye(3)
+        ]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
 
 

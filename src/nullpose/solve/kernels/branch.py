@@ -49,7 +49,7 @@ _BY_POSITION = 1
 _BY_AXIS = 2
 _BETTER = 3
 
-_COARSENESS = 8.0  # how far a duality gap must outweigh a box's size before axes are split
+_COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9

@@ -163,7 +163,7 @@ def add_smallest(forms, ratios, matrix, below, most, chosen, count, taken):
 
 @inner_kernel
 def sparse_dual(forms, ratios, sides, row, stop, gap, start, weights, matrix):
-    """Return the dual's primal value as ``dual_multipliers`` does, from few forms at a time if there are many.
+    """Return the dual's primal value as ``dual_multipliers`` does, from few forms at a time if many.
 
     Begins with the row's own ratios and those smallest at the start, and adds what turns out to be smaller.
     """

@@ -35,7 +35,8 @@ def find(scenario: Scenario, effort: Effort) -> Settled:
     if effort.limits is None:
         return Settled(found=found)
     relaxed = settle(family, [AxisField.free()], effort)
-    return Settled(found=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=_RELAXED)
+    reason = relaxed.reason or _RELAXED  # an interrupt or a limit comes first
+    return Settled(found=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=reason)
 
 
 def _find_for_any_number(family: Family, *, seed: int) -> Found:

@@ -1,0 +1,65 @@
+"""Run with ``python -m benchmarks.soundness``: a thousand awkward scenes, seeded."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+
+from rich.console import Console
+from rich.progress import track
+
+from benchmarks.soundness.check import Outcome, check_scene
+from benchmarks.soundness.scenes import KINDS, make_scene
+
+__all__ = ["main"]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Check scenes, print a table by kind; return 1 if one of them is unsound.
+
+    Args:
+        arguments: of the command line.
+    """
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=1000, help="how many")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--starts", type=int, default=200, help="random walks of the independent search")
+    options = parser.parse_args(arguments)
+    console = Console(stderr=True)
+    numbers = range(options.first, options.first + options.scenes)
+    outcomes = [
+        check_scene(make_scene(number), starts=options.starts)
+        for number in track(numbers, description="soundness", console=console)
+    ]
+    print(table(outcomes))
+    for outcome in outcomes:
+        for fault in outcome.faults:
+            print(f"scene {outcome.scene.number} ({outcome.scene.kind}, {outcome.scene.scheme}): {fault}")
+    return int(any(outcome.faults for outcome in outcomes))
+
+
+def table(outcomes: list[Outcome]) -> str:
+    """Return the outcomes by kind as a Markdown table.
+
+    Args:
+        outcomes: of all scenes.
+    """
+    lines = [
+        "| kind | scenes | certified | gap not reached | search within 1e-3 of the value | unsound |",
+        "|:--|--:|--:|--:|--:|--:|",
+    ]
+    for kind in (*KINDS, "all"):
+        some = [o for o in outcomes if kind in ("all", o.scene.kind)]
+        count = Counter(o.status for o in some)
+        near = sum(o.searched >= o.value * (1.0 - 1e-3) for o in some)
+        unsound = sum(bool(o.faults) for o in some)
+        lines.append(
+            f"| {kind} | {len(some)} | {count['certified']} | {count['gap-not-reached']} "
+            f"| {near} | {unsound} |"
+        )
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""One scene's verdict."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from benchmarks.soundness.scenes import Scene
+from benchmarks.soundness.search import best_value, feasible
+from nullpose.physics import evaluate
+from nullpose.solve import solve
+
+__all__ = ["Outcome", "check_scene"]
+
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What became of a scene.
+
+    Args:
+        scene: which.
+        status: how the solve ended.
+        value: the reported smallest SINR.
+        upper_bound: the stated bound.
+        searched: the best that the independent search found.
+        seconds: time of the solve.
+        faults: what is unsound; empty if nothing is.
+    """
+
+    scene: Scene
+    status: str
+    value: float
+    upper_bound: float
+    searched: float
+    seconds: float
+    faults: tuple[str, ...]
+
+
+def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -> Outcome:
+    """Return whether a scene's value and bound withstand an independent search and a re-evaluation.
+
+    Args:
+        scene: what to solve.
+        starts: random walks of the search.
+        time_limit_s: of the proof.
+    """
+    began = time.perf_counter()
+    solution = solve(scene.scenario, scene.scheme, time_limit_s=time_limit_s)
+    seconds = time.perf_counter() - began
+    objective, pose = solution.objective, solution.pose
+    assert objective.upper_bound is not None
+    near = (pose.position_m, pose.antenna_axis)
+    searched = best_value(scene.scenario, scene.scheme, starts=starts, seed=scene.number, near=near)
+    faults = []
+    if searched > objective.upper_bound * (1.0 + _ROUNDING):
+        faults.append(f"a pose reaches {searched!r}, above the bound {objective.upper_bound!r}")
+    again = min(link.sinr for link in evaluate(scene.scenario, pose))
+    if again != objective.value:
+        faults.append(f"the pose gives {again!r}, not {objective.value!r}")
+    if objective.value > objective.upper_bound * (1.0 + _ROUNDING):
+        faults.append(f"the value {objective.value!r} is above the bound {objective.upper_bound!r}")
+    keeps = scene.scenario.airspace.keep_out_m * (1.0 - 1e-12)
+    grown = scene.scenario.model_copy(
+        update={"airspace": scene.scenario.airspace.model_copy(update={"keep_out_m": keeps})}
+    )
+    if not feasible(grown, pose.position_m[None])[0]:
+        faults.append("the pose is outside the airspace")
+    return Outcome(
+        scene=scene,
+        status=solution.status.value,
+        value=objective.value,
+        upper_bound=objective.upper_bound,
+        searched=searched,
+        seconds=seconds,
+        faults=tuple(faults),
+    )

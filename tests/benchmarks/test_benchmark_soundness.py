@@ -1,0 +1,33 @@
+"""Soundness over awkward scenes: the first fifty of the thousand that ``benchmarks.soundness`` checks."""
+
+import pytest
+from benchmarks.soundness.check import check_scene
+from benchmarks.soundness.scenes import KINDS, make_scene
+from benchmarks.soundness.search import best_value
+
+SCENES = 50
+
+
+@pytest.mark.parametrize("number", range(SCENES))
+def test_no_pose_exceeds_the_bound(number: int) -> None:
+    """An independent search finds nothing above the bound, and the value is the reported pose's."""
+    outcome = check_scene(make_scene(number), starts=60)
+    assert outcome.faults == ()
+    assert outcome.value <= outcome.upper_bound
+
+
+def test_the_kinds_take_turns() -> None:
+    """Every kind of scene occurs in the fifty, and a number always gives the same scene."""
+    kinds = {make_scene(number).kind for number in range(SCENES)}
+    assert kinds == set(KINDS)
+    assert make_scene(17) == make_scene(17)
+
+
+def test_the_search_would_notice() -> None:
+    """The search comes close to the optimum by itself, so that one too low is found out."""
+    scene = make_scene(0)
+    outcome = check_scene(scene, starts=60)
+    near = (scene.scenario.node_positions_m[0] + [0.0, 0.0, 20.0], [0.0, 0.0, 1.0])
+    searched = best_value(scene.scenario, scene.scheme, starts=60, seed=5, near=near)
+    assert searched >= outcome.value * (1.0 - 1e-2)
+    assert outcome.searched >= outcome.value * (1.0 - 1e-9)
