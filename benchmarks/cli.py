@@ -22,7 +22,7 @@ __all__ = ["main"]
 SCRATCH = ROOT / "out" / "benchmarks"
 DOCS = ROOT / "docs"
 
-WORKLOAD_NAMES = ("fields", "certified", "startup", "kernels")
+WORKLOAD_NAMES = ("fields", "certified", "certified-fields", "startup", "kernels")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.render:
         prepare(SCRATCH)
     from benchmarks.baseline import judge, load_baseline, write_baseline
-    from benchmarks.report import write_report
+    from benchmarks.report import tell, write_report
+    from benchmarks.told import load_told, write_told
     from benchmarks.workloads import WORKLOADS
     from benchmarks.workloads.certified import Certified
 
@@ -46,10 +47,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     complete = not run.quick and not options.cap and len(told) == len(WORKLOADS)
     if options.update_baseline:
         write_baseline(run.metrics(told), run.machine, names)
-    folder = options.out or (DOCS if complete else SCRATCH)
+    into_docs = complete or (options.into_docs and not run.quick)
+    folder = options.out or (DOCS if into_docs else SCRATCH)
     folder.mkdir(parents=True, exist_ok=True)
     metrics, baseline = run.metrics(told), load_baseline()
-    print(f"Report: {write_report(run, told, baseline, folder)}")
+    fresh = tell(run, told, folder)
+    earlier = load_told() if into_docs else {}
+    print(f"Report: {write_report(run, fresh, earlier, baseline, folder)}")
+    if into_docs and not options.out:
+        write_told(fresh)
     for metric in metrics:
         if metric.limit is not None and not run.quick:
             met = "met" if metric.meets_limit else "MISSED"
@@ -83,6 +89,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--gate", action="store_true", help="exit with 1 on a regression or a promise missed")
     parser.add_argument("--update-baseline", action="store_true", help="make this run the baseline to commit")
     parser.add_argument(
+        "--into-docs",
+        action="store_true",
+        help="write into docs though not every workload ran; the others stand as measured before, and say so",
+    )
+    parser.add_argument(
         "--out", type=Path, help="folder of the report; docs for a full run, out/benchmarks for any other"
     )
     parser.add_argument(
@@ -100,6 +111,8 @@ def _complaint(options: argparse.Namespace) -> str:
         return f"--cap: given {options.cap:g}; allowed: seconds above 0"
     if options.cap and (options.gate or options.update_baseline):
         return "--gate and --update-baseline go with the usual cap; leave out --cap"
+    if options.into_docs and (options.quick or options.cap):
+        return "--into-docs takes full measurements only; leave out --quick and --cap"
     if options.render and (options.quick or options.only or options.cap):
         return "--render tells a stored run as it is; leave out --quick, --only and --cap"
     if options.render and not options.render.is_file():

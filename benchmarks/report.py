@@ -2,48 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from benchmarks.baseline import Verdict
 from benchmarks.markdown import table
 from benchmarks.metric import Direction, Metric
 from benchmarks.run import Run
+from benchmarks.told import Told
 from benchmarks.workload import Section, Workload
 
-__all__ = ["write_report"]
+__all__ = ["tell", "write_report"]
+
+_EARLIER = " (measured earlier)"
 
 
-def write_report(
-    run: Run, workloads: Sequence[Workload], baseline: Mapping[str, float], folder: Path
-) -> Path:
-    """Return the page, ``benchmarks.md``, after writing it and its figures.
+def tell(run: Run, workloads: Sequence[Workload], folder: Path) -> dict[str, Told]:
+    """Return what there is to tell of each workload that ran, its figures written to ``images``.
 
     Args:
         run: what was measured.
         workloads: those that may be in it.
-        baseline: committed values, to set the measured ones beside.
-        folder: existing folder; the figures go to its ``images``.
+        folder: existing folder of the page.
     """
     images = folder / "images"
     images.mkdir(exist_ok=True)
-    told = [workload for workload in workloads if workload.name in run.rows]
-    sections = {w.name: w.section(run.rows[w.name], images) for w in told}
-    metrics = run.metrics(told)
+    return {
+        w.name: Told(
+            title=w.title,
+            machine=run.machine,
+            metrics=tuple(w.metrics(run.rows[w.name])),
+            section=w.section(run.rows[w.name], images),
+        )
+        for w in workloads
+        if w.name in run.rows
+    }
+
+
+def write_report(
+    run: Run,
+    fresh: Mapping[str, Told],
+    earlier: Mapping[str, Told],
+    baseline: Mapping[str, float],
+    folder: Path,
+) -> Path:
+    """Return the page, ``benchmarks.md``, after writing it.
+
+    Args:
+        run: what was measured.
+        fresh: what there is to tell of it, by workload, in the order of the page.
+        earlier: what was told before of workloads that did not run; they come last.
+        baseline: committed values, to set the measured ones beside.
+        folder: existing folder.
+    """
+    old = {name: told for name, told in earlier.items() if name not in fresh}
+    every = [*fresh.values(), *old.values()]
+    sections = [told.section for told in every]
+    metrics = [metric for told in every for metric in told.metrics]
+    old_keys = {metric.key for told in old.values() for metric in told.metrics}
     parts = [
         "# Benchmarks",
         "Written by `make bench` (`python -m benchmarks`); not to be edited by hand.",
         _warning(run),
+        "" if run.quick else _opening(metrics, sections, old_keys),
         "## What was promised",
-        _promises(metrics, quick=run.quick),
-        *(part for w in told for part in (f"## {w.title}", sections[w.name].text)),
+        _promises(metrics, old_keys, quick=run.quick),
+        *(part for told in fresh.values() for part in (f"## {told.title}", told.section.text)),
+        *(part for told in old.values() for part in (f"## {told.title}", told.note, told.section.text)),
         "## What was run on what",
         table(("", ""), run.machine.items(), text_columns=2),
-        _settings(sections),
+        _settings(fresh.values(), old.values()),
         "## Known limitations",
         _limitations(sections),
         "## Every metric",
-        _metrics(metrics, baseline),
+        _metrics(metrics, old_keys, baseline),
     ]
     page = folder / "benchmarks.md"
     page.write_text("\n\n".join(part for part in parts if part) + "\n", encoding="utf-8")
@@ -54,7 +86,26 @@ def _warning(run: Run) -> str:
     return "**A quick run: it shows that everything runs; its figures are no evidence.**" if run.quick else ""
 
 
-def _promises(metrics: Sequence[Metric], *, quick: bool) -> str:
+def _opening(metrics: Sequence[Metric], sections: Sequence[Section], earlier: Collection[str]) -> str:
+    """Return which promises are met and which are missed, in sentences."""
+    promised = [metric for metric in metrics if metric.limit is not None]
+    missed = [metric for metric in promised if not metric.meets_limit]
+    headlines = " ".join(section.headline for section in sections if section.headline)
+    if not promised:
+        return headlines
+    count = f"Of {len(promised)} promises {len(promised) - len(missed)} are met"
+    if not missed:
+        return f"{count}: none is missed. {headlines}".strip()
+    list_of = "\n".join(
+        f"- {_about(metric, earlier)}: {_number(metric.value, metric.unit)}, promised {_bar(metric)}"
+        for metric in missed
+    )
+    return "\n\n".join(
+        part for part in (f"{count}, and {len(missed)} **missed**:", list_of, headlines) if part
+    )
+
+
+def _promises(metrics: Sequence[Metric], earlier: Collection[str], *, quick: bool) -> str:
     if quick:
         return "A quick run is too small to judge a promise by."
     promised = [metric for metric in metrics if metric.limit is not None]
@@ -64,7 +115,7 @@ def _promises(metrics: Sequence[Metric], *, quick: bool) -> str:
         ("promise", "measured", "promised", "met"),
         [
             (
-                metric.about,
+                _about(metric, earlier),
                 _number(metric.value, metric.unit),
                 _bar(metric),
                 "yes" if metric.meets_limit else "**no**",
@@ -74,24 +125,29 @@ def _promises(metrics: Sequence[Metric], *, quick: bool) -> str:
     )
 
 
-def _settings(sections: Mapping[str, Section]) -> str:
-    settings = [pair for section in sections.values() for pair in section.settings]
+def _about(metric: Metric, earlier: Collection[str]) -> str:
+    return metric.about + (_EARLIER if metric.key in earlier else "")
+
+
+def _settings(fresh: Collection[Told], old: Collection[Told]) -> str:
+    settings = [pair for told in fresh for pair in told.section.settings]
+    settings += [(f"{name}{_EARLIER}", text) for told in old for name, text in told.section.settings]
     return table(("method", "settings"), settings, text_columns=2) if settings else ""
 
 
-def _limitations(sections: Mapping[str, Section]) -> str:
-    every = [sentence for section in sections.values() for sentence in section.limitations]
+def _limitations(sections: Sequence[Section]) -> str:
+    every = [sentence for section in sections for sentence in section.limitations]
     every.append("All times are from one machine, the one above; the ratios travel better than the times.")
     return "\n".join(f"- {sentence}" for sentence in every)
 
 
-def _metrics(metrics: Sequence[Metric], baseline: Mapping[str, float]) -> str:
+def _metrics(metrics: Sequence[Metric], earlier: Collection[str], baseline: Mapping[str, float]) -> str:
     verdicts = [Verdict(metric=metric, baseline=baseline.get(metric.key)) for metric in metrics]
     return table(
         ("key", "value", "baseline", "better", "may worsen by"),
         [
             (
-                f"`{v.metric.key}`",
+                f"`{v.metric.key}`{_EARLIER if v.metric.key in earlier else ''}",
                 _number(v.metric.value, v.metric.unit),
                 "" if v.baseline is None else _number(v.baseline, v.metric.unit),
                 v.metric.direction.value,

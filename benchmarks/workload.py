@@ -33,11 +33,13 @@ class Section:
         text: Markdown below the workload's heading.
         settings: what was run with which settings, as (name, sentence).
         limitations: what the figures do not show, one sentence each.
+        headline: a sentence for the opening of the page; may be empty.
     """
 
     text: str
     settings: tuple[tuple[str, str], ...] = ()
     limitations: tuple[str, ...] = ()
+    headline: str = ""
 
 
 class Workload(Protocol):

@@ -21,6 +21,7 @@ from benchmarks.workloads.fields.scenes import Scene
         (["--cap", "5", "--gate"], "the usual cap"),
         (["--render", "nowhere.json"], "no file"),
         (["--render", "x.json", "--quick"], "leave out"),
+        (["--into-docs", "--quick"], "full measurements only"),
     ],
 )
 def test_senseless_command_is_refused(

@@ -7,7 +7,15 @@ import pytest
 from benchmarks.peers import Answer, Budget, FivePose
 from benchmarks.workloads.fields.fields import Fields
 from benchmarks.workloads.fields.record import Record
-from benchmarks.workloads.fields.running import NULLPOSE, REFERENCE, UNBOXED, run_peer
+from benchmarks.workloads.fields.running import (
+    NULLPOSE,
+    PROVED,
+    REFERENCE,
+    UNBOXED,
+    run_nullpose,
+    run_peer,
+    run_proved,
+)
 from benchmarks.workloads.fields.scenes import Scene, scenes
 from benchmarks.workloads.fields.standing import (
     best_values,
@@ -124,6 +132,19 @@ def test_first_hit_is_at_the_first_stage_that_hits() -> None:
     assert first["good", B] == 0.1
     assert first["good", A] == 0.5
     assert ("fast", B) not in first
+
+
+def test_proof_has_a_row_of_its_own() -> None:
+    """The search alone proves nothing, `solve` as it comes does; the two do not compete as peers."""
+    alone, proved = (*run_nullpose(A), *run_proved(A))
+    assert (alone.method, alone.certified) == (NULLPOSE, False)
+    assert (proved.method, proved.certified) == (PROVED, True)
+    assert proved.value == pytest.approx(alone.value, rel=1e-6)
+    rows = [found.to_row() for found in (alone, proved, record(A, "direct", 0.1, 9.0))]
+    rows.append(record(A, "multistart-slsqp", 0.1, 9.0).to_row())
+    keys = {metric.key for metric in Fields().metrics(rows)}
+    assert "fields.nullpose-certified.median_ms" in keys
+    assert "fields.nullpose-certified.hit_rate" not in keys
 
 
 class _Stub:

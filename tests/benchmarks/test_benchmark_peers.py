@@ -99,7 +99,7 @@ def test_peers_are_told_apart() -> None:
     assert len(set(names)) == len(names)
     assert set(names) == GENERAL_PURPOSE | TAILORED
     assert set(names) <= set(LABELS)
-    assert len(set(LOOKS.values())) == len(LOOKS) == len(names) + 1
+    assert len(set(LOOKS.values())) == len(LOOKS) == len(names) + 2  # nullpose, with its proof and without
 
 
 def test_strong_peer_finds_the_papers_optimum() -> None:

@@ -13,7 +13,7 @@ from benchmarks.workloads.certified.figures import draw_times
 from benchmarks.workloads.certified.judging import faults, is_true, ratios, rival, times_faster
 from benchmarks.workloads.certified.labels import LABELS
 from benchmarks.workloads.certified.record import Record
-from benchmarks.workloads.certified.wording import LIMITATIONS, READING, SETTINGS, opening, verdict
+from benchmarks.workloads.certified.wording import LIMITATIONS, READING, SETTINGS, headline, opening, verdict
 from benchmarks.workloads.fields.wording import duration
 
 __all__ = ["section"]
@@ -39,7 +39,12 @@ def section(records: Sequence[Record], images: Path) -> Section:
         READING,
         _claims(records),
     ]
-    return Section(text="\n\n".join(parts), settings=SETTINGS, limitations=LIMITATIONS)
+    return Section(
+        text="\n\n".join(parts),
+        settings=SETTINGS,
+        limitations=LIMITATIONS,
+        headline=headline(records),
+    )
 
 
 def _times(records: Sequence[Record]) -> str:

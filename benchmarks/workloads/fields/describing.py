@@ -20,7 +20,15 @@ from benchmarks.workloads.fields.standing import (
     nullpose_standing,
     standings,
 )
-from benchmarks.workloads.fields.wording import LIMITATIONS, READING, SETTINGS, duration, opening, verdict
+from benchmarks.workloads.fields.wording import (
+    LIMITATIONS,
+    READING,
+    SETTINGS,
+    duration,
+    opening,
+    proof,
+    verdict,
+)
 
 __all__ = ["section"]
 
@@ -38,6 +46,7 @@ def section(records: Sequence[Record], images: Path) -> Section:
     parts = [
         opening(records),
         verdict(found),
+        proof(records, found),
         _overall(found),
         READING,
         "![Share of scenes with the best answer in hand against time](images/benchmark-profile.png)",
@@ -50,7 +59,9 @@ def section(records: Sequence[Record], images: Path) -> Section:
         _failures(records),
         _unboxed(records),
     ]
-    return Section(text="\n\n".join(parts), settings=SETTINGS, limitations=LIMITATIONS)
+    return Section(
+        text="\n\n".join(part for part in parts if part), settings=SETTINGS, limitations=LIMITATIONS
+    )
 
 
 def _overall(found: Sequence[Standing]) -> str:
@@ -131,7 +142,7 @@ def _unboxed(records: Sequence[Record]) -> str:
     reference = [record for record in records if record.method == REFERENCE]
     alone = [r for r in reference if _best_of_others(records, r.scene) < r.value * (1.0 - HIT)]
     return (
-        "With x and y unbounded, which is how nullpose is usually asked, `solve` finds a pose better than "
+        "With x and y unbounded, which is how nullpose is usually asked, the search finds a pose better than "
         f"the best in the box in {len(outside)} of {len(free)} scenes, and falls short of the best in the "
         f"box in {len(short)}. The reference search alone finds the best pose in {len(alone)}."
     )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from benchmarks.peers import PEERS
-from benchmarks.workloads.fields.running import NULLPOSE, REFERENCE
+from benchmarks.workloads.fields.running import NULLPOSE, PROVED, REFERENCE
 
 __all__ = ["LABELS", "LOOKS"]
 
 LABELS = {
-    NULLPOSE: "nullpose `solve`",
+    NULLPOSE: "nullpose, search alone",
+    PROVED: "nullpose, certified",
     REFERENCE: "reference search",
     **{peer.name: peer.label for peer in PEERS},
 }
@@ -25,5 +26,6 @@ _CYCLE = (
 )
 LOOKS = {
     NULLPOSE: ("#0a3fd6", "-", "o"),
+    PROVED: ("#0a3fd6", "--", "h"),
     **{peer.name: _CYCLE[i % len(_CYCLE)] for i, peer in enumerate(PEERS)},
 }

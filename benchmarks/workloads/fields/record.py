@@ -25,6 +25,7 @@ class Record:
         seconds: wall-clock time up to that point.
         evaluations: poses evaluated up to that point.
         pose: x, y, z in metres, roll and pitch in radians; empty without an answer.
+        certified: whether the answer is proved to the gap asked for.
     """
 
     scene: Scene
@@ -35,6 +36,7 @@ class Record:
     seconds: float = 0.0
     evaluations: int = 0
     pose: tuple[float, ...] = ()
+    certified: bool = False
 
     def to_row(self) -> Row:
         """Return the record as plain data."""

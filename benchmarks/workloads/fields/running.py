@@ -10,22 +10,25 @@ from benchmarks.workloads.fields.record import Record
 from benchmarks.workloads.fields.scenes import Scene
 from nullpose.family import AxisField, build_family
 from nullpose.physics import Pose, min_sinr
-from nullpose.solve import solve
+from nullpose.solve import Status, solve
 from nullpose.solve.multistart import SearchSettings, multistart
 
 __all__ = [
     "FULL",
     "NULLPOSE",
+    "PROVED",
     "QUICK",
     "REFERENCE",
     "UNBOXED",
     "run_nullpose",
     "run_peer",
+    "run_proved",
     "run_reference",
     "run_unboxed",
 ]
 
 NULLPOSE = "nullpose"
+PROVED = "nullpose-certified"
 REFERENCE = "reference"
 UNBOXED = "nullpose-unboxed"
 
@@ -37,20 +40,13 @@ _REFERENCE_SETTINGS = SearchSettings(coarse=1920, polished=480, rounds=12, patie
 
 
 def run_nullpose(scene: Scene) -> Iterator[Record]:
-    """Yield what `solve` finds, timed as its caller sees it."""
-    scenario = scene.scenario()
-    began = time.perf_counter()
-    solution = solve(scenario, seed=_SEED)
-    seconds = time.perf_counter() - began
-    yield Record(
-        scene=scene,
-        method=NULLPOSE,
-        stage="solve",
-        value=min_sinr(scenario, solution.pose),
-        seconds=seconds,
-        evaluations=solution.stats.evaluations,
-        pose=_numbers(solution.pose),
-    )
+    """Yield what the search of `solve` finds, without a proof, timed as its caller sees it."""
+    yield _solved(scene, NULLPOSE, certify=False)
+
+
+def run_proved(scene: Scene) -> Iterator[Record]:
+    """Yield what `solve` finds with its proof, every setting as it comes."""
+    yield _solved(scene, PROVED, certify=True)
 
 
 def run_peer(peer: Peer, scene: Scene, budget: Budget) -> Iterator[Record]:
@@ -95,18 +91,24 @@ def run_reference(scene: Scene) -> Iterator[Record]:
 
 
 def run_unboxed(scene: Scene) -> Iterator[Record]:
-    """Yield what `solve` finds with x and y unbounded, which is how it would be asked without peers."""
-    scenario = scene.scenario(boxed=False)
+    """Yield what the search finds with x and y unbounded, which is how it would be asked without peers."""
+    yield _solved(scene, UNBOXED, certify=False, boxed=False)
+
+
+def _solved(scene: Scene, method: str, *, certify: bool, boxed: bool = True) -> Record:
+    scenario = scene.scenario(boxed=boxed)
     began = time.perf_counter()
-    solution = solve(scenario, seed=_SEED)
-    yield Record(
+    solution = solve(scenario, certify=certify, seed=_SEED)
+    seconds = time.perf_counter() - began
+    return Record(
         scene=scene,
-        method=UNBOXED,
+        method=method,
         stage="solve",
         value=min_sinr(scenario, solution.pose),
-        seconds=time.perf_counter() - began,
+        seconds=seconds,
         evaluations=solution.stats.evaluations,
         pose=_numbers(solution.pose),
+        certified=solution.status is Status.CERTIFIED,
     )
 
 
