@@ -132,7 +132,7 @@ def test_progress_is_told(twelve: Scenario) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"gap": 0.0}, ["gap", "0.0", "1e-9 to 10"]),
+        ({"gap": 0.0}, ["gap", "0.0", "1e-8 to 10"]),
         ({"gap": -1e-3}, ["gap", "-0.001"]),
         ({"gap": math.nan}, ["gap", "nan"]),
         ({"gap": math.inf}, ["gap", "inf"]),

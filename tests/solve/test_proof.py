@@ -123,7 +123,7 @@ def test_progress_is_told(random_scene: Callable) -> None:
     seen: list[tuple[float, int]] = []
     family = build_family(random_scene(np.random.default_rng(7), 6, 2, 30.0))
     found = multistart(family, AxisField.free(), seed=1)
-    prove(family, AxisField.free(), found, Limits(gap=1e-3), lambda gap, n: seen.append((gap, n)))
+    prove(family, AxisField.free(), found, Limits(gap=1e-3), on_progress=lambda gap, n: seen.append((gap, n)))
     gaps, nodes = zip(*seen, strict=True)
     assert list(nodes) == sorted(nodes)
     assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(gaps))

@@ -72,7 +72,7 @@ def test_searches_are_counted_once(family: Family, fields: list[AxisField]) -> N
 
 def test_limits_are_shared_by_the_fields(family: Family, fields: list[AxisField]) -> None:
     """A limit on nodes is one for all fields; what was not closed is told, and the bound holds."""
-    effort = Effort(limits=Limits(gap=1e-9, node_limit=200, time_limit_s=ENOUGH_S))
+    effort = Effort(limits=Limits(gap=1e-8, node_limit=200, time_limit_s=ENOUGH_S))
     settled = settle(family, fields, effort)
     assert "node limit" in settled.reason
     assert settled.nodes <= 200 + len(fields)

@@ -1,45 +1,79 @@
 """The first compilation, shared between two processes."""
 
+import os
 import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from nullpose.family import AxisField, build_family
+from nullpose.solve.kernels.branch import branch
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.search import likely_axis, search
 from nullpose.solve.multistart import multistart
-from nullpose.solve.warming import compile_polish, compile_starting_axis, warm_kernels
+from nullpose.solve.warming import compile_branch, compile_other_half, compile_search, ready, warm_kernels
 
 
-def test_both_halves_are_what_the_search_calls(paper: Callable) -> None:
+def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
     """Compiled by hand, each half serves a search that compiles after it; from a cache this holds anyway."""
     family = build_family(paper(1.0))
-    compile_polish(family, AxisField.free())
-    compile_starting_axis()
-    before = (len(polish.signatures), len(likely_axis.signatures))
+    compile_search(family, AxisField.free())
+    compile_other_half()
+    kernels = (polish, likely_axis, search, branch)
+    before = [len(kernel.signatures) for kernel in kernels]
     multistart(family, AxisField.free(), seed=0)
-    assert (len(polish.signatures), len(likely_axis.signatures)) == before
+    compile_branch(family, AxisField.vertical())
+    assert [len(kernel.signatures) for kernel in kernels] == before
 
 
 def test_no_process_is_started_twice(paper: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
     """Once the search is compiled, warming does nothing."""
     family = build_family(paper(1.0))
-    multistart(family, AxisField.free(), seed=0)
+    ready(family, AxisField.free())
     assert search.signatures
+    assert branch.signatures
 
     def refuse(*arguments: object, **options: object) -> None:
         raise AssertionError("a process was started")
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
     warm_kernels(family, AxisField.free())
+    ready(family, AxisField.free())
 
 
-def test_compiling_the_polish_takes_no_step(paper: Callable) -> None:
-    """The pose that the polish is compiled with is far from anything and leaves no trace."""
+def test_compiling_changes_nothing(paper: Callable) -> None:
+    """What the kernels are compiled with leaves no trace in the family."""
     family = build_family(paper(1.0))
     arrays = [array.copy() for array in family.arrays]
-    compile_polish(family, AxisField.free())
+    compile_search(family, AxisField.free())
+    compile_branch(family, AxisField.free())
     for array, copy in zip(family.arrays, arrays, strict=True):
         np.testing.assert_array_equal(array, copy)
+
+
+def test_the_other_half_fills_the_cache_for_real_families(paper: Callable, tmp_path: Path) -> None:
+    """With what the second process compiles, branching a real family compiles nothing more."""
+    program = """
+from nullpose.solve.warming import compile_other_half
+compile_other_half()
+from nullpose.solve.kernels.branch import branch
+print(len(branch.signatures))
+from nullpose.scenario import load
+from nullpose.family import AxisField, build_family
+from nullpose.solve.warming import compile_branch
+compile_branch(build_family(load("examples/paper.toml")), AxisField.vertical())
+print(len(branch.signatures))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(__file__).parents[2],
+        env=os.environ.copy(),
+    )
+    first, again = done.stdout.splitlines()
+    assert first == again == "1"

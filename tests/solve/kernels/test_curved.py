@@ -23,7 +23,7 @@ def quadratic(
 
 @pytest.mark.parametrize("curvature", [-3.0, -0.1, 0.1, 3.0])
 def test_the_bound_holds_and_is_near(curvature: float) -> None:
-    """Wherever a bound below zero is claimed, no sampled point is above it; and it is often close."""
+    """Wherever a bound below zero is claimed, no sample is above it; it beats a sum of parts."""
     rng = np.random.default_rng(7)
     ratios = []
     for _ in range(60):
@@ -36,8 +36,9 @@ def test_the_bound_holds_and_is_near(curvature: float) -> None:
         jet[0] = -reach - 1e-9
         bound = box_maximum(jet, half) - jet[0]
         assert highest <= bound * (1.0 + 1e-9)
-        ratios.append(bound / max(highest, 1e-12))
-    assert np.median(ratios) < 2.0
+        ratios.append(bound / reach)
+    # strong concavity is worth most of what slopes and curvatures add up to
+    assert np.median(ratios) < (0.5 if curvature == -3.0 else 1.0)
 
 
 def test_a_rank_one_valley_is_kept() -> None:
