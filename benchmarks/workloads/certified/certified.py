@@ -100,8 +100,8 @@ def _lead_metric(lead: float) -> Metric:
         direction=Direction.HIGHER,
         tolerance=Tolerance(relative=0.5),
         limit=TIMES_FASTER,
-        about="time of the faster of SCIP and MAiNGO over nullpose's for a proof of the paper's scene, smallest "
-        "over jamming powers",
+        about="time of the faster of SCIP and MAiNGO over nullpose's for a proof of the paper's scene, "
+        "smallest over jamming powers",
     )
 
 
