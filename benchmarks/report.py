@@ -62,7 +62,7 @@ def write_report(
     old_keys = {metric.key for told in old.values() for metric in told.metrics}
     parts = [
         "# Benchmarks",
-        "Written by `make bench` (`python -m benchmarks`); not to be edited by hand.",
+        _written(fresh, old),
         _warning(run),
         "" if run.quick else _opening(metrics, sections, old_keys),
         "## What was promised",
@@ -82,6 +82,17 @@ def write_report(
     return page
 
 
+def _written(fresh: Mapping[str, Told], old: Mapping[str, Told]) -> str:
+    if not old:
+        return "Written by `make bench` (`python -m benchmarks`); not to be edited by hand."
+    options = " ".join(f"--only {name}" for name in fresh)
+    return (
+        f"Written by `python -m benchmarks {options} --into-docs`; not to be edited by hand. "
+        f"What was measured earlier says so: {', '.join(f'*{told.title}*' for told in old.values())}. "
+        "`make bench` measures everything anew."
+    )
+
+
 def _warning(run: Run) -> str:
     return "**A quick run: it shows that everything runs; its figures are no evidence.**" if run.quick else ""
 
@@ -90,18 +101,20 @@ def _opening(metrics: Sequence[Metric], sections: Sequence[Section], earlier: Co
     """Return which promises are met and which are missed, in sentences."""
     promised = [metric for metric in metrics if metric.limit is not None]
     missed = [metric for metric in promised if not metric.meets_limit]
-    headlines = " ".join(section.headline for section in sections if section.headline)
-    if not promised:
-        return headlines
-    count = f"Of {len(promised)} promises {len(promised) - len(missed)} are met"
-    if not missed:
-        return f"{count}: none is missed. {headlines}".strip()
-    list_of = "\n".join(
+    met = [metric for metric in promised if metric.meets_limit]
+    parts = [
+        f"**Of {len(promised)} promises {len(met)} are met and {len(missed)} missed.**" if promised else "",
+        "Missed:\n\n" + _measured(missed, earlier) if missed else "",
+        *(section.headline for section in sections),
+        "Met:\n\n" + _measured(met, earlier) if met else "",
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _measured(metrics: Sequence[Metric], earlier: Collection[str]) -> str:
+    return "\n".join(
         f"- {_about(metric, earlier)}: {_number(metric.value, metric.unit)}, promised {_bar(metric)}"
-        for metric in missed
-    )
-    return "\n\n".join(
-        part for part in (f"{count}, and {len(missed)} **missed**:", list_of, headlines) if part
+        for metric in metrics
     )
 
 

@@ -44,8 +44,10 @@ def test_earlier_part_is_labelled(tmp_path: Path) -> None:
     run = Run(quick=False, machine={"processor": "of a test"}, rows={"new": []})
     earlier = {"old": told("old", 0.5, "Much has changed."), "new": told("new", 9.0)}
     page = write_report(run, {"new": told("new", 2.0)}, earlier, {}, tmp_path).read_text(encoding="utf-8")
-    assert "Of 2 promises 1 are met, and 1 **missed**:\n\n- size of new: 2, promised at most 1" in page
-    assert "So much for new. So much for old." in page
+    assert "**Of 2 promises 1 are met and 1 missed.**" in page
+    assert "Missed:\n\n- size of new: 2, promised at most 1\n\nSo much for new." in page
+    assert "Met:\n\n- size of old (measured earlier): 0.5, promised at most 1" in page
+    assert "What was measured earlier says so: *Old*." in page
     assert "**Measured earlier and not again since: 2026-01-02, commit abc.** Much has changed." in page
     assert "| size of old (measured earlier) | 0.5 | at most 1 | yes |" in page
     assert "`old.size` (measured earlier)" in page
