@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from itertools import permutations
 
 import numpy as np
@@ -68,6 +69,11 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     return np.vstack([over, *beside])
 
 
+@cache
+def _shift(seed: int) -> FloatArray:
+    return np.random.default_rng(seed).uniform(size=3)
+
+
 def multistart(
     family: Family, axis_field: AxisField, *, seed: int, settings: SearchSettings | None = None
 ) -> Found:
@@ -91,7 +97,7 @@ def multistart(
     warm_kernels(family, axis_field)
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
     multipliers = np.empty(len(family.numerator_point))
-    shift = np.random.default_rng(seed).uniform(size=3)
+    shift = _shift(seed)
     log_value, starts, evaluations = search(
         family.arrays,
         family.domain,
