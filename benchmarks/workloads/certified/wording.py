@@ -26,7 +26,7 @@ READING = (
 
 SETTINGS = (
     (
-        "nullpose, certified",
+        "nullpose, paper's scene proved",
         f"`solve(scenario, gap={GAP:g})`, kernels loaded, the whole Python call, median of 21",
     ),
     *((f"{prover.label}, certified", prover.settings) for prover in PROVERS),
