@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ FloatArray = NDArray[np.float64]
 
 _FEWEST_TO_SHARE = 8
 _MOST_WORKERS = 8
+_BLOCK = 32_768
 
 
 def processors() -> int:
@@ -46,6 +49,7 @@ class _Worker:
 
     def __init__(self, columns: int) -> None:
         self.stack = np.empty((256, columns))
+        self.blocks: list[FloatArray] = []  # full ones: growing one array would hold it twice
         self.leaves = np.empty((1024, columns))
         self.top = self.filled = 0
         self.position_m, self.axis = np.empty(3), np.empty(3)
@@ -64,13 +68,30 @@ class _Worker:
         self.stack[: self.top] = kept
         return given
 
+    @property
+    def made(self) -> int:
+        """How many leaves it has made."""
+        return sum(len(block) for block in self.blocks) + self.filled
+
+    def hand_over(self, out: FloatArray) -> None:
+        """Move the leaves into an array of their number, and let go of each block once it is copied."""
+        used = 0
+        self.stack = out[:0]
+        last, self.leaves = self.leaves[: self.filled], out[:0]
+        for block in chain(_popped(self.blocks), (last,)):
+            out[used : used + len(block)] = block
+            used += len(block)
+
     def work(self, task: Task) -> int:
         """Work off a budget of nodes; return how many it was."""
         self.better = False
         total = 0
         while self.top and total < task.budget and not self.better:
             self.stack = _grown(self.stack, self.top, 16)
-            self.leaves = _grown(self.leaves, self.filled, 1)
+            if self.filled == len(self.leaves):
+                self.blocks.append(self.leaves)
+                self.leaves = np.empty((min(_BLOCK, 2 * self.filled), self.leaves.shape[1]))
+                self.filled = 0
             code, self.top, self.filled, done, _ = task.kernel.branch(
                 *task.arguments,
                 self.stack,
@@ -108,7 +129,7 @@ class Crew:
     @property
     def filled(self) -> int:
         """How many leaves there are."""
-        return sum(worker.filled for worker in self._workers)
+        return sum(worker.made for worker in self._workers)
 
     def work(self, task: Task, pool: ThreadPoolExecutor | None) -> int:
         """Let every worker with nodes work off a budget; return how many nodes it was in all."""
@@ -123,16 +144,26 @@ class Crew:
         return [(w.position_m.copy(), w.axis.copy()) for w in self._workers if w.better]
 
     def leaves(self) -> FloatArray:
-        """Return all leaves made so far."""
-        if len(self._workers) == 1:
-            return self._workers[0].leaves[: self._workers[0].filled]
-        return np.concatenate([worker.leaves[: worker.filled] for worker in self._workers])
+        """Return all leaves made; the workers give up theirs, since memory for both would be too much."""
+        together = np.empty((self.filled, self._columns))
+        used = 0
+        for worker in self._workers:
+            made = worker.made
+            worker.hand_over(together[used : used + made])
+            used += made
+        return together
 
     def _share(self) -> None:
         for idle in self._workers:
             richest = max(self._workers, key=lambda worker: worker.top)
             if not idle.top and richest.top >= _FEWEST_TO_SHARE:
                 idle.take(richest.give())
+
+
+def _popped(blocks: list[FloatArray]) -> Iterator[FloatArray]:
+    """Yield the blocks in order, each removed from the list."""
+    while blocks:
+        yield blocks.pop(0)
 
 
 def _grown(array: FloatArray, used: int, spare: int) -> FloatArray:
