@@ -163,6 +163,7 @@ def excludes(family, domain, view, row, below):
             if row[SIDE + side] > 0.0:
                 cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
                 everywhere += radius * add_side(form, row[SIDE + side], view, matrix, slopes)
+                everywhere += 4.0 * _ROUNDING * row[SIDE + side]  # a side's entries are at most 1
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
