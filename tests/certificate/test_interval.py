@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nullpose.certificate.interval import Interval, as_interval, dot, hull, largest, stack
+from nullpose.certificate.interval import Interval, as_interval, dot, stack
 
 SPECIAL = [
     0.0,
@@ -139,17 +139,6 @@ def test_whole_expressions_contain_the_exact_values(value: tuple[Interval, Fract
     interval, exact = value
     assert np.isnan(interval.low) or float(interval.low) <= exact
     assert np.isnan(interval.high) or exact <= float(interval.high)
-
-
-@given(a=pairs, b=pairs)
-def test_hulls_and_maxima(a: list[float], b: list[float]) -> None:
-    """A hull holds both; the larger of two numbers lies between the larger ends."""
-    both, larger = hull(Interval(*a), Interval(*b)), largest(Interval(*a), Interval(*b))
-    for x in members(a):
-        for y in members(b):
-            assert holds(both, x)
-            assert holds(both, y)
-            assert holds(larger, max(x, y))
 
 
 def test_arrays_mix_with_intervals_from_either_side() -> None:

@@ -87,7 +87,7 @@ def test_equal_mixes_are_shared() -> None:
     rows = [row_of((0,) * 6, proof) for _ in range(4)]
     rows[1][node.COUNT], rows[1][node.INDEX + 1], rows[1][node.WEIGHT] = 2.0, 3.0, 0.25
     rows[1][node.WEIGHT + 1] = 0.75
-    rows[3][node.KIND], rows[3][node.INDEX] = FAR, 2.0
+    rows[3][node.KIND], rows[3][node.ANCHOR] = FAR, 2.0
     proof.leaves = np.array(rows)
     leaves = leaves_of(proof)
     assert leaves.mix.tolist() == [0, 1, 0, -1]
@@ -95,22 +95,12 @@ def test_equal_mixes_are_shared() -> None:
     assert leaves.point.tolist() == [-1, -1, -1, 2]
 
 
-def test_a_ratio_that_stands_twice_has_both_weights() -> None:
-    """A row may name one ratio twice, its index overwritten by a distance test of an earlier stage."""
-    proof = proof_of(np.empty(0))
-    row = row_of((0,) * 6, proof, COUNT=3)
-    row[node.INDEX : node.INDEX + 3] = [1.0, 0.0, 1.0]
-    row[node.WEIGHT : node.WEIGHT + 3] = [0.75, 0.125, 0.125]
-    proof.leaves = row[None]
-    assert leaves_of(proof).mixes == ({1: 0.875, 0: 0.125},)
-
-
 def test_points_are_those_of_the_tests() -> None:
     """The frame's anchor, the node out of reach, the ball around; none for other tests."""
     proof = proof_of(np.empty(0))
     kinds = [WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT]
-    proof.leaves = np.array([row_of((0,) * 6, proof, KIND=kind, ANCHOR=7, INDEX=3) for kind in kinds])
-    assert leaves_of(proof).point.tolist() == [-1, 7, -1, 3, 3]
+    proof.leaves = np.array([row_of((0,) * 6, proof, KIND=kind, ANCHOR=7) for kind in kinds])
+    assert leaves_of(proof).point.tolist() == [-1, 7, -1, 7, 7]
     assert leaves_of(proof).test.tolist() == kinds
 
 

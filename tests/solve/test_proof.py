@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from importlib import import_module
 from itertools import pairwise
 
 import numpy as np
@@ -133,3 +134,16 @@ def test_default_gaps_loosen_with_size() -> None:
     """More nodes are asked for a wider gap."""
     gaps = [default_gap(n) for n in (1, 2, 3, 4, 20, 21, 100)]
     assert gaps == sorted(gaps)
+
+
+def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
+    monkeypatch.setattr(import_module("nullpose.solve.proof"), "_DIRECT_NODES", 10)
+    for seed in range(4):
+        family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
+        proof = proof_of(family, AxisField.free(), gap=1e-2)
+        assert proof.reason == ""
+        assert np.any(proof.leaves[:, node.KIND] == node.FAR)
+        for row in proof.leaves:
+            ratios = row[node.INDEX : node.INDEX + int(row[node.COUNT])]
+            assert len(set(ratios)) == len(ratios)

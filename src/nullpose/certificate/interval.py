@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FloatArray", "Interval", "dot", "hull", "largest", "stack"]
+__all__ = ["FloatArray", "Interval", "dot", "stack"]
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -134,13 +134,3 @@ def dot(a: Interval, b: Interval | FloatArray) -> Interval:
 def stack(parts: list[Interval]) -> Interval:
     """Return intervals of one shape along a new last axis."""
     return Interval(np.stack([p.low for p in parts], -1), np.stack([p.high for p in parts], -1))
-
-
-def hull(a: Interval, b: Interval) -> Interval:
-    """Return the smallest interval that holds both."""
-    return Interval(np.minimum(a.low, b.low), np.maximum(a.high, b.high))
-
-
-def largest(a: Interval, b: Interval) -> Interval:
-    """Return bounds on the larger of two numbers."""
-    return Interval(np.maximum(a.low, b.low), np.maximum(a.high, b.high))

@@ -8,9 +8,7 @@ from math import factorial
 from nullpose.certificate.certificate import Certificate
 from nullpose.family import AxisField, Family
 
-__all__ = ["Bounds", "antenna_axis", "field_offset", "smallest_ratio"]
-
-Bounds = tuple[Fraction, Fraction]
+__all__ = ["antenna_axis", "field_offset", "smallest_ratio"]
 
 _TERMS = 24  # of the series: for |x| <= 4 the rest is below 4^48/48! < 1e-32
 _BITS = 160

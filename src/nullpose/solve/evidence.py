@@ -72,13 +72,9 @@ def leaves_of(proof: Proof) -> Leaves:
         key = (*ratios[i, :used], *weights[i, :used])
         if key not in table:
             table[key] = len(mixes)
-            mixed: dict[int, float] = {}
-            for k, w in zip(ratios[i, :used], weights[i, :used], strict=True):
-                mixed[int(k)] = mixed.get(int(k), 0.0) + float(w)  # a row may name a ratio twice
-            mixes.append(mixed)
+            mixes.append({int(k): float(w) for k, w in zip(ratios[i, :used], weights[i, :used], strict=True)})
         mix[i] = table[key]
-    point = np.where(test == TOWARDS, rows[:, node.ANCHOR], rows[:, node.INDEX])
-    point = np.where(np.isin(test, (WORLD, AFFINE)), -1, point)
+    point = np.where(np.isin(test, (WORLD, AFFINE)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
     return Leaves(
         box=np.stack([depth[:, 0], index[:, 0], depth[:, 1], index[:, 1], depth[:, 2], index[:, 2]], axis=1),

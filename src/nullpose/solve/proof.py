@@ -198,7 +198,7 @@ class _Run:
     def by_distance(self, root: FloatArray) -> FloatArray:
         """Return the leaf that shows the bound from distances alone, by which a run begins."""
         leaf = root.copy()
-        leaf[0, self.node.KIND], leaf[0, self.node.INDEX] = self.node.FAR, self.farthest
+        leaf[0, self.node.KIND], leaf[0, self.node.ANCHOR] = self.node.FAR, self.farthest
         leaf[0, self.node.LEVEL] = self.proved
         return leaf
 

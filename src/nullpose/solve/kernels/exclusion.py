@@ -17,6 +17,7 @@ from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, expand_point,
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
+    ANCHOR,
     BALL,
     CELL,
     CENTRE,
@@ -204,13 +205,13 @@ def out_of_reach(family, keep_points, keep_radius, row):
     for k in range(nw.shape[0]):
         a = min_distance(points, npt[k], centre, half)
         if (n0[k] - row[LEVEL] * d0[den[k]]) * a * a + nw[k] < 0.0:
-            row[INDEX] = k
+            row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     for q in range(keep_points.shape[0]):
         d = 0.0
         for i in range(3):
             d += (abs(keep_points[q, i] - centre[i]) + half[i]) ** 2
         if d < keep_radius * keep_radius:
-            row[INDEX] = q
+            row[ANCHOR] = q
             return KEPT_OUT
     return -1
