@@ -25,11 +25,16 @@ if TYPE_CHECKING:
     )
     from nullpose.physics import Link, Pose, evaluate, min_sinr
     from nullpose.scenario import (
+        Airframe,
         Airspace,
+        Array,
+        Eavesdropper,
         Jammer,
         Node,
+        NoFlyZone,
         Receiver,
         Scenario,
+        Transmitter,
         apply_overrides,
         json_schema,
         load,
@@ -40,10 +45,14 @@ if TYPE_CHECKING:
     __version__: str
 
 __all__ = [
+    "Airframe",
     "Airspace",
+    "Array",
+    "Eavesdropper",
     "Fault",
     "Jammer",
     "Link",
+    "NoFlyZone",
     "Node",
     "NullposeError",
     "OutputError",
@@ -56,6 +65,7 @@ __all__ = [
     "SolveError",
     "Status",
     "SweepTable",
+    "Transmitter",
     "UsageError",
     "__version__",
     "apply_overrides",
@@ -79,11 +89,16 @@ _ROOMS = {
     ),
     "nullpose.physics": ("Link", "Pose", "evaluate", "min_sinr"),
     "nullpose.scenario": (
+        "Airframe",
         "Airspace",
+        "Array",
+        "Eavesdropper",
         "Jammer",
+        "NoFlyZone",
         "Node",
         "Receiver",
         "Scenario",
+        "Transmitter",
         "apply_overrides",
         "json_schema",
         "load",

@@ -8,10 +8,32 @@ from typing import Any
 
 import pytest
 
-from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario, json_schema
+from nullpose.scenario import (
+    Airframe,
+    Airspace,
+    Array,
+    Eavesdropper,
+    Jammer,
+    Node,
+    NoFlyZone,
+    Receiver,
+    Scenario,
+    Transmitter,
+    json_schema,
+)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-TABLES = {"Airspace": Airspace, "Receiver": Receiver, "Node": Node, "Jammer": Jammer}
+TABLES = {
+    "Airframe": Airframe,
+    "Airspace": Airspace,
+    "Array": Array,
+    "Eavesdropper": Eavesdropper,
+    "Jammer": Jammer,
+    "NoFlyZone": NoFlyZone,
+    "Node": Node,
+    "Receiver": Receiver,
+    "Transmitter": Transmitter,
+}
 
 
 def schema_of(table: str) -> dict[str, Any]:
@@ -30,12 +52,21 @@ def accepts(schema: dict[str, Any], value: Any) -> bool:
     """Returns whether a value fits a schema, for the few words of JSON Schema that this one uses."""
     if "$ref" in schema:
         schema = json_schema()["$defs"][schema["$ref"].removeprefix("#/$defs/")]
-    match schema["type"]:
+    kind = schema["type"]
+    if isinstance(kind, list):
+        return any(accepts(schema | {"type": one}, value) for one in kind)
+    match kind:
+        case "integer":
+            return isinstance(value, int) and schema["minimum"] <= value <= schema["maximum"]
         case "number":
-            return not isinstance(value, str | bool) and schema["minimum"] <= value <= schema["maximum"]
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            return number and schema["minimum"] <= value <= schema["maximum"]
         case "string":
-            return isinstance(value, str) and len(value) >= schema.get("minLength", 0)
+            fits = isinstance(value, str) and len(value) >= schema.get("minLength", 0)
+            return fits and value in schema.get("enum", [value])
         case "array":
+            if not isinstance(value, list):
+                return False
             fits = schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value))
             return fits and all(accepts(schema["items"], member) for member in value)
         case _:
@@ -87,7 +118,7 @@ def test_pairs_are_either_or() -> None:
     ]
 
 
-UNITS = {"_m": "metres", "_w": "watts", "_dbm": "dBm", "_db": "dB", "_hz": "Hz"}
+UNITS = {"_m": "metres", "_w": "watts", "_dbm": "dBm", "_db": "dB", "_hz": "Hz", "_deg": "degrees"}
 
 
 @pytest.mark.parametrize(

@@ -1,21 +1,30 @@
 """What the user states: nodes, jammers, receiver and airspace, in files or in Python."""
 
+from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.ground_points import GroundPoint, Jammer, Node
+from nullpose.scenario.array import Array
+from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
+from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.scenario import Scenario
+from nullpose.scenario.transmitter import Transmitter
 
 __all__ = [
+    "Airframe",
     "Airspace",
+    "Array",
+    "Eavesdropper",
     "GroundPoint",
     "Jammer",
+    "NoFlyZone",
     "Node",
     "Override",
     "Receiver",
     "Scenario",
+    "Transmitter",
     "apply_overrides",
     "json_schema",
     "load",

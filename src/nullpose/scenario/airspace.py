@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
+from nullpose.scenario.members import Members
+from nullpose.scenario.no_fly import NoFlyZone
+from nullpose.scenario.polygon import Polygon, area_m2, depth_m
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import KeepOutMetres, Range
 
 __all__ = ["Airspace"]
 
+BORDER_M = 1e-9
+"""Positions no further than this beyond a border count as on it [m]."""
+
 
 class Airspace(Section):
-    """The positions allowed to the vehicle: a box, less a ball around every ground point.
+    """The positions allowed to the vehicle: a box, within a fence, less zones and a ball around every point.
 
     World frame: east, north, up (ENU), in metres. Without ``x_m`` or ``y_m`` that direction is
     unbounded, as in the paper, which bounds the altitude only (eq. 2.2).
@@ -27,10 +33,15 @@ class Airspace(Section):
         altitude_m: lowest and highest altitude [m]; equal ends fix the altitude.
         x_m: westmost and eastmost position [m], or None for no bound.
         y_m: southmost and northmost position [m], or None for no bound.
-        keep_out_m: smallest distance from any node or jammer [m], since the model has no limit there.
+        keep_out_m: smallest distance from any node, jammer or eavesdropper [m], since the model has no limit
+            there.
+        geofence_m: vertices [east, north] of a polygon [m] that the vehicle stays in, in order around it, the
+            last being joined to the first; or None for no fence.
+        no_fly: zones that the vehicle stays out of.
     """
 
     header: ClassVar[str] = "a table headed [airspace]"
+    unstated: ClassVar[frozenset[str]] = frozenset({"no_fly"})
 
     altitude_m: Range = Field(
         description="Lowest and highest altitude of the vehicle above the origin, in metres: [low, high].",
@@ -50,8 +61,19 @@ class Airspace(Section):
     )
     keep_out_m: KeepOutMetres = Field(
         default=1.0,
-        description="Smallest distance in metres between the vehicle and any node or jammer.",
+        description="Smallest distance in metres between the vehicle and any node, jammer or eavesdropper.",
         examples=[1.0],
+    )
+    geofence_m: Polygon | None = Field(
+        default=None,
+        description="Vertices of a polygon that the vehicle stays in, in metres, in order around it: "
+        "[[east, north], ...]. Left out: no fence.",
+        examples=[[[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]]],
+    )
+    no_fly: Annotated[tuple[NoFlyZone, ...], Members("airspace.no_fly", NoFlyZone.letter)] = Field(
+        default=(),
+        description="Tables headed [[airspace.no_fly]], one for each zone that the vehicle stays out of; "
+        "none if left out.",
     )
 
     @cached_property
@@ -63,6 +85,34 @@ class Airspace(Section):
     def upper_m(self) -> NDArray[np.float64]:
         """The box's upper corner, (3,), in m; infinity where unbounded."""
         return read_only([high for _, high in self._ranges()], (3,))
+
+    @cached_property
+    def geofence_outline_m(self) -> NDArray[np.float64]:
+        """Vertices of the geofence [m], (n, 2), counter-clockwise; none without a fence."""
+        vertices_m = np.asarray(self.geofence_m or (), dtype=np.float64).reshape(-1, 2)
+        clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
+        return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
+
+    def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
+        """Returns whether the vehicle may be at each position, the keep-out balls not being looked at.
+
+        Borders belong to what is allowed, and a position within 1e-9 m of a border counts as on it.
+
+        Args:
+            position_m: positions [m], (..., 3).
+
+        Returns:
+            Array of shape ``(...)``.
+        """
+        position = np.asarray(position_m, dtype=np.float64)
+        allowed = np.all(
+            (position >= self.lower_m - BORDER_M) & (position <= self.upper_m + BORDER_M), axis=-1
+        )
+        if self.geofence_m is not None:
+            allowed &= depth_m(position[..., :2], self.geofence_outline_m) >= -BORDER_M
+        for zone in self.no_fly:
+            allowed &= zone.depth_m(position) <= BORDER_M
+        return np.asarray(allowed)
 
     def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
         unbounded = (-math.inf, math.inf)

@@ -1,4 +1,4 @@
-"""Transmitters on the ground: the nodes to hear, and the jammers that drown them."""
+"""Who is on the ground: the nodes to serve, the jammers that drown them, those who listen in."""
 
 from __future__ import annotations
 
@@ -8,13 +8,44 @@ from pydantic import Field
 
 from nullpose.scenario.names import Label
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import DecibelMilliwatts, Position, Watts, watts_from_dbm
+from nullpose.scenario.uncertainty import Uncertain
+from nullpose.scenario.units import (
+    DecibelMilliwatts,
+    Position,
+    RatioDecibels,
+    Watts,
+    Weight,
+    power_w,
+    ratio_from_db,
+)
 
-__all__ = ["GroundPoint", "Jammer", "Node"]
+__all__ = ["Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
 
 
 class GroundPoint(Section):
-    """A transmitter at a fixed place, with an isotropic antenna.
+    """Someone at a fixed place, with an isotropic antenna.
+
+    Args:
+        name: how results and overrides refer to it; a scenario names it by its place when left out.
+        position_m: east, north and up from the origin [m], (3,).
+    """
+
+    letter: ClassVar[str]
+    """The letter of names given by place: S1, S2 and so on for nodes, M1, M2 for jammers."""
+
+    name: Label = Field(
+        default="",
+        description="Name, unique among nodes, jammers and eavesdroppers. Left out: S1, S2, ... for nodes, "
+        "M1, M2, ... for jammers and E1, E2, ... for eavesdroppers, by their place in the file.",
+    )
+    position_m: Position = Field(
+        description="Position in metres from the origin: [east, north, up].",
+        examples=[[17.0, 15.0, 4.0]],
+    )
+
+
+class Emitter(GroundPoint):
+    """A transmitter on the ground.
 
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
@@ -24,18 +55,7 @@ class GroundPoint(Section):
     """
 
     pairs: ClassVar[tuple[tuple[str, str], ...]] = (("power_w", "power_dbm"),)
-    letter: ClassVar[str]
-    """The letter of names given by place: S1, S2 and so on for nodes, M1, M2 for jammers."""
 
-    name: Label = Field(
-        default="",
-        description="Name, unique among nodes and jammers. Left out: S1, S2, ... for nodes and M1, M2, ... "
-        "for jammers, by their place in the file.",
-    )
-    position_m: Position = Field(
-        description="Position in metres from the origin: [east, north, up].",
-        examples=[[17.0, 15.0, 4.0]],
-    )
     power_w: Watts | None = Field(
         default=None,
         description="Transmit power in watts. Either this or power_dbm.",
@@ -50,21 +70,120 @@ class GroundPoint(Section):
     @property
     def transmit_power_w(self) -> float:
         """Transmit power, however it was stated [W]."""
-        if self.power_w is not None:
-            return self.power_w
-        assert self.power_dbm is not None, "validation lets exactly one of the two through"
-        return watts_from_dbm(self.power_dbm)
+        power = power_w(self.power_w, self.power_dbm)
+        assert power is not None, "validation lets exactly one of the two through"
+        return power
 
 
-class Node(GroundPoint):
-    """A legitimate node whose signal the vehicle is to receive."""
+class Node(Emitter):
+    """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
+
+    Args:
+        name: how results and overrides refer to it; a scenario names it by its place when left out.
+        position_m: east, north and up from the origin [m], (3,).
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+        weight: the node's margin is its SINR over this; or else
+        min_sinr_db: the SINR that the node requires [dB]; its margin is its SINR over this.
+        noise_w: noise of the node's own receiver [W], for the downlink; or else
+        noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
+        jamming_w: jamming power that the node's own receiver gets [W], for the downlink; or else
+        jamming_dbm: the same in dBm; worked out from the jammers when both are left out.
+    """
 
     header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
     letter: ClassVar[str] = "S"
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("weight", "min_sinr_db"),
+        ("noise_w", "noise_dbm"),
+        ("jamming_w", "jamming_dbm"),
+    )
+
+    weight: Weight | None = Field(
+        default=None,
+        description="What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
+        "given twice the SINR. Either this or min_sinr_db, or neither, which is a weight of 1.",
+        examples=[2.0],
+    )
+    min_sinr_db: RatioDecibels | None = Field(
+        default=None,
+        description="The SINR that the node requires, in dB; what counts is how far it is exceeded. Either "
+        "this or weight, or neither.",
+        examples=[3.0],
+    )
+    noise_w: Watts | None = Field(
+        default=None,
+        description="Noise power of the node's own receiver, in watts; with objective secrecy-rate. Either "
+        "this or noise_dbm. Left out: the noise of [receiver].",
+        examples=[1e-3],
+    )
+    noise_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Noise power of the node's own receiver, in dBm; with objective secrecy-rate. Either "
+        "this or noise_w.",
+        examples=[-97.0],
+    )
+    jamming_w: Watts | None = Field(
+        default=None,
+        description="Jamming power that the node's own receiver gets, in watts; with objective secrecy-rate. "
+        "Either this or jamming_dbm. Left out: worked out from the jammers, in line of sight.",
+        examples=[1e-3],
+    )
+    jamming_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Jamming power that the node's own receiver gets, in dBm; with objective secrecy-rate. "
+        "Either this or jamming_w.",
+        examples=[-90.0],
+    )
+
+    @property
+    def required_sinr(self) -> float:
+        """What the node's SINR is divided by to give its margin: weight, required SINR (linear) or 1."""
+        if self.min_sinr_db is not None:
+            return ratio_from_db(self.min_sinr_db)
+        return 1.0 if self.weight is None else self.weight
 
 
-class Jammer(GroundPoint):
-    """A jammer whose signal drowns the nodes."""
+class Jammer(Uncertain, Emitter):
+    """A jammer whose signal drowns the nodes.
+
+    Args:
+        name: how results and overrides refer to it; a scenario names it by its place when left out.
+        position_m: east, north and up from the origin [m], (3,).
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+        uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
+        uncertainty_attitude_deg: roll, pitch and yaw [deg] of the ellipsoid's axes.
+    """
 
     header: ClassVar[str] = "a jammer, in a table of its own headed [[jammers]]"
     letter: ClassVar[str] = "M"
+
+
+class Eavesdropper(Uncertain, GroundPoint):
+    """A receiver that is not to hear what the drone sends.
+
+    Args:
+        name: how results and overrides refer to it; a scenario names it by its place when left out.
+        position_m: east, north and up from the origin [m], (3,).
+        noise_w: its receiver's noise [W]; or else
+        noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
+        uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
+        uncertainty_attitude_deg: roll, pitch and yaw [deg] of the ellipsoid's axes.
+    """
+
+    header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
+    letter: ClassVar[str] = "E"
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("noise_w", "noise_dbm"),)
+
+    noise_w: Watts | None = Field(
+        default=None,
+        description="Noise power of the eavesdropper's receiver, in watts. Either this or noise_dbm. Left "
+        "out: the noise of [receiver].",
+        examples=[1e-3],
+    )
+    noise_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Noise power of the eavesdropper's receiver, in dBm. Either this or noise_w.",
+        examples=[-97.0],
+    )

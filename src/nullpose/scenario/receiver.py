@@ -12,6 +12,8 @@ from nullpose.scenario.units import (
     SPEED_OF_LIGHT_M_PER_S,
     DecibelMilliwatts,
     Decibels,
+    ErrorDegrees,
+    ErrorMetres,
     Hertz,
     Watts,
     ratio_from_db,
@@ -22,13 +24,15 @@ __all__ = ["Receiver"]
 
 
 class Receiver(Section):
-    """The receiver's noise power and the path gain at 1 m.
+    """The receiver's noise power, the path gain at 1 m, and how well the vehicle holds a pose.
 
     Args:
         noise_w: noise power in the receiver's bandwidth [W]; or else
         noise_dbm: the same in dBm.
         reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; or else
         frequency_hz: carrier frequency [Hz], from which the free-space gain at 1 m follows.
+        attitude_error_deg: largest angle between the true antenna axis and the commanded one [deg].
+        position_error_m: largest distance between the true position and the commanded one [m].
     """
 
     header: ClassVar[str] = "a table headed [receiver]"
@@ -36,6 +40,7 @@ class Receiver(Section):
         ("noise_w", "noise_dbm"),
         ("reference_gain_db", "frequency_hz"),
     )
+    unstated: ClassVar[frozenset[str]] = frozenset({"attitude_error_deg", "position_error_m"})
 
     noise_w: Watts | None = Field(
         default=None,
@@ -58,6 +63,23 @@ class Receiver(Section):
         "Either this or reference_gain_db.",
         examples=[2.4e9],
     )
+    attitude_error_deg: ErrorDegrees = Field(
+        default=0.0,
+        description="Largest angle between the true antenna axis and the commanded one, in degrees. Used by "
+        "robust solving.",
+        examples=[2.0],
+    )
+    position_error_m: ErrorMetres = Field(
+        default=0.0,
+        description="Largest distance between the vehicle's true position and the commanded one, in metres. "
+        "Used by robust solving.",
+        examples=[0.5],
+    )
+
+    @property
+    def attitude_error_rad(self) -> float:
+        """Largest angle between the true antenna axis and the commanded one [rad]."""
+        return math.radians(self.attitude_error_deg)
 
     @property
     def noise_power_w(self) -> float:

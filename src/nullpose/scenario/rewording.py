@@ -19,6 +19,7 @@ def table_faults(
     data: Mapping[str, object],
     fields: Mapping[str, FieldInfo],
     pairs: Sequence[tuple[str, str]],
+    alternatives: Sequence[tuple[str, str]] = (),
 ) -> list[InitErrorDetails]:
     """Returns the faults of one table, without those that only follow from a misspelt key.
 
@@ -27,6 +28,7 @@ def table_faults(
         data: the table as given.
         fields: the fields that the table may have.
         pairs: keys of which exactly one is to be given.
+        alternatives: keys of which at most one may be given.
     """
     entries = error.errors(include_url=False) if error else []
     unknown = [str(entry["loc"][-1]) for entry in entries if entry["type"] == "extra_forbidden"]
@@ -49,7 +51,8 @@ def table_faults(
             case _:
                 message = f"got {described(given)}, which cannot be used here"
         details.append(as_error_details(place, message, given))
-    return details + [as_error_details((), message) for message in _pair_faults(data, pairs, meant)]
+    messages = [*_pair_faults(data, pairs, meant), *_alternative_faults(data, alternatives)]
+    return details + [as_error_details((), message) for message in messages]
 
 
 def _unknown_key(key: str, absent: Collection[str], fields: Collection[str]) -> str:
@@ -74,3 +77,11 @@ def _pair_faults(
         elif not given and one not in meant and other not in meant:
             faults.append(f"neither {one} nor {other} is given, exactly one must be; add either")
     return faults
+
+
+def _alternative_faults(data: Mapping[str, object], alternatives: Sequence[tuple[str, str]]) -> list[str]:
+    return [
+        f"both {one} and {other} are given, at most one is allowed; remove either"
+        for one, other in alternatives
+        if data.get(one) is not None and data.get(other) is not None
+    ]

@@ -3,56 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
+from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only
+from nullpose.scenario.choice import Choice
 from nullpose.scenario.crosscheck import cross_faults
-from nullpose.scenario.faults import Place, rejection
-from nullpose.scenario.ground_points import Jammer, Node
-from nullpose.scenario.names import Title, named
+from nullpose.scenario.faults import Place
+from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
+from nullpose.scenario.members import Members
+from nullpose.scenario.names import Title
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_text import toml_text
-from nullpose.scenario.wording import described
+from nullpose.scenario.transmitter import Transmitter
+from nullpose.scenario.units import power_w
 
 __all__ = ["Scenario"]
 
-
-@dataclass(frozen=True, slots=True)
-class _Members:
-    """A list of nodes or jammers, as metadata of an annotated tuple."""
-
-    key: str
-    letter: str
-    at_least: int
-
-    def read(self, value: object) -> list[object]:
-        """Returns the members, each with a name, or raises the fault that says what is wrong."""
-        if isinstance(value, Mapping):
-            raise rejection(f"got a table, must be a list: head each table with [[{self.key}]]")
-        if not isinstance(value, list | tuple):
-            raise rejection(f"got {described(value)}, must be a list of tables, each headed [[{self.key}]]")
-        if len(value) < self.at_least:
-            raise rejection(f"got an empty list, must have at least one; add a table headed [[{self.key}]]")
-        return named(value, self.letter)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.read, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        members = handler(schema)
-        return members | {"minItems": self.at_least} if self.at_least else members
+_Objective = Annotated[
+    Literal["min-sinr", "secrecy-rate"], Choice("an objective", ("min-sinr", "secrecy-rate"))
+]
 
 
 class Scenario(Section):
@@ -60,32 +38,63 @@ class Scenario(Section):
 
     Args:
         name: a title for tables and figures; may be empty.
+        objective: what is made as large as it can be: "min-sinr", the smallest SINR (or margin) of the nodes
+            that the drone hears; or "secrecy-rate", the smallest secrecy rate of the nodes that hear it.
         airspace: where the vehicle may be.
-        receiver: its noise, and the path gain at 1 m.
+        airframe: which antenna axes it reaches; None for all of them.
+        array: several upright dipoles in place of the one, or None.
+        receiver: its noise, the path gain at 1 m, and how well the vehicle holds a pose.
+        transmitter: the drone's own power, with "secrecy-rate" only.
         nodes: the legitimate nodes, one or more.
         jammers: the jammers, none or more.
+        eavesdroppers: who listens in, with "secrecy-rate" only.
 
     Raises:
         ScenarioError: with every fault of the values together.
     """
 
     header: ClassVar[str] = "a table with the keys of a scenario file"
+    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers"})
 
     name: Title = Field(
         default="",
         description="Title of the scenario, for tables and figures.",
         examples=["Harbour, north quay"],
     )
+    objective: _Objective = Field(
+        default="min-sinr",
+        description="What is made as large as it can be: min-sinr, the smallest SINR (or margin) of the "
+        "nodes that the drone hears, or secrecy-rate, the smallest secrecy rate of the nodes that hear it.",
+        examples=["secrecy-rate"],
+    )
     airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
+    airframe: Airframe | None = Field(
+        default=None,
+        description="A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted. "
+        "Left out: every axis is reached.",
+    )
+    array: Array | None = Field(
+        default=None,
+        description="A table headed [array]: several upright dipoles on a level vehicle in place of the one.",
+    )
     receiver: Receiver = Field(
         description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
         "frequency in Hz)."
     )
-    nodes: Annotated[tuple[Node, ...], _Members("nodes", Node.letter, at_least=1)] = Field(
+    transmitter: Transmitter | None = Field(
+        default=None,
+        description="A table headed [transmitter]: the drone's own power (W or dBm); with objective "
+        "secrecy-rate only.",
+    )
+    nodes: Annotated[tuple[Node, ...], Members("nodes", Node.letter, at_least=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one."
     )
-    jammers: Annotated[tuple[Jammer, ...], _Members("jammers", Jammer.letter, at_least=0)] = Field(
+    jammers: Annotated[tuple[Jammer, ...], Members("jammers", Jammer.letter)] = Field(
         default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
+    )
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], Members("eavesdroppers", Eavesdropper.letter)] = Field(
+        default=(),
+        description="Tables headed [[eavesdroppers]], one for each; with objective secrecy-rate only.",
     )
 
     @classmethod
@@ -126,3 +135,69 @@ class Scenario(Section):
     def jammer_powers_w(self) -> NDArray[np.float64]:
         """Transmit powers of the jammers [W], (n_jammers,), read-only."""
         return read_only([jammer.transmit_power_w for jammer in self.jammers], (-1,))
+
+    @property
+    def eavesdropper_names(self) -> tuple[str, ...]:
+        """Names of the eavesdroppers, in order."""
+        return tuple(eavesdropper.name for eavesdropper in self.eavesdroppers)
+
+    @cached_property
+    def eavesdropper_positions_m(self) -> NDArray[np.float64]:
+        """Positions of the eavesdroppers [m], (n_eavesdroppers, 3), read-only."""
+        return read_only([eavesdropper.position_m for eavesdropper in self.eavesdroppers], (-1, 3))
+
+    @cached_property
+    def eavesdropper_noise_w(self) -> NDArray[np.float64]:
+        """Noise of the eavesdroppers' receivers [W], (n_eavesdroppers,), read-only."""
+        return read_only([self._own_noise_w(eavesdropper) for eavesdropper in self.eavesdroppers], (-1,))
+
+    @cached_property
+    def node_noise_w(self) -> NDArray[np.float64]:
+        """Noise and jamming at the nodes' own receivers [W], (n_nodes,), read-only; for the downlink.
+
+        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, isotropic and in line of sight.
+        """
+        return read_only([self._own_noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
+
+    @cached_property
+    def node_required_sinr(self) -> NDArray[np.float64]:
+        """What each node's SINR is divided by to give its margin, linear, (n_nodes,), read-only."""
+        return read_only([node.required_sinr for node in self.nodes], (-1,))
+
+    @property
+    def has_margins(self) -> bool:
+        """Whether any node states a weight or a required SINR."""
+        return any(node.weight is not None or node.min_sinr_db is not None for node in self.nodes)
+
+    @cached_property
+    def jammer_uncertainty_m(self) -> NDArray[np.float64]:
+        """Matrices of the jammers' uncertainty sets [m], (n_jammers, 3, 3), read-only."""
+        return read_only([jammer.uncertainty_matrix_m for jammer in self.jammers], (-1, 3, 3))
+
+    @cached_property
+    def eavesdropper_uncertainty_m(self) -> NDArray[np.float64]:
+        """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3), read-only."""
+        return read_only([each.uncertainty_matrix_m for each in self.eavesdroppers], (-1, 3, 3))
+
+    @property
+    def is_uncertain(self) -> bool:
+        """Whether any position, or the pose that the vehicle holds, is known only up to an error."""
+        points = (*self.jammers, *self.eavesdroppers)
+        errors = (self.receiver.attitude_error_deg, self.receiver.position_error_m)
+        return any(errors) or any(point.uncertainty_reach_m > 0.0 for point in points)
+
+    @property
+    def axis_band(self) -> tuple[float, float]:
+        """Least and greatest ``u_z^2`` of the axes that the airframe reaches; (0, 1) for all of them."""
+        return (0.0, 1.0) if self.airframe is None else self.airframe.axis_band
+
+    def _own_noise_w(self, point: Node | Eavesdropper) -> float:
+        noise = power_w(point.noise_w, point.noise_dbm)
+        return self.receiver.noise_power_w if noise is None else noise
+
+    def _jamming_w(self, node: Node) -> float:
+        stated = power_w(node.jamming_w, node.jamming_dbm)
+        if stated is not None:
+            return stated
+        distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
+        return float(np.sum(self.receiver.reference_gain * self.jammer_powers_w / distance_squared))

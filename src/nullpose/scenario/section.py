@@ -24,6 +24,10 @@ class Section(BaseModel):
     """What the table is called and how it is headed in a file."""
     pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Keys of which exactly one is given, each pair being one quantity in two units."""
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Keys of which at most one is given."""
+    unstated: ClassVar[frozenset[str]] = frozenset()
+    """Keys that ``to_dict`` leaves out while they have their default."""
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -53,7 +57,12 @@ class Section(BaseModel):
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
-        return self.model_dump(mode="json", exclude_none=True)
+        values = {key: getattr(self, key) for key in type(self).model_fields}
+        return {key: _plain(value) for key, value in values.items() if not self._is_left_out(key, value)}
+
+    def _is_left_out(self, key: str, value: object) -> bool:
+        default = type(self).model_fields[key].default
+        return value is None or (key in self.unstated and bool(value == default))
 
     @classmethod
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
@@ -72,7 +81,7 @@ class Section(BaseModel):
             table = handler(data)
         except ValidationError as several:
             error = several
-        details = table_faults(error, data, cls.model_fields, cls.pairs)
+        details = table_faults(error, data, cls.model_fields, cls.pairs, cls.alternatives)
         details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]
         if table is None or details:
             raise collected(cls.__name__, details)
@@ -122,3 +131,9 @@ class Section(BaseModel):
 
         def __delattr__(self, name: str) -> None:
             raise AttributeError(f"cannot delete {name}: scenarios are frozen")
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Section):
+        return value.to_dict()
+    return [_plain(member) for member in value] if isinstance(value, tuple) else value

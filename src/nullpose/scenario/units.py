@@ -13,15 +13,29 @@ from nullpose.scenario.wording import described, plain
 
 __all__ = [
     "SPEED_OF_LIGHT_M_PER_S",
+    "AttitudeDegrees",
+    "Count",
     "DecibelMilliwatts",
     "Decibels",
+    "ErrorDegrees",
+    "ErrorMetres",
     "Hertz",
     "KeepOutMetres",
     "Metres",
+    "MountDegrees",
+    "PlanePoint",
     "Position",
     "Quantity",
+    "RadiusMetres",
     "Range",
+    "RatioDecibels",
+    "SemiAxes",
+    "TiltDegrees",
+    "Turn",
     "Watts",
+    "Wavelengths",
+    "Weight",
+    "power_w",
     "ratio_from_db",
     "watts_from_dbm",
 ]
@@ -73,6 +87,22 @@ class Quantity:
         return {"type": "number", "minimum": self.low, "maximum": self.high}
 
 
+class Count(Quantity):
+    """A whole number between two limits; used as the metadata of an annotated int."""
+
+    def read(self, value: object) -> int:
+        """Returns the whole number, or raises the fault that says what is wrong with it."""
+        number = super().read(value)
+        if not number.is_integer():
+            raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
+        return int(number)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return super().__get_pydantic_json_schema__(schema, handler) | {"type": "integer"}
+
+
 def _is_quoted_number(value: object) -> bool:
     if not isinstance(value, str):
         return False
@@ -96,15 +126,39 @@ Metres = Annotated[float, Quantity("a length in m", -1e7, 1e7, _METRES_HINT)]
 KeepOutMetres = Annotated[
     float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
 ]
+RadiusMetres = Annotated[float, Quantity("a radius in m", 1e-3, 1e7, "a shape has an inside")]
+ErrorMetres = Annotated[
+    float, Quantity("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")
+]
+_ANGLE_HINT = "angles in files are in degrees"
+TiltDegrees = Annotated[
+    float, Quantity("an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude")
+]
+MountDegrees = Annotated[
+    float, Quantity("an angle in degrees", 0.0, 90.0, "0 is along the body's vertical, 90 across it")
+]
+ErrorDegrees = Annotated[
+    float, Quantity("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
+]
+AttitudeDegrees = Annotated[float, Quantity("an angle in degrees", -360.0, 360.0, _ANGLE_HINT)]
+RatioDecibels = Annotated[
+    float, Quantity("a ratio in dB", -300.0, 300.0, "0 dB is a ratio of 1, 10 dB one of 10")
+]
+Weight = Annotated[
+    float, Quantity("a weight", 1e-30, 1e30, "a weight is never zero or negative; 1 is the one of the others")
+]
+Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A list of a fixed number of lengths, as metadata of an annotated tuple."""
+    """A list of a fixed number of lengths or angles, as metadata of an annotated tuple."""
 
     size: int
     noun: str
     ascending: bool = False
+    low: float = -1e7
+    high: float = 1e7
 
     def read(self, value: object) -> list[object]:
         value = plain(value)
@@ -128,7 +182,7 @@ class _Row:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         # One "items" for all members, not "prefixItems": editors that know only older drafts read it too.
-        number = {"type": "number", "minimum": -1e7, "maximum": 1e7}
+        number = {"type": "number", "minimum": self.low, "maximum": self.high}
         return {"type": "array", "items": number, "minItems": self.size, "maxItems": self.size}
 
 
@@ -139,6 +193,22 @@ Range = Annotated[
     tuple[Metres, Metres],
     _Row(2, "a list of two numbers in m, the lowest first (equal ends fix the value)", ascending=True),
 ]
+PlanePoint = Annotated[tuple[Metres, Metres], _Row(2, "a list of two numbers [x, y]: metres east and north")]
+Turn = Annotated[
+    tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],
+    _Row(3, "a list of three angles in degrees [roll, pitch, yaw]", low=-360.0, high=360.0),
+]
+SemiAxes = Annotated[
+    tuple[ErrorMetres, ErrorMetres, ErrorMetres],
+    _Row(3, "a list of three semi-axes in m [a, b, c]", low=0.0),
+]
+
+
+def power_w(watts: float | None, dbm: float | None) -> float | None:
+    """Returns a power however it was stated [W], or None where neither unit is given."""
+    if watts is not None:
+        return watts
+    return None if dbm is None else watts_from_dbm(dbm)
 
 
 def watts_from_dbm(power_dbm: float) -> float:

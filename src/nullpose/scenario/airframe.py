@@ -1,0 +1,95 @@
+"""Which antenna axes a vehicle reaches."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from nullpose.scenario.choice import Choice
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import MountDegrees, TiltDegrees
+
+__all__ = ["Airframe"]
+
+PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexarotor": 30.0}
+"""Largest tilt of each airframe that has a name [deg]."""
+
+_Preset = Annotated[
+    Literal["omnidirectional", "level", "fixed-tilt-hexarotor"],
+    Choice("an airframe that has a name", tuple(PRESET_TILTS_DEG)),
+]
+
+
+class Airframe(Section):
+    """How far the vehicle can tilt, and how the dipole is mounted on it.
+
+    A dipole mounted at an angle a from the body's vertical, on a vehicle that tilts by at most t in any
+    direction and yaws freely, reaches exactly the axes whose angle from the vertical lies in
+    ``[max(0, a - t), min(90 deg, a + t)]``, an elevation band.
+
+    Args:
+        preset: an airframe by name: omnidirectional (tilts by up to 180 degrees), level (0) or
+            fixed-tilt-hexarotor (30); or else
+        tilt_max_deg: largest angle between the body's vertical and the world's [deg].
+        mount_deg: angle between the dipole and the body's vertical [deg].
+    """
+
+    header: ClassVar[str] = "a table headed [airframe]"
+    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("preset", "tilt_max_deg"),)
+    unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
+
+    preset: _Preset | None = Field(
+        default=None,
+        description="An airframe by name: omnidirectional (tilts by up to 180 degrees), level (0 degrees) or "
+        "fixed-tilt-hexarotor (30 degrees). Either this or tilt_max_deg.",
+        examples=["level"],
+    )
+    tilt_max_deg: TiltDegrees | None = Field(
+        default=None,
+        description="Largest tilt of the vehicle from level, in degrees. Either this or preset.",
+        examples=[10.0],
+    )
+    mount_deg: MountDegrees = Field(
+        default=0.0,
+        description="Angle between the dipole and the body's vertical, in degrees: 0 upright, 90 flat.",
+        examples=[90.0],
+    )
+
+    @property
+    def tilt_max_rad(self) -> float:
+        """Largest angle between the body's vertical and the world's, however it was stated [rad]."""
+        return math.radians(self._tilt_deg)
+
+    @property
+    def mount_rad(self) -> float:
+        """Angle between the dipole and the body's vertical [rad]."""
+        return math.radians(self.mount_deg)
+
+    @property
+    def axis_band(self) -> tuple[float, float]:
+        """Least and greatest squared vertical component ``u_z^2`` of the unit axes that are reached.
+
+        ``cos^2`` of the greatest and of the least angle from the vertical; exactly 0.0 at 90 degrees and 1.0
+        at 0, and two equal numbers where only one angle is reached.
+        """
+        greatest_deg = min(90.0, self.mount_deg + self._tilt_deg)
+        least_deg = max(0.0, self.mount_deg - self._tilt_deg)
+        return _cosine_squared(greatest_deg), _cosine_squared(least_deg)
+
+    @property
+    def is_omnidirectional(self) -> bool:
+        """Whether every axis is reached."""
+        return self.axis_band == (0.0, 1.0)
+
+    @property
+    def _tilt_deg(self) -> float:
+        if self.preset is not None:
+            return PRESET_TILTS_DEG[self.preset]
+        assert self.tilt_max_deg is not None, "validation lets exactly one of the two through"
+        return self.tilt_max_deg
+
+
+def _cosine_squared(angle_deg: float) -> float:
+    return 0.0 if angle_deg == 90.0 else math.cos(math.radians(angle_deg)) ** 2

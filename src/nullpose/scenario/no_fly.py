@@ -1,0 +1,143 @@
+"""Where the vehicle may not be: boxes, cylinders and prisms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import Field
+
+from nullpose.scenario.arrays import read_only
+from nullpose.scenario.faults import Place
+from nullpose.scenario.names import Label
+from nullpose.scenario.polygon import Polygon, area_m2, depth_m
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import PlanePoint, RadiusMetres, Range
+
+__all__ = ["NoFlyZone"]
+
+_SHAPES: dict[str, tuple[str, ...]] = {
+    "box": ("x_m", "y_m"),
+    "cylinder": ("centre_m", "radius_m"),
+    "polygon": ("polygon_m",),
+}
+
+
+class NoFlyZone(Section):
+    """An upright solid that the vehicle may not enter; its border is allowed.
+
+    Exactly one shape is given: ``x_m`` and ``y_m``, or ``centre_m`` and ``radius_m``, or ``polygon_m``.
+
+    Args:
+        name: how results and overrides refer to it; an airspace names it by its place when left out.
+        x_m: westmost and eastmost position of a box [m].
+        y_m: southmost and northmost position of a box [m].
+        centre_m: east and north of the axis of a cylinder [m], (2,).
+        radius_m: radius of the cylinder [m].
+        polygon_m: vertices [east, north] of a polygon [m], in order around it; the last is joined to the
+            first.
+        altitude_m: lowest and highest altitude of the zone [m]; None for all altitudes.
+    """
+
+    header: ClassVar[str] = "a no-fly zone, in a table of its own headed [[airspace.no_fly]]"
+    letter: ClassVar[str] = "Z"
+
+    name: Label = Field(
+        default="",
+        description="Name, unique among the no-fly zones. Left out: Z1, Z2, ... by their place in the file.",
+    )
+    x_m: Range | None = Field(
+        default=None,
+        description="Range of a box towards the east, in metres: [west end, east end]. With y_m.",
+        examples=[[-20.0, 5.0]],
+    )
+    y_m: Range | None = Field(
+        default=None,
+        description="Range of a box towards the north, in metres: [south end, north end]. With x_m.",
+        examples=[[10.0, 40.0]],
+    )
+    centre_m: PlanePoint | None = Field(
+        default=None,
+        description="Centre of a cylinder, in metres: [east, north]. With radius_m.",
+        examples=[[17.0, 15.0]],
+    )
+    radius_m: RadiusMetres | None = Field(
+        default=None,
+        description="Radius of a cylinder, in metres. With centre_m.",
+        examples=[12.0],
+    )
+    polygon_m: Polygon | None = Field(
+        default=None,
+        description="Vertices of a polygon, in metres, in order around it: [[east, north], ...].",
+        examples=[[[0.0, 0.0], [20.0, 0.0], [10.0, 15.0]]],
+    )
+    altitude_m: Range | None = Field(
+        default=None,
+        description="Lowest and highest altitude of the zone, in metres: [low, high]. Left out: "
+        "all altitudes.",
+        examples=[[0.0, 20.0]],
+    )
+
+    @property
+    def shape(self) -> Literal["box", "cylinder", "polygon"]:
+        """Which of the three shapes it has."""
+        if self.polygon_m is not None:
+            return "polygon"
+        return "box" if self.centre_m is None else "cylinder"
+
+    @cached_property
+    def outline_m(self) -> NDArray[np.float64]:
+        """Vertices of a box or polygon seen from above [m], (n, 2), counter-clockwise; none of a cylinder."""
+        if self.x_m is not None and self.y_m is not None:
+            (west, east), (south, north) = self.x_m, self.y_m
+            return read_only([(west, south), (east, south), (east, north), (west, north)], (4, 2))
+        vertices_m = np.asarray(self.polygon_m or (), dtype=np.float64).reshape(-1, 2)
+        clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
+        return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
+
+    @property
+    def floor_m(self) -> float:
+        """Lowest altitude of the zone [m]; minus infinity for all altitudes."""
+        return -math.inf if self.altitude_m is None else self.altitude_m[0]
+
+    @property
+    def ceiling_m(self) -> float:
+        """Highest altitude of the zone [m]; infinity for all altitudes."""
+        return math.inf if self.altitude_m is None else self.altitude_m[1]
+
+    def depth_m(self, position_m: ArrayLike) -> NDArray[np.float64]:
+        """Returns how far each position is inside the zone [m]; 0 on its border, below 0 outside.
+
+        Inside it is the distance to the nearest wall, floor or ceiling.
+
+        Args:
+            position_m: positions [m], (..., 3).
+        """
+        position = np.asarray(position_m, dtype=np.float64)
+        if self.centre_m is not None and self.radius_m is not None:
+            sideways = self.radius_m - np.linalg.norm(position[..., :2] - self.centre_m, axis=-1)
+        else:
+            sideways = depth_m(position[..., :2], self.outline_m)
+        height = position[..., 2]
+        return np.asarray(np.minimum(sideways, np.minimum(height - self.floor_m, self.ceiling_m - height)))
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table: no shape, several, or half of one."""
+        yield from super().cross_faults(data)
+        given = {shape: [key for key in keys if data.get(key) is not None] for shape, keys in _SHAPES.items()}
+        begun = [shape for shape, keys in given.items() if keys]
+        allowed = "x_m and y_m, or centre_m and radius_m, or polygon_m"
+        if not begun:
+            yield (), f"no shape is given, exactly one must be: add {allowed}"
+        elif len(begun) > 1:
+            keys = ", ".join(key for shape in begun for key in given[shape])
+            yield (), f"{keys} are given, exactly one shape is allowed: {allowed}; remove the others"
+        else:
+            for key in _SHAPES[begun[0]]:
+                if key not in given[begun[0]]:
+                    yield (), f"{given[begun[0]][0]} is given without {key}; add {key}"

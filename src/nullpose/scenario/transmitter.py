@@ -1,0 +1,42 @@
+"""What the vehicle sends when the drone transmits."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import DecibelMilliwatts, Watts, power_w
+
+__all__ = ["Transmitter"]
+
+
+class Transmitter(Section):
+    """The drone's own transmit power, for the downlink.
+
+    Args:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+    """
+
+    header: ClassVar[str] = "a table headed [transmitter]"
+    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("power_w", "power_dbm"),)
+
+    power_w: Watts | None = Field(
+        default=None,
+        description="Transmit power of the drone in watts. Either this or power_dbm.",
+        examples=[1.0],
+    )
+    power_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Transmit power of the drone in dBm. Either this or power_w.",
+        examples=[20.0],
+    )
+
+    @property
+    def transmit_power_w(self) -> float:
+        """Transmit power, however it was stated [W]."""
+        power = power_w(self.power_w, self.power_dbm)
+        assert power is not None, "validation lets exactly one of the two through"
+        return power
