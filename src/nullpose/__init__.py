@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         SolveError,
         UsageError,
     )
-    from nullpose.physics import Link, Pose, evaluate, min_sinr
+    from nullpose.physics import Link, Pose, evaluate, min_margin, min_secrecy_rate, min_sinr
     from nullpose.scenario import (
         Airframe,
         Airspace,
@@ -73,6 +73,8 @@ __all__ = [
     "evaluate",
     "json_schema",
     "load",
+    "min_margin",
+    "min_secrecy_rate",
     "min_sinr",
     "solve",
     "sweep",
@@ -87,7 +89,7 @@ _ROOMS = {
         "SolveError",
         "UsageError",
     ),
-    "nullpose.physics": ("Link", "Pose", "evaluate", "min_sinr"),
+    "nullpose.physics": ("Link", "Pose", "evaluate", "min_margin", "min_secrecy_rate", "min_sinr"),
     "nullpose.scenario": (
         "Airframe",
         "Airspace",

@@ -4,15 +4,17 @@ Every number that nullpose reports is evaluated here from the reported pose.
 """
 
 from nullpose.physics.decibel import from_db, to_db
-from nullpose.physics.evaluate import Link, evaluate, min_sinr
+from nullpose.physics.evaluate import Link, evaluate, min_margin, min_secrecy_rate, min_sinr
 from nullpose.physics.gain import antenna_gain, elevation_cosine
 from nullpose.physics.maximum_gain import (
     maximum_gain_axis,
     maximum_gain_sinr,
     maximum_gain_sinr_as_printed,
 )
+from nullpose.physics.objective import margin, objective_value
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
+from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
@@ -22,15 +24,22 @@ __all__ = [
     "antenna_axis",
     "antenna_gain",
     "attitude_from_axis",
+    "eavesdropper_snr",
     "elevation_cosine",
     "evaluate",
     "from_db",
+    "margin",
     "maximum_gain_axis",
     "maximum_gain_sinr",
     "maximum_gain_sinr_as_printed",
+    "min_margin",
+    "min_secrecy_rate",
     "min_sinr",
+    "node_snr",
+    "objective_value",
     "received_power_w",
     "rotation_world_from_body",
+    "secrecy_rate",
     "sinr",
     "to_db",
     "zero_interference_axis",

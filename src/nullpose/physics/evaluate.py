@@ -7,40 +7,60 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.physics.decibel import to_db
+from nullpose.physics.objective import margin
 from nullpose.physics.pose import Pose
+from nullpose.physics.secrecy import node_snr, secrecy_rate
 from nullpose.physics.sinr import sinr
 from nullpose.scenario import Scenario
 
-__all__ = ["Link", "evaluate", "min_sinr"]
+__all__ = ["Link", "evaluate", "min_margin", "min_secrecy_rate", "min_sinr"]
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One node's link to the drone.
+    """One node's link with the drone.
 
     Args:
         node: the node's name.
-        sinr: signal to interference-plus-noise ratio (paper eq. 2.1), a power ratio.
+        sinr: signal to interference-plus-noise ratio, a power ratio: at the drone (paper eq. 2.1), or at the
+            node where the scenario's objective is the secrecy rate.
         sinr_db: the same in dB; minus infinity where the null points at the node.
+        margin: the SINR over the node's weight or required SINR, a power ratio; None where no node of the
+            scenario states one.
+        margin_db: the same in dB.
+        secrecy_rate_bps_hz: the secrecy rate, bits/s/Hz; None with any other objective.
     """
 
     node: str
     sinr: float
     sinr_db: float
+    margin: float | None = None
+    margin_db: float | None = None
+    secrecy_rate_bps_hz: float | None = None
 
 
 def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]:
     """Return every node's link at a pose, in the scenario's order (paper eqs. 1.1 to 2.1).
 
     Args:
-        scenario: nodes, jammers and receiver.
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
         pose: where the drone is and how it is turned.
     """
-    ratios = sinr(scenario, pose.position_m, pose.antenna_axis)
-    ratios_db = to_db(ratios)
+    at = (scenario, pose.position_m, pose.antenna_axis)
+    secret = scenario.objective == "secrecy-rate"
+    ratios = node_snr(*at) if secret else sinr(*at)
+    margins = margin(*at) if scenario.has_margins else None
+    rates = secrecy_rate(*at) if secret else None
     return tuple(
-        Link(node=name, sinr=float(ratio), sinr_db=float(ratio_db))
-        for name, ratio, ratio_db in zip(scenario.node_names, ratios, ratios_db, strict=True)
+        Link(
+            node=name,
+            sinr=float(ratios[i]),
+            sinr_db=float(to_db(ratios[i])),
+            margin=None if margins is None else float(margins[i]),
+            margin_db=None if margins is None else float(to_db(margins[i])),
+            secrecy_rate_bps_hz=None if rates is None else float(rates[i]),
+        )
+        for i, name in enumerate(scenario.node_names)
     )
 
 
@@ -52,3 +72,26 @@ def min_sinr(scenario: Scenario, pose: Pose) -> float:
         pose: where the drone is and how it is turned.
     """
     return float(np.min(sinr(scenario, pose.position_m, pose.antenna_axis)))
+
+
+def min_margin(scenario: Scenario, pose: Pose) -> float:
+    """Return the smallest margin over the nodes at a pose: at least 1 where every requirement is met.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        pose: where the drone is and how it is turned.
+    """
+    return float(np.min(margin(scenario, pose.position_m, pose.antenna_axis)))
+
+
+def min_secrecy_rate(scenario: Scenario, pose: Pose) -> float:
+    """Return the smallest secrecy rate over the nodes at a pose, bits/s/Hz, at least 0.
+
+    Args:
+        scenario: nodes, eavesdroppers, receiver and transmitter.
+        pose: where the drone is and how it is turned.
+
+    Raises:
+        ValueError: the scenario has no transmitter.
+    """
+    return float(np.min(secrecy_rate(scenario, pose.position_m, pose.antenna_axis)))

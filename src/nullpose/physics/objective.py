@@ -1,0 +1,47 @@
+"""What a scenario asks to be made as large as it can be."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.secrecy import secrecy_rate
+from nullpose.physics.sinr import sinr
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = ["margin", "objective_value"]
+
+
+def margin(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the margin of every node: its SINR over its weight or over the SINR that it requires.
+
+    ``Gamma_i / w_i``; 1 is a requirement just met. The SINR itself for a node that states neither.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    return np.asarray(sinr(scenario, position_m, axis) / scenario.node_required_sinr)
+
+
+def objective_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return what the scenario asks to be made as large as it can be, at every pose.
+
+    The smallest margin over the nodes, which is the smallest SINR (paper eq. 2.2) where no node states a
+    weight or a requirement; or the smallest secrecy rate with objective "secrecy-rate".
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one dipole, not an array.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(...)``: power ratios, or bits/s/Hz.
+    """
+    of_nodes = secrecy_rate if scenario.objective == "secrecy-rate" else margin
+    return np.asarray(np.min(of_nodes(scenario, position_m, axis), axis=-1))

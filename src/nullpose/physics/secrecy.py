@@ -1,0 +1,88 @@
+"""The drone transmits: what nodes and eavesdroppers receive, and the rate that stays secret."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.sinr import received_power_w
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = ["eavesdropper_snr", "node_snr", "secrecy_rate"]
+
+
+def _snr(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: FloatArray, noise_w: FloatArray
+) -> FloatArray:
+    if scenario.transmitter is None:
+        raise ValueError("this scenario states no power of the drone; it needs a [transmitter]")
+    # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
+    powers_w = np.full(len(points_m), scenario.transmitter.transmit_power_w)
+    g0 = scenario.receiver.reference_gain
+    return np.asarray(received_power_w(position_m, axis, points_m, powers_w, g0) / noise_w)
+
+
+def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the signal to noise ratio of the drone's signal at every node, jamming counted as noise.
+
+    ``SNR_k = g0 G(gamma_k) P / (d_k^2 sigma_k^2)``, with ``P`` the drone's power and ``sigma_k^2`` the noise
+    of the node's receiver plus the jamming there, which does not depend on the pose.
+
+    Source: paper eqs. 1.2 to 1.4, with drone and node changing roles.
+
+    Args:
+        scenario: nodes, jammers, receiver and transmitter.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+
+    Raises:
+        ValueError: the scenario has no transmitter.
+    """
+    return _snr(scenario, position_m, axis, scenario.node_positions_m, scenario.node_noise_w)
+
+
+def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the signal to noise ratio of the drone's signal at every eavesdropper.
+
+    As ``node_snr``, with the eavesdroppers' places and noise; jammers do not disturb them.
+
+    Args:
+        scenario: eavesdroppers, receiver and transmitter.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., n_eavesdroppers)``, power ratios.
+
+    Raises:
+        ValueError: the scenario has no transmitter.
+    """
+    return _snr(scenario, position_m, axis, scenario.eavesdropper_positions_m, scenario.eavesdropper_noise_w)
+
+
+def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the secrecy rate of every node: what it hears beyond what the best eavesdropper does.
+
+    ``C_k = max(0, log2(1 + SNR_k) - max_e log2(1 + SNR_e))``, evaluated as the logarithm of
+    ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number, which keeps its digits where both are alike.
+
+    Source: Gaussian wiretap channel (Leung-Yan-Cheong and Hellman, 1978), the stronger eavesdropper counting.
+
+    Args:
+        scenario: nodes, eavesdroppers, receiver and transmitter.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, bits/s/Hz, at least 0.
+
+    Raises:
+        ValueError: the scenario has no transmitter.
+    """
+    wanted = node_snr(scenario, position_m, axis)
+    overheard = np.max(eavesdropper_snr(scenario, position_m, axis), axis=-1, keepdims=True, initial=0.0)
+    return np.asarray(np.log1p(np.maximum(0.0, (wanted - overheard) / (1.0 + overheard))) / np.log(2.0))
