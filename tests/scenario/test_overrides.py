@@ -154,7 +154,7 @@ def test_names_that_need_quotes() -> None:
         ("jammers.N.power_w", "jammers has no member N, it has [0] M", "jammers.M.power_w"),
         ("jammers[1].power_w", "jammers has no member [1], it has [0] M", "jammers[0].power_w"),
         ("nodes.S3.power_w", "it has [0] S1, [1] S2", "nodes.S1.power_w"),
-        ("nodes.S1.power", "the keys here are name, position_m, power_w, power_dbm", "nodes.S1.power_w"),
+        ("nodes.S1.power", "the keys here are name, position_m, lat_deg, lon_deg, alt_m", "nodes.S1.power_w"),
         ("airspace.keepout", "the keys here are altitude_m, x_m, y_m, keep_out_m", "airspace.keep_out_m"),
         ("receiver[0]", "no such key", "receiver"),
         ("airspace.altitude_m[2]", "altitude_m has the members [0] to [1]", "airspace.altitude_m"),

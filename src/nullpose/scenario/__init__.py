@@ -7,6 +7,7 @@ from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, N
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
 from nullpose.scenario.no_fly import NoFlyZone
+from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.scenario import Scenario
@@ -21,6 +22,7 @@ __all__ = [
     "Jammer",
     "NoFlyZone",
     "Node",
+    "Origin",
     "Override",
     "Receiver",
     "Scenario",

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
 from pydantic import Field
 
+from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
+from nullpose.scenario.origin import GEODETIC_KEYS, Altitude, Latitude, Longitude
 from nullpose.scenario.section import Section
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
@@ -18,6 +21,7 @@ from nullpose.scenario.units import (
     power_w,
     ratio_from_db,
 )
+from nullpose.scenario.wording import nearest
 
 __all__ = ["Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
 
@@ -28,8 +32,11 @@ class GroundPoint(Section):
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
+        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
+            position_m; None if the place was not stated so.
     """
 
+    ways: ClassVar[tuple[tuple[str, ...], ...]] = (("position_m",), GEODETIC_KEYS)
     letter: ClassVar[str]
     """The letter of names given by place: S1, S2 and so on for nodes, M1, M2 for jammers."""
 
@@ -39,9 +46,40 @@ class GroundPoint(Section):
         "M1, M2, ... for jammers and E1, E2, ... for eavesdroppers, by their place in the file.",
     )
     position_m: Position = Field(
-        description="Position in metres from the origin: [east, north, up].",
+        description="Position in metres from the origin: [east, north, up]. Either this, or lat_deg, lon_deg "
+        "and alt_m.",
         examples=[[17.0, 15.0, 4.0]],
     )
+    lat_deg: Latitude | None = Field(
+        default=None,
+        description="Latitude in degrees (WGS-84), north positive; with lon_deg and alt_m in place of "
+        "position_m, in a scenario with an [origin].",
+        examples=[50.001],
+    )
+    lon_deg: Longitude | None = Field(
+        default=None,
+        description="Longitude in degrees (WGS-84), east positive; with lat_deg and alt_m.",
+        examples=[14.502],
+    )
+    alt_m: Altitude | None = Field(
+        default=None,
+        description="Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.",
+        examples=[252.0],
+    )
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table, as far as they can be judged."""
+        yield from super().cross_faults(data)
+        given = [key for key in GEODETIC_KEYS if data.get(key) is not None]
+        absent = [key for key in GEODETIC_KEYS if key not in given]
+        if any(nearest(key, absent) for key in data if key not in cls.model_fields):
+            return  # a misspelt key is told already
+        if given and absent:
+            yield (), f"{' and '.join(given)} without {' and '.join(absent)}; give all three, or position_m"
+        elif given and data.get("position_m") is None:
+            # Within a scenario, its origin has given the point a position by now.
+            yield (), "lat_deg, lon_deg and alt_m need the [origin] of a scenario; give position_m here"
 
 
 class Emitter(GroundPoint):
@@ -50,6 +88,8 @@ class Emitter(GroundPoint):
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
+        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
+            position_m; None if the place was not stated so.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
@@ -81,6 +121,8 @@ class Node(Emitter):
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
+        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
+            position_m; None if the place was not stated so.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
         weight: the node's margin is its SINR over this; or else
@@ -150,6 +192,8 @@ class Jammer(Uncertain, Emitter):
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
+        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
+            position_m; None if the place was not stated so.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
@@ -166,6 +210,8 @@ class Eavesdropper(Uncertain, GroundPoint):
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
+        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
+            position_m; None if the place was not stated so.
         noise_w: its receiver's noise [W]; or else
         noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.

@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described
 
-__all__ = ["Label", "Title", "is_unnamed", "named", "numbered"]
+__all__ = ["FileOnly", "Label", "Title", "is_unnamed", "named", "numbered"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +42,20 @@ class _Text:
         return {"type": "string"} if self.may_be_empty else {"type": "string", "minLength": 1}
 
 
+@dataclass(frozen=True, slots=True)
+class _FileName(_Text):
+    """The name of a file that is read before the scenario is built, as metadata of an annotated str."""
+
+    def read(self, value: object) -> str:
+        raise rejection(
+            f"got {described(value)}, which only a scenario file may name, since it is read together with it"
+        )
+
+
 Title = Annotated[str, _Text(may_be_empty=True)]
 """A text on one line, possibly empty."""
+FileOnly = Annotated[str, _FileName(may_be_empty=False)]
+"""The name of a file that stands for a part of a scenario file."""
 Label = Annotated[str, _Text(may_be_empty=False)]
 """A name by which results and overrides refer to a node or jammer."""
 

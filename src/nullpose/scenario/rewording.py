@@ -20,6 +20,7 @@ def table_faults(
     fields: Mapping[str, FieldInfo],
     pairs: Sequence[tuple[str, str]],
     alternatives: Sequence[tuple[str, str]] = (),
+    ways: Sequence[tuple[str, ...]] = (),
 ) -> list[InitErrorDetails]:
     """Returns the faults of one table, without those that only follow from a misspelt key.
 
@@ -29,6 +30,7 @@ def table_faults(
         fields: the fields that the table may have.
         pairs: keys of which exactly one is to be given.
         alternatives: keys of which at most one may be given.
+        ways: groups of keys that state one required thing; one group is to be given.
     """
     entries = error.errors(include_url=False) if error else []
     unknown = [str(entry["loc"][-1]) for entry in entries if entry["type"] == "extra_forbidden"]
@@ -42,7 +44,7 @@ def table_faults(
                 message = entry["msg"]
             case "extra_forbidden":
                 message = _unknown_key(str(place[-1]), absent, fields)
-            case "missing" if place[-1] in meant:
+            case "missing" if place[-1] in meant or _stated_otherwise(str(place[-1]), data, ways, meant):
                 continue
             case "missing":
                 message = f"missing; it must be given: {_expected(fields[str(place[-1])])}"
@@ -53,6 +55,16 @@ def table_faults(
         details.append(as_error_details(place, message, given))
     messages = [*_pair_faults(data, pairs, meant), *_alternative_faults(data, alternatives)]
     return details + [as_error_details((), message) for message in messages]
+
+
+def _stated_otherwise(
+    key: str, data: Mapping[str, object], ways: Sequence[tuple[str, ...]], meant: Collection[str]
+) -> bool:
+    """Returns whether a key of another way to state the same is given or, misspelt, meant."""
+    if not any(key in way for way in ways):
+        return False
+    others = [other for way in ways if key not in way for other in way]
+    return any(data.get(other) is not None or other in meant for other in others)
 
 
 def _unknown_key(key: str, absent: Collection[str], fields: Collection[str]) -> str:

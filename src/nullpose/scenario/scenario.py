@@ -19,7 +19,8 @@ from nullpose.scenario.crosscheck import cross_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
 from nullpose.scenario.members import Members
-from nullpose.scenario.names import Title
+from nullpose.scenario.names import FileOnly, Title
+from nullpose.scenario.origin import Origin, located, origin_faults
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_text import toml_text
@@ -40,12 +41,14 @@ class Scenario(Section):
         name: a title for tables and figures; may be empty.
         objective: what is made as large as it can be: "min-sinr", the smallest SINR (or margin) of the nodes
             that the drone hears; or "secrecy-rate", the smallest secrecy rate of the nodes that hear it.
+        origin: where on the Earth the frame's zero is, or None.
         airspace: where the vehicle may be.
         airframe: which antenna axes it reaches; None for all of them.
         array: several upright dipoles in place of the one, or None.
         receiver: its noise, the path gain at 1 m, and how well the vehicle holds a pose.
         transmitter: the drone's own power, with "secrecy-rate" only.
         nodes: the legitimate nodes, one or more.
+        nodes_from: only in files, in place of nodes: the file that lists them; None once it has been read.
         jammers: the jammers, none or more.
         eavesdroppers: who listens in, with "secrecy-rate" only.
 
@@ -55,6 +58,7 @@ class Scenario(Section):
 
     header: ClassVar[str] = "a table with the keys of a scenario file"
     unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers"})
+    ways: ClassVar[tuple[tuple[str, ...], ...]] = (("nodes",), ("nodes_from",))
 
     name: Title = Field(
         default="",
@@ -66,6 +70,17 @@ class Scenario(Section):
         description="What is made as large as it can be: min-sinr, the smallest SINR (or margin) of the "
         "nodes that the drone hears, or secrecy-rate, the smallest secrecy rate of the nodes that hear it.",
         examples=["secrecy-rate"],
+    )
+    nodes_from: FileOnly | None = Field(
+        default=None,
+        description="Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
+        "Either this or tables headed [[nodes]].",
+        examples=["nodes.geojson"],
+    )
+    origin: Origin | None = Field(
+        default=None,
+        description="A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
+        "Left out: nowhere in particular.",
     )
     airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
     airframe: Airframe | None = Field(
@@ -87,7 +102,7 @@ class Scenario(Section):
         "secrecy-rate only.",
     )
     nodes: Annotated[tuple[Node, ...], Members("nodes", Node.letter, at_least=1)] = Field(
-        description="Tables headed [[nodes]], one for each legitimate node; at least one."
+        description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
     )
     jammers: Annotated[tuple[Jammer, ...], Members("jammers", Jammer.letter)] = Field(
         default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
@@ -98,9 +113,16 @@ class Scenario(Section):
     )
 
     @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Returns the raw scenario with the positions of points that are stated by latitude and longitude."""
+        # Where the origin is at fault the scenario is refused, and for that fault alone.
+        return located(data, unknown_m=(0.0, 0.0, 0.0))
+
+    @classmethod
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between several values of the raw scenario, as far as they can be judged."""
-        return cross_faults(data)
+        yield from origin_faults(data)
+        yield from cross_faults(located(data))
 
     def to_toml(self) -> str:
         """Returns the text of a scenario file that loads as an equal scenario."""

@@ -26,6 +26,8 @@ class Section(BaseModel):
     """Keys of which exactly one is given, each pair being one quantity in two units."""
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Keys of which at most one is given."""
+    ways: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Groups of keys that state one required thing; one group is given whole."""
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
 
@@ -65,6 +67,11 @@ class Section(BaseModel):
         return value is None or (key in self.unstated and bool(value == default))
 
     @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Returns the raw table with what follows from its own values filled in."""
+        return data
+
+    @classmethod
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between several values of the raw table, as far as they can be judged."""
         return ()
@@ -78,10 +85,10 @@ class Section(BaseModel):
             raise rejection(f"got {described(data)}, must be {cls.header}")
         table, error = None, None
         try:
-            table = handler(data)
+            table = handler(cls.completed(data))
         except ValidationError as several:
             error = several
-        details = table_faults(error, data, cls.model_fields, cls.pairs, cls.alternatives)
+        details = table_faults(error, data, cls.model_fields, cls.pairs, cls.alternatives, cls.ways)
         details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]
         if table is None or details:
             raise collected(cls.__name__, details)
