@@ -5,12 +5,16 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario.listed_nodes import ListedNodes, NodesFileError
+from nullpose.scenario.nodes_file import KINDS, listed_nodes
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.wording import nearest
+from nullpose.scenario.wording import described, nearest
 
 __all__ = ["load"]
 
@@ -28,7 +32,7 @@ _HINTS = {
 
 
 def load(path: str | os.PathLike[str]) -> Scenario:
-    """Returns the scenario that a TOML file describes.
+    """Returns the scenario that a TOML file describes, with the nodes of the file that it may name.
 
     Args:
         path: the file.
@@ -38,9 +42,67 @@ def load(path: str | os.PathLike[str]) -> Scenario:
     """
     source = os.fspath(path)
     try:
-        return Scenario.from_dict(_tables(_text(source)), source)
+        tables = _tables(_text(source))
     except _UnusableFileError as error:
         raise ScenarioError([error.fault], source) from None
+    return _with_nodes_from(tables, source) if "nodes_from" in tables else Scenario.from_dict(tables, source)
+
+
+def _with_nodes_from(tables: dict[str, Any], source: str) -> Scenario:
+    """Returns the scenario whose nodes another file lists; faults name the place in either file."""
+    file = tables["nodes_from"]
+    nodes, faults = None, []
+    try:
+        nodes = _nodes_from(file, Path(source).parent, tables)
+        faults += [_in_file(file, fault) for fault in nodes.faults]
+    except NodesFileError as error:
+        faults += [_in_file(file, fault) for fault in error.faults]
+    except _UnusableFileError as error:
+        faults.append(_in_file(file, error.fault) if error.fault.path else Fault("nodes_from", str(error)))
+    # The nodes take the place of the key, so that faults come in the order of the file.
+    whole = {("nodes" if key == "nodes_from" else key): value for key, value in tables.items()}
+    if nodes is not None:
+        whole["nodes"] = nodes.members
+    elif "nodes" not in tables:
+        del whole["nodes"]
+    try:
+        scenario = Scenario.from_dict(whole, source)
+    except ScenarioError as error:
+        if nodes is not None:
+            told = [nodes.retold(fault, file) for fault in error.faults]
+        else:
+            told = [fault for fault in error.faults if fault.path != "nodes" or "nodes" in tables]
+        raise ScenarioError([*faults, *(fault for fault in told if fault is not None)], source) from None
+    if faults:
+        raise ScenarioError(faults, source)
+    return scenario
+
+
+def _nodes_from(file: object, folder: Path, tables: Mapping[str, object]) -> ListedNodes:
+    if "nodes" in tables:
+        raise _UnusableFileError("both nodes and nodes_from are given, exactly one is allowed; remove either")
+    if not isinstance(file, str) or not file.strip():
+        raise _UnusableFileError(
+            f'got {described(file)}, must be the name of a GeoJSON or CSV file, as in "nodes.geojson"'
+        )
+    return listed_nodes(_text(str(folder / file), _NODES_FILE, folder), file)
+
+
+def _in_file(file: str, fault: Fault) -> Fault:
+    return Fault(f"{file}: {fault.path}" if fault.path else file, fault.message)
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """A kind of file: what it is called, what it is usually named, and how such names end."""
+
+    noun: str
+    usual_name: str
+    endings: tuple[str, ...]
+
+
+_SCENARIO_FILE = _Kind("a scenario file", "scenario.toml", (".toml",))
+_NODES_FILE = _Kind("a file of nodes", "nodes.geojson", tuple(KINDS))
 
 
 class _UnusableFileError(Exception):
@@ -49,15 +111,15 @@ class _UnusableFileError(Exception):
         super().__init__(message)
 
 
-def _text(path: str) -> str:
+def _text(path: str, kind: _Kind = _SCENARIO_FILE, base: Path = Path()) -> str:
+    """Returns a file's text; other files are suggested as seen from the base."""
     try:
         content = Path(path).read_bytes()
     except FileNotFoundError:
-        raise _UnusableFileError(f"there is no such file{_other_files(Path(path))}") from None
+        raise _UnusableFileError(f"there is no such file{_other_files(Path(path), kind, base)}") from None
     except IsADirectoryError:
-        raise _UnusableFileError(
-            f"this is a folder, must be a scenario file{_other_files(Path(path) / 'scenario.toml')}"
-        ) from None
+        others = _other_files(Path(path) / kind.usual_name, kind, base)
+        raise _UnusableFileError(f"this is a folder, must be {kind.noun}{others}") from None
     except OSError as error:
         raise _UnusableFileError(
             f"the file cannot be read ({(error.strerror or 'unknown reason').lower()}); check its name and "
@@ -76,17 +138,20 @@ def _text(path: str) -> str:
         ) from None
 
 
-def _other_files(path: Path) -> str:
+def _other_files(path: Path, kind: _Kind, base: Path) -> str:
     """Returns what to try instead of a file that is not there."""
     folder = path.parent
     if not folder.is_dir():
         return f", nor a folder {folder}; check the path"
     try:
-        names = sorted(entry.name for entry in folder.iterdir() if entry.suffix == ".toml")
+        names = sorted(entry.name for entry in folder.iterdir() if entry.suffix in kind.endings)
     except OSError:
         names = []
     guess = nearest(path.name, names) or (names[0] if len(names) == 1 else "")
-    return f"; did you mean {folder / guess}?" if guess else "; check the path"
+    if not guess:
+        return "; check the path"
+    seen = folder / guess
+    return f"; did you mean {seen.relative_to(base) if seen.is_relative_to(base) else seen}?"
 
 
 def _tables(text: str) -> dict[str, Any]:

@@ -15,7 +15,6 @@ from nullpose.scenario.wording import listed, nearest, printable
 __all__ = ["nodes_from_csv"]
 
 _LOCAL = ("x_m", "y_m", "z_m")
-_POWERS = ("power_w", "power_dbm")
 
 
 def nodes_from_csv(text: str) -> ListedNodes:
@@ -84,8 +83,6 @@ def _header_faults(header: Sequence[str]) -> Iterator[str]:
             meant = f'; did you mean "{guess}"?' if guess else ";"
             yield f'unknown column "{printable(column)}"{meant} the columns here are {listed(known)}'
     yield from _place_faults(header)
-    if not any(key in header for key in _POWERS):
-        yield f"there is no column of powers, must be {' or '.join(_POWERS)}"
 
 
 def _place_faults(header: Sequence[str]) -> Iterator[str]:
