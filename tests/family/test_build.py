@@ -98,7 +98,7 @@ def test_the_domain_is_the_airspace(random_scene: Callable) -> None:
     np.testing.assert_array_equal(boxed.low_m, [-5.0, 0.0, 10.0])
     np.testing.assert_array_equal(boxed.high_m, [60.0, 0.0, 40.0])
     assert boxed.keep_out_m == 2.5
-    low, high, centres, radius = boxed.domain
+    low, high, centres, radius = boxed.domain[:4]
     assert low is boxed.low_m
     assert high is boxed.high_m
     assert centres is boxed.keep_out_points_m

@@ -15,7 +15,17 @@ ARRAYS = [name for name in FIELDS if name != "keep_out_m"]
 @pytest.fixture(scope="module")
 def family(random_scene: Callable) -> Family:
     """Returns a family of three nodes and two jammers in which every array has a number."""
-    return build_family(random_scene(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
+    plain = build_family(random_scene(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
+    return dataclasses.replace(
+        plain,
+        turn=np.tile(np.eye(3), (len(plain.points_m), 1, 1)),
+        piece_start=np.array([0, 1]),
+        piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
+        zone_kind=np.array([1]),
+        zone_start=np.array([0, 1]),
+        zone_edges=np.array([[3.0, 4.0, 2.0, 0.0]]),
+        zone_range_m=np.array([[-5.0, 60.0]]),
+    )
 
 
 @pytest.mark.parametrize("name", ARRAYS)
@@ -44,8 +54,8 @@ def test_arrays_are_copies(family: Family) -> None:
 
 def test_what_kernels_take_is_the_family(family: Family) -> None:
     """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
-    assert len(family.arrays) == 9
-    for name, array in zip(FIELDS, family.arrays, strict=False):
+    assert len(family.arrays) == 10
+    for name, array in zip([*FIELDS[:9], "turn"], family.arrays, strict=True):
         assert array is getattr(family, name)
         assert array.flags.c_contiguous
 

@@ -1,4 +1,4 @@
-"""Which axes a scheme may use at each position."""
+"""Which axes a scheme or an airframe may use at each position."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ AxisFieldArrays: TypeAlias = tuple[int, NDArray[np.float64], NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisField:
-    """A free axis, or one that the position determines: ``u(p) = offset + matrix p``, of any length.
+    """A free axis, perhaps within a band of elevations, or one that the position determines.
+
+    The latter is ``u(p) = offset + matrix p``, of any length. A band holds the unit axes with ``c_lo <= u_z^2
+    <= c_hi``: what a dipole mounted at an angle from the body's vertical reaches on a vehicle that can tilt
+    by so much, its yaw free.
 
     The paper's three fixed orientations are all affine in the position once their length is left out, which
     the ratios do not depend on: vertical ``e3``; zero interference ``m - p``; maximum gain
@@ -25,11 +29,13 @@ class AxisField:
         is_free: whether the axis is to be chosen; the arrays are then zero.
         offset: shape ``(3,)``.
         matrix: shape ``(3, 3)``.
+        band: least and greatest ``u_z^2`` of a free axis.
     """
 
     is_free: bool
     offset: NDArray[np.float64]
     matrix: NDArray[np.float64]
+    band: tuple[float, float] = (0.0, 1.0)
 
     def __post_init__(self) -> None:
         for name, shape in (("offset", (3,)), ("matrix", (3, 3))):
@@ -38,11 +44,29 @@ class AxisField:
                 raise ValueError(f"axis field {name} must be finite, of shape {shape}; given {array!r}")
             array.flags.writeable = False
             object.__setattr__(self, name, array)
+        low, high = self.band
+        if not 0.0 <= low <= high <= 1.0:
+            raise ValueError(f"axis field band must be 0 <= low <= high <= 1; given {self.band!r}")
 
     @classmethod
     def free(cls) -> AxisField:
         """Return the field that leaves the axis to the solver."""
         return cls(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
+
+    @classmethod
+    def within(cls, least: float, greatest: float) -> AxisField:
+        """Return the field of all axes with ``least <= u_z^2 <= greatest``, the vertical one if both are 1.
+
+        Args:
+            least: smallest squared vertical component of a unit axis.
+            greatest: largest.
+
+        Raises:
+            ValueError: not ``0 <= least <= greatest <= 1``.
+        """
+        if least == greatest == 1.0:
+            return cls.vertical()
+        return cls(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)), band=(least, greatest))
 
     @classmethod
     def affine(cls, offset: ArrayLike, matrix: ArrayLike) -> AxisField:
@@ -85,5 +109,16 @@ class AxisField:
 
     @property
     def arrays(self) -> AxisFieldArrays:
-        """The field as the kernels take it: (0 free or 1 affine, offset, matrix)."""
-        return (0 if self.is_free else 1, self.offset, self.matrix)
+        """The field as the kernels take it: (kind, offset, matrix).
+
+        The kind is 0 for any axis, 1 for an affine one, 2 for a band, whose ends stand in place of the
+        offset's first two numbers, and 3 for a band whose ends are one, a cone.
+        """
+        low, high = self.band
+        if not self.is_free:
+            return (1, self.offset, self.matrix)
+        if (low, high) == (0.0, 1.0):
+            return (0, self.offset, self.matrix)
+        ends = np.array([low, high, 0.0])
+        ends.flags.writeable = False  # as the offset is: kernels are compiled for one kind of array
+        return (3 if low == high else 2, ends, self.matrix)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import TypeAlias
 
 import numpy as np
@@ -14,9 +14,29 @@ __all__ = ["DomainArrays", "Family", "FamilyArrays"]
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 FamilyArrays: TypeAlias = tuple[
-    FloatArray, FloatArray, FloatArray, IntArray, IntArray, FloatArray, IntArray, IntArray, FloatArray
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    IntArray,
+    IntArray,
+    FloatArray,
+    IntArray,
+    IntArray,
+    FloatArray,
+    FloatArray,
 ]
-DomainArrays: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, float]
+DomainArrays: TypeAlias = tuple[
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    float,
+    IntArray,
+    FloatArray,
+    IntArray,
+    IntArray,
+    FloatArray,
+    FloatArray,
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,6 +63,16 @@ class Family:
         high_m: (3,) highest position.
         keep_out_points_m: (q, 3) centres of the balls that positions must stay out of and could reach.
         keep_out_m: their radius.
+        turn: (m, 3, 3) rotations: point j sees the axis ``turn[j] u``; or (0, 3, 3), where all see u itself.
+        piece_start: (c + 1,) bounds of each convex forbidden piece's sides. A position is outside a piece if
+            it is on the outer side of one of them.
+        piece_sides: (s, 5) sides: (0, a, b) with ``a.p >= b`` outside, a of unit length, or (1, x, y, 0, r)
+            outside the upright cylinder of radius r.
+        zone_kind: (z,) 0 a forbidden polygon, 1 a forbidden cylinder, 2 a polygon to stay in; the pieces are
+            these zones cut into convex parts.
+        zone_start: (z + 1,) bounds of each zone's edges.
+        zone_edges: (e, 4) an edge's ends (x1, y1, x2, y2), the polygons counter-clockwise; or (x, y, r, 0).
+        zone_range_m: (z, 2) lowest and highest altitude of each zone.
     """
 
     points_m: FloatArray
@@ -58,14 +88,21 @@ class Family:
     high_m: FloatArray
     keep_out_points_m: FloatArray
     keep_out_m: float
+    turn: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    piece_start: IntArray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    piece_sides: FloatArray = field(default_factory=lambda: np.zeros((0, 5)))
+    zone_kind: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    zone_start: IntArray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    zone_edges: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+    zone_range_m: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
+        for one in fields(self):
+            value = getattr(self, one.name)
             if isinstance(value, np.ndarray):
                 array = np.ascontiguousarray(value).copy()
                 array.flags.writeable = False
-                object.__setattr__(self, field.name, array)
+                object.__setattr__(self, one.name, array)
 
     @property
     def arrays(self) -> FamilyArrays:
@@ -80,19 +117,31 @@ class Family:
             self.denominator_start,
             self.denominator_point,
             self.denominator_weight,
+            self.turn,
         )
 
     @property
     def domain(self) -> DomainArrays:
-        """The positions as the kernels take them: (low, high, keep-out points, keep-out radius)."""
-        return (self.low_m, self.high_m, self.keep_out_points_m, self.keep_out_m)
+        """The positions as the kernels take them: box, keep-out balls, convex pieces, zones."""
+        return (
+            self.low_m,
+            self.high_m,
+            self.keep_out_points_m,
+            self.keep_out_m,
+            self.piece_start,
+            self.piece_sides,
+            self.zone_kind,
+            self.zone_start,
+            self.zone_edges,
+            self.zone_range_m,
+        )
 
     @property
     def digest(self) -> str:
         """SHA-256 of every number in the family: two families with the same digest are the same problem."""
         sha = hashlib.sha256()
-        for field in fields(self):
-            value = np.ascontiguousarray(getattr(self, field.name))
-            sha.update(f"{field.name}:{value.dtype.str}:{value.shape};".encode())
+        for one in fields(self):
+            value = np.ascontiguousarray(getattr(self, one.name))
+            sha.update(f"{one.name}:{value.dtype.str}:{value.shape};".encode())
             sha.update(value.tobytes())
         return sha.hexdigest()

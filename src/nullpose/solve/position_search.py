@@ -42,7 +42,7 @@ def search_positions(
     """
     from nullpose.solve.kernels.search import cut_box, push_out
 
-    low, high, keep_points, keep_radius = family.domain
+    low, high, keep_points, keep_radius = family.domain[:4]
     evaluations = 0
 
     def inside(position: FloatArray) -> bool:
@@ -54,7 +54,7 @@ def search_positions(
         evaluations += 1
         return -objective(position) if inside(position) else math.inf
 
-    starts = [place for place in landmarks(family) if push_out(place, low, high, keep_points, keep_radius)]
+    starts = [place for place in landmarks(family) if push_out(place, family.domain)]
     best_value, best_position = max(((-cost(place), place) for place in starts), key=lambda pair: pair[0])
     box_low, box_high = np.empty(3), np.empty(3)
     if math.isfinite(best_value):
@@ -65,7 +65,7 @@ def search_positions(
     draws[::2, 2] = 0.0  # the optimum is often on the floor
     for draw in draws:
         place = box_low + draw * (box_high - box_low)
-        if push_out(place, low, high, keep_points, keep_radius):
+        if push_out(place, family.domain):
             starts.append(place)
     ranked = sorted(starts, key=cost)[:_POLISHED]
     span = float(np.max(box_high - box_low))

@@ -153,10 +153,10 @@ class _Run:
         from nullpose.solve.kernels.links import min_log_ratio
         from nullpose.solve.kernels.polish import polish
 
-        ratios = len(self.family.numerator_point)
+        ratios, groups = len(self.family.numerator_point), len(self.family.denominator_isotropic)
         multipliers = np.empty(ratios)
         start_value = float(
-            min_log_ratio(self.family.arrays, position_m, axis, np.empty(1), np.empty(ratios))
+            min_log_ratio(self.family.arrays, position_m, axis, np.empty(groups), np.empty(ratios))
         )
         p, u = position_m.copy(), axis.copy()
         value, steps = polish(

@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nullpose.family import AxisField, Family, build_family
-from nullpose.solve.kernels.chart import chart, domain_slacks, move, nearest_node, reduce_hessian, turning
+from nullpose.solve.kernels.chart import (
+    chart,
+    domain_slacks,
+    move,
+    nearest_node,
+    reduce_hessian,
+    slack_count,
+    turning,
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -76,13 +84,14 @@ def test_without_jammers_nothing_turns(scene: Callable) -> None:
 
 
 def test_slacks_are_distances_to_the_constraints(paper: Callable) -> None:
-    """Faces by their distance, infinite where unbounded; balls by the difference of squares."""
+    """Faces by their distance, infinite where unbounded; balls and a band's ends by differences of squares."""
     family = build_family(paper(1.0, keep_out_m=9.0))
-    slacks = np.empty(6 + len(family.keep_out_points_m))
-    p = np.array([3.0, 4.0, 12.0])
-    domain_slacks(p, family.domain, slacks)
+    slacks = np.empty(slack_count(family.domain))
+    p, u = np.array([3.0, 4.0, 12.0]), np.array([0.6, 0.0, 0.8])
+    band = AxisField.within(0.25, 0.75)
+    domain_slacks(p, u, family.domain, band.arrays, np.empty(0, dtype=np.int64), slacks)
     balls = np.sum((family.keep_out_points_m - p) ** 2, axis=1) - 81.0
-    np.testing.assert_allclose(slacks, [np.inf, np.inf, 4.0, np.inf, np.inf, 18.0, *balls])
+    np.testing.assert_allclose(slacks, [np.inf, np.inf, 4.0, np.inf, np.inf, 18.0, *balls, 0.39, 0.11])
     assert len(balls) == 3
     assert nearest_node(family.arrays, p) == pytest.approx(13.0, abs=1e-15)
 

@@ -7,6 +7,7 @@ from nullpose.family import AxisField
 from nullpose.solve.kernels.enclosure import JET, axis_clearance, link_jet
 
 POINT = np.array([[17.0, 15.0, 4.0]])
+UNTURNED = np.zeros((0, 3, 3))
 FIELDS = {
     "vertical": AxisField.vertical(),
     "null on the point itself's neighbour": AxisField.towards([-5.0, 30.0, 2.0]),
@@ -35,7 +36,7 @@ def test_value_and_gradient_at_the_centre(field: AxisField) -> None:
     """They agree with the definition and its central differences."""
     jet, step = np.empty(JET), 1e-4
     for centre, half in boxes(1, 30):
-        link_jet(POINT, 0, field.arrays, centre, half, jet)
+        link_jet(POINT, UNTURNED, 0, field.arrays, centre, half, jet)
         assert jet[0] == pytest.approx(link(field, centre), rel=1e-9, abs=1e-15)
         slopes = [
             (link(field, centre + step * e) - link(field, centre - step * e)) / (2 * step) for e in np.eye(3)
@@ -49,7 +50,7 @@ def test_the_box_is_enclosed(field: AxisField) -> None:
     rng = np.random.default_rng(2)
     jet, step = np.empty(JET), 1e-3
     for centre, half in boxes(3, 40):
-        link_jet(POINT, 0, field.arrays, centre, half, jet)
+        link_jet(POINT, UNTURNED, 0, field.arrays, centre, half, jet)
         for _ in range(6):
             p = centre + rng.uniform(-1.0, 1.0, size=3) * half
             assert jet[16] * (1.0 - 1e-12) <= link(field, p) <= jet[17] * (1.0 + 1e-12)
@@ -66,7 +67,7 @@ def test_the_enclosure_tightens_with_the_box() -> None:
     jet = np.empty(JET)
     radii = []
     for scale in (1e-2, 5e-3):
-        link_jet(POINT, 0, FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale), jet)
+        link_jet(POINT, UNTURNED, 0, FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale), jet)
         radii.append(jet[10:16].copy())
     np.testing.assert_allclose(radii[0] / radii[1], 2.0, rtol=0.05)
 

@@ -10,6 +10,7 @@ from nullpose.solve.kernels.expansion import (
 )
 
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
+UNTURNED = np.zeros((0, 3, 3))
 FRAMES = [(WORLD, -1), (TOWARDS_POINT, 2)]
 
 
@@ -56,7 +57,9 @@ def test_expansion_encloses_the_forms(kind: int, anchor: int) -> None:
         frame = carried_frame(kind, anchor, centre, basis, p)
         for j in range(len(POINTS)):
             form, slopes = np.empty(6), np.empty((3, 6))
-            up, down = expand_point(POINTS, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
+            up, down = expand_point(
+                POINTS, UNTURNED, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes
+            )
             exact = frame.T @ link_matrix(POINTS[j] - p) @ frame
             linear = matrix_of(form + (p - centre) @ slopes)
             error = np.linalg.eigvalsh(exact - linear)

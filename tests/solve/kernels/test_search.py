@@ -87,6 +87,26 @@ def test_the_box_shrinks_as_the_level_rises(paper: Callable) -> None:
         assert np.all(inner_high <= high)
 
 
+def domain(low: np.ndarray, high: np.ndarray, centres: np.ndarray, radius: float) -> tuple[object, ...]:
+    """Returns a box without balls as the kernels take it, with keep-out balls of its own."""
+    family = Family(
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=low,
+        high_m=high,
+        keep_out_points_m=centres,
+        keep_out_m=radius,
+    )
+    return family.domain
+
+
 @given(seed=SEEDS, balls=st.integers(0, 4), radius=st.floats(0.5, 8.0))
 def test_a_push_ends_outside_the_balls(seed: int, balls: int, radius: float) -> None:
     """A position that could be pushed out lies in the box and outside every ball; a clear one stays put."""
@@ -96,7 +116,7 @@ def test_a_push_ends_outside_the_balls(seed: int, balls: int, radius: float) -> 
     for p in rng.uniform([-40.0, -40.0, 0.0], [40.0, 40.0, 25.0], (20, 3)):
         before = np.clip(p, low, high)
         clear = np.all(np.linalg.norm(centres - before, axis=1) >= 1.01 * radius)
-        pushed = push_out(p, low, high, centres, radius)
+        pushed = push_out(p, domain(low, high, centres, radius))
         assert np.all((p >= low) & (p <= high))
         if pushed:
             assert np.all(np.linalg.norm(centres - p, axis=1) >= radius)
@@ -108,7 +128,7 @@ def test_a_push_ends_outside_the_balls(seed: int, balls: int, radius: float) -> 
 def test_a_box_inside_a_ball_has_no_way_out() -> None:
     """Where a ball holds the whole box, the push says that it failed."""
     p = np.array([0.5, 0.5, 1.0])
-    assert not push_out(p, np.zeros(3), np.ones(3), np.array([[0.5, 0.5, 0.5]]), 5.0)
+    assert not push_out(p, domain(np.zeros(3), np.ones(3), np.array([[0.5, 0.5, 0.5]]), 5.0))
 
 
 def test_a_search_repeats_itself(paper: Callable) -> None:

@@ -13,14 +13,17 @@ import numpy as np
 
 from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
-from nullpose.solve.kernels.exclusion import excludes, expand_denominator, out_of_reach
+from nullpose.solve.kernels.exclusion import excludes, expand_denominator, is_level, out_of_reach
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
     AFFINE,
     ANCHOR,
     BALL,
+    BAND,
+    CELL,
     CENTRE,
     COLUMNS,
     COUNT,
@@ -30,8 +33,10 @@ from nullpose.solve.kernels.node import (
     KIND,
     LEVEL,
     NU,
+    OFF_BAND,
     WEIGHT,
     longest_side,
+    off_band,
     reaching_ball,
     split_axis,
     split_position,
@@ -71,7 +76,7 @@ def strongest_point(family, centre):
 
 
 @inner_kernel
-def best_frame(family, row):
+def best_frame(family, axis_field, row):
     """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
 
     A frame that turns spares us the remainder of the point that it turns towards, and makes all others
@@ -81,7 +86,7 @@ def best_frame(family, row):
     dpt, dw = family[7], family[8]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     anchor = strongest_point(family, centre)
-    if anchor < 0:
+    if anchor < 0 or family[9].shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
     still = turning = 0.0
@@ -103,7 +108,7 @@ def best_frame(family, row):
 @inner_kernel
 def is_pose(domain, centre):
     """Return whether a box's centre is a position of the domain."""
-    low, high, keep_points, keep_radius = domain
+    low, high, keep_points, keep_radius = domain[:4]
     inside = True
     for i in range(3):
         inside = inside and low[i] <= centre[i] <= high[i]
@@ -138,50 +143,67 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, best, favourite, row, weights, axis)
-    verdict, sought = examine_free(
-        family, domain, best, favourite, row, nearest, weights, axis, axis_field[0] == 0
-    )
+    if axis_field[0] >= 2 and off_band(axis_field[1], row):
+        row[KIND] = OFF_BAND
+        return _EXCLUDED, side, 0
+    verdict, sought = examine_free(family, domain, axis_field, best, favourite, row, nearest, weights, axis)
     return verdict, side, sought
 
 
 @inner_kernel
-def examine_free(family, domain, best, favourite, row, nearest, weights, axis, is_free):
+def examine_free(family, domain, axis_field, best, favourite, row, nearest, weights, axis):
     """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = np.empty((3, 3))
-    kind, anchor = best_frame(family, row)
+    is_free, is_band = axis_field[0] != 1, axis_field[0] >= 2
+    if not is_free:  # an affine axis that may vanish in the box
+        axis_field = (np.int64(0), axis_field[1], axis_field[2])
+    kind, anchor = best_frame(family, axis_field, row)
     rho, rho_min = set_frame(family[0], kind, anchor, centre, half, basis)
     view = (kind, anchor, basis, rho, rho_min)
-    denominator, slopes = np.empty(6), np.empty((3, 6))
-    rests = expand_denominator(family, row[LEVEL], view, centre, half, denominator, slopes)
+    denominator, slopes = np.zeros(6), np.zeros((3, 6))
+    rests = (0.0, 0.0)
+    if family[5].shape[0] == 1:
+        first = np.int64(0)
+        rests = expand_denominator(family, first, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, domain, view, row, below):
+    if excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
-        for m in range(COUNT, BALL):
+        for m in range(BAND, BALL):
             row[m] = favourite[m]
-        if excludes(family, domain, view, row, below):
+        if excludes(family, domain, axis_field, view, row, below):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
-    primal, reached = free_multipliers(family, basis, row, denominator, coarseness, weights, axis)
-    if is_free and reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, centre):
-        return _BETTER, 1
-    if primal < 1.0 and excludes(family, domain, view, row, below):
+    primal, reached = free_multipliers(family, axis_field, basis, row, denominator, coarseness, weights, axis)
+    if is_free and primal < math.inf and is_pose(domain, centre):
+        value = reached * row[LEVEL]
+        if family[5].shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
+            logs, f = np.empty(family[5].shape[0]), np.empty(family[1].shape[0])
+            value = math.exp(min_log_ratio(family, centre, axis, logs, f))
+        if value > best * (1.0 + _BEATS):
+            return _BETTER, 1
+    if primal == math.inf:  # no axis was met that is inside both cell and band
+        wide = row[CELL + 1] - row[CELL] > coarseness
+        return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
+    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 1
-    # two forms have no duality gap (Brickman), unless a cell is in force
-    split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0)
+    # two forms have no duality gap (Brickman), unless a cell or a band is in force
+    split_axes = primal - reached > coarseness and (
+        family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band
+    )
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
 
 @inner_kernel
-def lone_ratio(family, row, denominator):
+def lone_ratio(family, row, below):
     """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
-    points, n0, nw, npt = family[:4]
+    points, n0, nw, npt, den = family[:5]
     for k in range(nw.shape[0]):
         a = min_distance(points, npt[k], row[CENTRE:HALF], row[HALF:LEVEL])
-        if n0[k] + nw[k] / (a * a) < -denominator * (1.0 - 1e-13):
+        if n0[k] + nw[k] / (a * a) < -below[den[k], 17] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True
     return False
@@ -191,16 +213,16 @@ def lone_ratio(family, row, denominator):
 def examine_affine(family, domain, axis_field, best, favourite, row, weights, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half = row[HALF:LEVEL]
-    jet, below, total = np.empty(JET), np.empty(JET), np.empty(JET)
-    size = denominator_jet(family, axis_field, row, jet, below)
+    jet, below, total = np.empty(JET), np.empty((family[5].shape[0], JET)), np.empty(JET)
+    denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
-    if lone_ratio(family, row, below[17]):
+    if lone_ratio(family, row, below):
         return _EXCLUDED, 0, 0
-    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
     for m in range(COUNT, BALL):
         row[m] = favourite[m]
-    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
     reached = curved_multipliers(family, axis_field, row, below, jet, weights)
     if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
@@ -209,7 +231,7 @@ def examine_affine(family, domain, axis_field, best, favourite, row, weights, ax
             for i in range(3):
                 axis[m] += axis_field[2][m, i] * row[CENTRE + i]
         return _BETTER, 0, 1
-    if excludes_curved(family, domain, axis_field, row, below, size, jet, total):
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 1
     return _BY_POSITION, impact(total, half), 1
 
@@ -221,9 +243,9 @@ def branch(
     """Work off the stack at one level until it is empty or a limit is met.
 
     Args:
-        family: arrays of the family; one shared denominator.
-        domain: (low, high, keep-out points, keep-out radius).
-        axis_field: (0 free, 1 affine; offset; matrix).
+        family: arrays of the family.
+        domain: box, keep-out balls, forbidden pieces and zones.
+        axis_field: kind, offset and matrix, as ``AxisField.arrays`` has them.
         level: the ratio to exclude.
         best: the incumbent's smallest ratio; a centre that beats it ends the call.
         favourite: (COLUMNS,) a row whose multipliers are tried on every box: those at the incumbent.
@@ -239,7 +261,8 @@ def branch(
         (code, top, filled, nodes worked off, nodes in which new multipliers were sought).
     """
     row, axis = np.empty(COLUMNS), np.empty(3)
-    weights = np.empty(family[1].shape[0] + 2)
+    weights = np.empty(family[1].shape[0] + 4)
+    level_axes = is_level(axis_field)
     nodes = sought = 0
     while top > 0:
         if nodes >= most:
@@ -262,7 +285,7 @@ def branch(
                 better_p[i], better_u[i] = row[CENTRE + i], axis[i]
             return BETTER, top + 1, filled, nodes, sought
         elif verdict == _BY_AXIS:
-            top = split_axis(row, stack, top)
+            top = split_axis(row, level_axes, stack, top)
         else:
             top = split_position(row, side, stack, top)
     return DONE, top, filled, nodes, sought

@@ -1,9 +1,12 @@
 """The search variables of a pose, and the constraints on its position.
 
 The pose is an affine function of the search variables: a step in position, scaled by the distance to the
-nearest
-node; for a free axis a step in its tangent plane and a part that turns with the position (see ``turning``),
-the axis being renormalised after every step.
+nearest node; for a free axis a step in its tangent plane and a part that turns with the position (see
+``turning``), the axis being renormalised after every step. On a cone about the vertical (kind 3) the axis has
+one variable, and is put back on the cone.
+
+The slacks of a pose are those of six faces, of the keep-out balls, of the chosen side of each forbidden
+piece, and of the two ends of a band of elevations.
 """
 
 from __future__ import annotations
@@ -15,7 +18,19 @@ import numpy as np
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.symmetric import tangents
 
-__all__ = ["axis_at", "chart", "domain_slacks", "move", "nearest_node", "reduce_hessian", "turning"]
+__all__ = [
+    "axis_at",
+    "chart",
+    "choose_sides",
+    "clamp_axis",
+    "domain_slacks",
+    "move",
+    "nearest_node",
+    "reduce_hessian",
+    "side_slack",
+    "slack_count",
+    "turning",
+]
 
 
 @kernel
@@ -49,6 +64,8 @@ def turning(family, p, u):
     points, dpt, dw = family[0], family[7], family[8]
     strongest = 0.0
     rate = 0.0
+    if family[9].shape[0] > 0:  # points that see different axes have no common turning
+        return rate
     for e in range(dw.shape[0]):
         x, y, z = points[dpt[e], 0] - p[0], points[dpt[e], 1] - p[1], points[dpt[e], 2] - p[2]
         rho2 = x * x + y * y + z * z
@@ -72,10 +89,14 @@ def chart(field, matrix, rate, u, free, length, jacobian):
             if field == 1:
                 for m in range(3):
                     jacobian[3 + m, n] = length * matrix[m, i]
-            else:
+            elif field != 3:
                 jacobian[3 + i, n] = length * rate
             n += 1
-    if field == 0:
+    if field == 3:
+        across = math.sqrt(u[0] ** 2 + u[1] ** 2)
+        jacobian[3, n], jacobian[4, n] = -u[1] / across, u[0] / across
+        n += 1
+    elif field != 1:
         a, b = np.empty(3), np.empty(3)
         tangents(u, a, b)
         for i in range(3):
@@ -94,14 +115,34 @@ def move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u):
         new_u[i] = u[i]
         for m in range(n):
             new_p[i] += scale * jacobian[i, m] * step[m]
-            if field == 0:
+            if field != 1:
                 new_u[i] += scale * jacobian[3 + i, m] * step[m]
-    if field == 0:
+    if field == 3:
+        clamp_axis(axis_field, new_u)
+    elif field != 1:
         norm = math.sqrt(new_u[0] ** 2 + new_u[1] ** 2 + new_u[2] ** 2)
         for i in range(3):
             new_u[i] /= norm
     else:
         axis_at(field, offset, matrix, new_p, new_u)
+
+
+@kernel
+def clamp_axis(axis_field, u):
+    """Bring an axis to unit length and, where the field is a band, to the nearest elevation within it."""
+    norm = math.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
+    for i in range(3):
+        u[i] /= norm
+    if axis_field[0] < 2:
+        return
+    wanted = min(max(u[2] * u[2], axis_field[1][0]), axis_field[1][1])
+    if wanted == u[2] * u[2]:
+        return
+    across = math.sqrt(u[0] ** 2 + u[1] ** 2)
+    if not across > 1e-12:
+        u[0], u[1], across = 1.0, 0.0, 1.0
+    scale = math.sqrt(1.0 - wanted) / across
+    u[0], u[1], u[2] = scale * u[0], scale * u[1], math.copysign(math.sqrt(wanted), u[2])
 
 
 @kernel
@@ -123,14 +164,52 @@ def reduce_hessian(hess, jacobian, n, out):
 
 
 @kernel
-def domain_slacks(p, domain, out):
-    """Fill the slacks of the position's constraints: low faces, high faces, keep-out balls (as squares)."""
-    low, high, keep_points, keep_radius = domain
+def slack_count(domain):
+    """Return how many slacks a pose has."""
+    return 8 + domain[2].shape[0] + domain[4].shape[0] - 1
+
+
+@kernel
+def side_slack(side, p):
+    """Return the slack of a piece's side: how far outside, squared for a cylinder."""
+    if side[0] == 0.0:
+        return side[1] * p[0] + side[2] * p[1] + side[3] * p[2] - side[4]
+    return (p[0] - side[1]) ** 2 + (p[1] - side[2]) ** 2 - side[4] ** 2
+
+
+@kernel
+def choose_sides(domain, p, chosen):
+    """Fill, for every forbidden piece, the side that a position is farthest outside of."""
+    start, sides = domain[4], domain[5]
+    for c in range(start.shape[0] - 1):
+        most = -math.inf
+        for s in range(start[c], start[c + 1]):
+            away = side_slack(sides[s], p)
+            if sides[s, 0] == 1.0:
+                away = math.sqrt(away + sides[s, 4] ** 2) - sides[s, 4]
+            if away > most:
+                chosen[c], most = s, away
+
+
+@kernel
+def domain_slacks(p, u, domain, axis_field, chosen, out):
+    """Fill the slacks of a pose: faces, keep-out balls (as squares), pieces' chosen sides, ends of a band."""
+    low, high, keep_points, keep_radius = domain[:4]
     for i in range(3):
         out[i] = p[i] - low[i]
         out[3 + i] = high[i] - p[i]
+    c = 6
     for q in range(keep_points.shape[0]):
         d = 0.0
         for i in range(3):
             d += (p[i] - keep_points[q, i]) ** 2
-        out[6 + q] = d - keep_radius * keep_radius
+        out[c] = d - keep_radius * keep_radius
+        c += 1
+    for s in chosen:
+        out[c] = side_slack(domain[5][s], p)
+        c += 1
+    out[c] = out[c + 1] = 1.0
+    if axis_field[0] == 2:
+        size = u[0] ** 2 + u[1] ** 2 + u[2] ** 2
+        out[c] = u[2] * u[2] - axis_field[1][0] * size
+        out[c + 1] = axis_field[1][1] * size - u[2] * u[2]

@@ -48,16 +48,17 @@ def add_jet(weight, jet, total):
 
 
 @inner_kernel
-def denominator_jet(family, axis_field, row, jet, total):
-    """Fill the jet of ``-t D`` over a row's box; return the size of its terms at the centre."""
-    points, _, _, _, _, d0, dstart, dpt, dw = family
-    for m in range(JET):
-        total[m] = 0.0
-    total[0] = total[16] = total[17] = -row[LEVEL] * d0[0]
-    for e in range(dstart[0], dstart[1]):
-        link_jet(points, dpt[e], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-        add_jet(-row[LEVEL] * dw[e], jet, total)
-    return -total[0]
+def denominator_jet(family, axis_field, row, jet, totals):
+    """Fill the jet of ``-t D_g`` of each denominator over a row's box."""
+    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
+    for g in range(d0.shape[0]):
+        total = totals[g]
+        for m in range(JET):
+            total[m] = 0.0
+        total[0] = total[16] = total[17] = -row[LEVEL] * d0[g]
+        for e in range(dstart[g], dstart[g + 1]):
+            link_jet(points, turn, dpt[e], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+            add_jet(-row[LEVEL] * dw[e], jet, total)
 
 
 @inner_kernel
@@ -128,7 +129,7 @@ def box_maximum(jet, half):
 
 
 @inner_kernel
-def excludes_curved(family, domain, axis_field, row, below, size, jet, total):
+def excludes_curved(family, domain, axis_field, row, below, jet, total):
     """Return whether the row's multipliers exclude its box; fill the jet of their sum.
 
     Args:
@@ -136,19 +137,22 @@ def excludes_curved(family, domain, axis_field, row, below, size, jet, total):
         domain: (low, high, keep-out points, keep-out radius).
         axis_field: (1, offset, matrix).
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: the jet of ``-t D``.
-        size: the size of its terms.
+        below: (groups, JET) the jets of ``-t D_g``.
         jet: room for a jet.
         total: output, (JET,).
     """
-    points, n0, nw, npt = family[:4]
+    points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
     if not row[COUNT] > 0.0:
         return False
     for m in range(JET):
-        total[m] = below[m]
+        total[m] = 0.0
+    for s in range(int(row[COUNT])):
+        for m in range(JET):
+            total[m] += row[WEIGHT + s] * below[den[int(row[INDEX + s])], m]
+    size = -total[0]
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
-        link_jet(points, npt[k], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        link_jet(points, turn, npt[k], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
         total[0], total[17] = total[0] + row[WEIGHT + s] * n0[k], total[17] + row[WEIGHT + s] * n0[k]
         add_jet(row[WEIGHT + s] * nw[k], jet, total)
     total[0], total[17] = total[0] + _ROUNDING * size, total[17] + _ROUNDING * size
@@ -200,23 +204,24 @@ def curved_multipliers(family, axis_field, row, below, jet, weights):
     Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
     smallest ratio at the centre relative to the level.
     """
-    points, n0, nw, npt = family[:4]
+    points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
     ratios = nw.shape[0]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     values, gradients = np.empty(ratios), np.empty((ratios, 3))
     smallest = math.inf
     for k in range(ratios):
-        link_jet(points, npt[k], axis_field, centre, half, jet)
-        smallest = min(smallest, n0[k] + nw[k] * jet[0])
-        values[k] = below[0] + n0[k] + nw[k] * jet[0]
+        link_jet(points, turn, npt[k], axis_field, centre, half, jet)
+        minus = below[den[k]]
+        smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
+        values[k] = minus[0] + n0[k] + nw[k] * jet[0]
         for i in range(3):
-            gradients[k, i] = below[1 + i] + nw[k] * jet[1 + i]
+            gradients[k, i] = minus[1 + i] + nw[k] * jet[1 + i]
         for e in range(6):
             i = e if e < 3 else (0 if e < 5 else 1)
             j = e if e < 3 else (1 if e == 3 else 2)
-            radius = nw[k] * jet[10 + e] + below[10 + e]
+            radius = nw[k] * jet[10 + e] + minus[10 + e]
             if i == j:
-                radius = max(0.0, radius + nw[k] * jet[4 + e] + below[4 + e])
+                radius = max(0.0, radius + nw[k] * jet[4 + e] + minus[4 + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
     lead = 0
     for k in range(ratios):
@@ -226,7 +231,7 @@ def curved_multipliers(family, axis_field, row, below, jet, weights):
     weights[lead] = 1.0
     mix_in(values, gradients, half, np.int64(lead), weights)
     keep_largest(weights, ratios, row)
-    return -smallest / below[0]
+    return smallest
 
 
 @inner_kernel

@@ -16,7 +16,7 @@ import numpy as np
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, copy_into
 
-__all__ = ["dual_multipliers", "top_eigenvector"]
+__all__ = ["dual_multipliers", "positive_definite", "top_eigenvector"]
 
 _R2 = 0.7071067811865476
 _R6 = 0.4082482904638631

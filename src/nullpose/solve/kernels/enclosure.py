@@ -77,19 +77,34 @@ def relative_slopes(value, slope, swing, low, high):
     return bottom / (high if bottom > 0.0 else low), top / (low if top > 0.0 else high)
 
 
+@inner_kernel
+def turned_field(axis_field, turn, j):
+    """Return the offset and matrix of the axis that point j sees."""
+    if turn.shape[0] == 0:
+        return axis_field[1].copy(), axis_field[2].copy()
+    offset, matrix = np.zeros(3), np.zeros((3, 3))
+    for i in range(3):
+        for a in range(3):
+            offset[i] += turn[j, i, a] * axis_field[1][a]
+            for k in range(3):
+                matrix[i, k] += turn[j, i, a] * axis_field[2][a, k]
+    return offset, matrix
+
+
 @kernel
-def link_jet(points, j, axis_field, centre, half, jet):
+def link_jet(points, turn, j, axis_field, centre, half, jet):
     """Fill the jet of point j: value and gradient at the centre, midpoint and radius of the Hessian, bounds.
 
     Args:
         points: (m, 3) ground points.
+        turn: rotations of the axis that points see, (m, 3, 3) or none.
         j: which of them.
         axis_field: (1, offset, matrix); not zero in the box.
         centre: (3,) the box's centre.
         half: (3,) its half sides; the point is outside the box.
         jet: output, (JET,).
     """
-    offset, matrix = axis_field[1], axis_field[2]
+    offset, matrix = turned_field(axis_field, turn, j)
     r, u, c = np.empty(3), np.empty(3), np.empty(3)
     dc, hc = np.empty((3, 3)), np.empty((3, 3, 3))
     for i in range(3):

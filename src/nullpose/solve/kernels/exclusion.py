@@ -1,9 +1,10 @@
 """The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
 
-Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell) exclude a box at
-a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for every position
-p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its first-order
-expansion at the eight corners plus a second-order remainder, and a margin that outweighs rounding.
+Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell, one for the band)
+exclude a box at a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for
+every position p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its
+first-order expansion at the eight corners plus a second-order remainder, and a margin that outweighs rounding.
+Where all axes are level, it only needs to be negative definite in the level plane.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
     ANCHOR,
     BALL,
+    BAND,
     CELL,
     CENTRE,
     COUNT,
@@ -35,7 +37,7 @@ from nullpose.solve.kernels.node import (
     cell_side,
 )
 
-__all__ = ["excludes", "expand_denominator", "out_of_reach"]
+__all__ = ["excludes", "expand_denominator", "is_level", "out_of_reach"]
 
 _ROUNDING = 2e-14  # relative to the terms summed: a hundred units in the last place
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
@@ -50,8 +52,25 @@ def negative_definite(a0, a1, a2, a3, a4, a5):
 
 
 @inner_kernel
-def negative_at_corners(matrix, slopes, half):
-    """Return whether the linear matrix is negative definite at all eight corners."""
+def is_level(axis_field):
+    """Return whether an axis field holds the level axes only."""
+    return axis_field[0] == 3 and axis_field[1][1] == 0.0
+
+
+@inner_kernel
+def negative_at_corners(matrix, slopes, half, level_axes):
+    """Return whether the linear matrix is negative definite at all eight corners, perhaps for level axes."""
+    if level_axes:
+        for corner in range(8):
+            x = half[0] if corner & 1 else -half[0]
+            y = half[1] if corner & 2 else -half[1]
+            z = half[2] if corner & 4 else -half[2]
+            a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
+            a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
+            a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+            if not (a0 < 0.0 and a0 * a1 - a3 * a3 > _DEFINITE * a0 * a1):
+                return False
+        return True
     for corner in range(8):
         x = half[0] if corner & 1 else -half[0]
         y = half[1] if corner & 2 else -half[1]
@@ -78,21 +97,21 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
 
 
 @inner_kernel
-def expand_denominator(family, level, view, centre, half, out, out_slopes):
-    """Fill ``-t D`` and its slopes; return its remainders, isotropic and on the first two axes."""
-    points, _, _, _, _, d0, dstart, dpt, dw = family
+def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
+    """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
+    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
     kind, anchor, basis, rho, rho_min = view
     form, slopes = np.empty(6), np.empty((3, 6))
-    for m in range(6):
-        out[m] = -level * d0[0] if m < 3 else 0.0
-        for i in range(3):
-            out_slopes[i, m] = 0.0
+    for m in range(3):
+        out[m] -= level * d0[g]
     everywhere = across = 0.0
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    size = d0[0]
-    for e in range(dstart[0], dstart[1]):
+    size = d0[g]
+    for e in range(dstart[g], dstart[g + 1]):
         j = dpt[e]
-        _, down = expand_point(points, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
+        _, down = expand_point(
+            points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes
+        )
         add_scaled(-level * dw[e], form, slopes, out, out_slopes)
         if kind == TOWARDS_POINT and j == anchor:
             across += level * dw[e] * (_ROUNDING * (form[0] + form[1]) - radius * down)
@@ -125,17 +144,55 @@ def add_side(form, weight, view, matrix, matrix_slopes):
 
 
 @inner_kernel
-def excludes(family, domain, view, row, below):
+def add_mixed_denominators(family, view, row, matrix, slopes):
+    """Add ``-t sum_k lambda_k D_k`` of the row's multipliers and its slopes; return its remainders."""
+    den = family[4]
+    everywhere = across = 0.0
+    used = int(row[COUNT])
+    for s in range(used):
+        g = den[int(row[INDEX + s])]
+        weight, first = 0.0, True
+        for r in range(used):
+            if den[int(row[INDEX + r])] == g:
+                weight += row[WEIGHT + r]
+                first = first and r >= s
+        if first and weight > 0.0:
+            one, two = expand_denominator(
+                family, g, weight * row[LEVEL], view, row[CENTRE:HALF], row[HALF:LEVEL], matrix, slopes
+            )
+            everywhere += one
+            across += two
+    return everywhere, across
+
+
+@inner_kernel
+def add_band(axis_field, view, row, matrix, slopes):
+    """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
+    weight = row[BAND]
+    if axis_field[0] < 2 or weight == 0.0 or is_level(axis_field):
+        return 0.0
+    form = np.zeros(6)
+    form[2] = -1.0 if weight > 0.0 else 1.0
+    end = axis_field[1][1] if weight > 0.0 else axis_field[1][0]
+    for m in range(3):
+        matrix[m] += weight * end
+    return add_side(form, abs(weight), view, matrix, slopes)
+
+
+@inner_kernel
+def excludes(family, domain, axis_field, view, row, below):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
         family: arrays of the family.
-        domain: (low, high, keep-out points, keep-out radius).
+        domain: box, keep-out balls, forbidden pieces and zones.
+        axis_field: kind, offset and matrix; a free axis, perhaps within a band.
         view: the frame at the box's centre, from ``set_frame``.
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``.
+        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
+            denominator for all.
     """
-    points, n0, nw, npt = family[:4]
+    points, n0, nw, npt, turn = family[0], family[1], family[2], family[3], family[9]
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     if not row[COUNT] > 0.0:
@@ -147,12 +204,15 @@ def excludes(family, domain, view, row, below):
         for i in range(3):
             slopes[i, m] = below[1][i, m]
     everywhere, across = below[2]
+    if family[5].shape[0] > 1:
+        matrix[:], slopes[:, :] = 0.0, 0.0
+        everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         weight = row[WEIGHT + s]
         up, _ = expand_point(
-            points, npt[k], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
+            points, turn, npt[k], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
         )
         add_scaled(weight * nw[k], form, form_slopes, matrix, slopes)
         for m in range(3):
@@ -165,21 +225,26 @@ def excludes(family, domain, view, row, below):
                 cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
                 everywhere += radius * add_side(form, row[SIDE + side], view, matrix, slopes)
                 everywhere += 4.0 * _ROUNDING * row[SIDE + side]  # a side's entries are at most 1
+    everywhere += radius * add_band(axis_field, view, row, matrix, slopes)
+    everywhere += 4.0 * _ROUNDING * abs(row[BAND])
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
     row[NU] = 0.0
-    if negative_at_corners(matrix, slopes, half):
+    level_axes = is_level(axis_field)
+    if negative_at_corners(matrix, slopes, half, level_axes):
         return True
     ball = int(row[BALL])
-    return ball >= 0 and excludes_outside(domain, ball, row, matrix, slopes)
+    return ball >= 0 and excludes_outside(domain, ball, row, matrix, slopes, level_axes)
 
 
 @inner_kernel
-def excludes_outside(domain, ball, row, matrix, slopes):
+def excludes_outside(domain, ball, row, matrix, slopes, level_axes):
     """Return whether the matrix is negative where the box is outside a ball; fill the multiplier of that."""
     keep_points, keep_radius = domain[2], domain[3]
     v, gradient = np.empty(3), np.empty(3)
+    if level_axes:
+        matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
     top_eigenvector(matrix, v)
     for i in range(3):
         gradient[i] = form_value(slopes, i, v)
@@ -194,7 +259,7 @@ def excludes_outside(domain, ball, row, matrix, slopes):
             slopes[i, m] += 2.0 * row[NU] * n
     for m in range(3):
         matrix[m] += row[NU] * rest
-    return negative_at_corners(matrix, slopes, row[HALF:LEVEL])
+    return negative_at_corners(matrix, slopes, row[HALF:LEVEL], level_axes)
 
 
 @inner_kernel

@@ -58,14 +58,18 @@ def set_frame(points, kind, anchor, centre, half, basis):
 
 
 @kernel
-def expand_point(points, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes):
+def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes):
     """Fill the form of point j at the centre and its derivative along each world axis.
+
+    Points with a turn of their own are looked at in the frame at rest only.
 
     Returns an upper and a lower bound on the second derivative along any unit direction, anywhere in the
     box. For the anchor of a frame that turns towards it they hold on the first two axes; the third row and
     column vanish.
     """
     r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
+    if turn.shape[0] > 0:
+        basis = turn[j]
     x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
     y = basis[0, 1] * r0 + basis[1, 1] * r1 + basis[2, 1] * r2
     z = basis[0, 2] * r0 + basis[1, 2] * r1 + basis[2, 2] * r2

@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 
-__all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor"]
+__all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor", "turned_back"]
 
 
 @kernel
@@ -67,9 +67,22 @@ def inverse_factor(a, out):
 
 
 @inner_kernel
-def fill_form(points, j, p, weight, isotropic, out):
-    """Add ``weight * T(q_j - p)`` and ``isotropic * I`` to a form of six numbers."""
-    x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
+def turned_back(turn, j, x, y, z):
+    """Return ``Q_j^T r``: the direction to point j as the axis sees it that the point's turn is left out of."""
+    if turn.shape[0] == 0:
+        return x, y, z
+    q = turn[j]
+    return (
+        q[0, 0] * x + q[1, 0] * y + q[2, 0] * z,
+        q[0, 1] * x + q[1, 1] * y + q[2, 1] * z,
+        q[0, 2] * x + q[1, 2] * y + q[2, 2] * z,
+    )
+
+
+@inner_kernel
+def fill_form(points, turn, j, p, weight, isotropic, out):
+    """Add ``weight * T(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
+    x, y, z = turned_back(turn, j, points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2])
     rho2 = x * x + y * y + z * z
     s = weight / (rho2 * rho2)
     out[0] += isotropic + s * (y * y + z * z)
@@ -83,13 +96,13 @@ def fill_form(points, j, p, weight, isotropic, out):
 @kernel
 def fill_forms(family, p, numerators, denominators):
     """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
-    points, n0, nw, npt, _, d0, dstart, dpt, dw = family
+    points, n0, nw, npt, _, d0, dstart, dpt, dw, turn = family
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
     for k in range(nw.shape[0]):
-        fill_form(points, npt[k], p, nw[k], n0[k], numerators[k])
+        fill_form(points, turn, npt[k], p, nw[k], n0[k], numerators[k])
     for g in range(d0.shape[0]):
         for i in range(3):
             denominators[g, i] = d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            fill_form(points, dpt[e], p, dw[e], 0.0, denominators[g])
+            fill_form(points, turn, dpt[e], p, dw[e], 0.0, denominators[g])

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solve.kernels.chart import axis_at, chart, domain_slacks, move, reduce_hessian, turning
+from nullpose.solve.kernels.chart import (
+    axis_at,
+    chart,
+    clamp_axis,
+    domain_slacks,
+    move,
+    reduce_hessian,
+    turning,
+)
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.links import derivatives, min_log_ratio
 from nullpose.solve.kernels.symmetric import copy_into, gauss_solve
@@ -20,18 +28,19 @@ _STEPS = 6
 def active_set(domain, z, zs, used, free, length, q, held, active):
     """Put the position on the faces that hold it; fill the free coordinates and active ratios.
 
-    Returns how many are, or 0 if the point is not of a kind to land on: an active keep-out ball, or too many
-    ratios.
+    Returns how many are, or 0 if the point is not of a kind to land on: an active keep-out ball or forbidden
+    piece, or too many ratios.
     """
-    low, high, keep_points, _ = domain
+    low, high = domain[:2]
     for i in range(3):
         held[i] = free[i]
         if used[i] and zs[i] * length > _ACTIVE:
             held[i], q[i] = False, low[i]
         if used[3 + i] and zs[3 + i] * length > _ACTIVE:
             held[i], q[i] = False, high[i]
-    for c in range(keep_points.shape[0]):
-        if zs[6 + c] * length * length > _ACTIVE:
+    after = 6 + domain[2].shape[0]
+    for c in range(6, zs.shape[0] - 2):
+        if zs[c] * length * (length if c < after else 1.0) > _ACTIVE:
             return 0
     count = 0
     for k in range(z.shape[0]):
@@ -41,6 +50,19 @@ def active_set(domain, z, zs, used, free, length, q, held, active):
             active[count] = k
             count += 1
     return count
+
+
+@inner_kernel
+def held_axis(axis_field, zs):
+    """Return the axis field, or the cone at the end of a band that holds the axis."""
+    ends = axis_field[1].copy()
+    kind = axis_field[0]
+    if kind == 2:
+        for end in range(2):
+            if zs[zs.shape[0] - 2 + end] > _ACTIVE:
+                kind, ends[0] = np.int64(3), axis_field[1][end]
+                ends[1] = ends[0]
+    return kind, ends, axis_field[2]
 
 
 @inner_kernel
@@ -71,7 +93,9 @@ def fill_equations(f, grads, h, jacobian, active, count, multipliers, t, n, syst
 
 
 @inner_kernel
-def land(family, domain, axis_field, p, u, z, zs, used, free, length, best, best_p, best_u, multipliers):
+def land(
+    family, domain, axis_field, chosen, p, u, z, zs, used, free, length, best, best_p, best_u, multipliers
+):
     """Return the best smallest log ratio after solving the equations of the active set.
 
     Unknowns: free search variables, level t, multipliers of the active ratios. Faces with a positive
@@ -92,7 +116,10 @@ def land(family, domain, axis_field, p, u, z, zs, used, free, length, best, best
     weights = np.zeros(ratios)
     for a in range(count):
         weights[active[a]] = multipliers[active[a]]
+    axis_field = held_axis(axis_field, zs)
     axis_at(axis_field[0], axis_field[1], axis_field[2], q, v)
+    if axis_field[0] == 3:
+        clamp_axis(axis_field, v)
     f, logs = np.empty(ratios), np.empty(family[5].shape[0])
     grads, hess, h = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((5, 5))
     work = np.empty((family[5].shape[0], 50))
@@ -105,6 +132,9 @@ def land(family, domain, axis_field, p, u, z, zs, used, free, length, best, best
         n = chart(axis_field[0], axis_field[2], turning(family, q, v), v, held, length, jacobian)
         derivatives(family, q, v, weights, f, grads, hess, work)
         reduce_hessian(hess, jacobian, n, h)
+        if axis_field[0] == 3:
+            for c in range(count):
+                h[n - 1, n - 1] += weights[active[c]] * grads[active[c], 5] * v[2]
         size = fill_equations(f, grads, h, jacobian, active, count, weights, t, n, system, rhs)
         if not gauss_solve(system, rhs, size):
             return best
@@ -118,7 +148,7 @@ def land(family, domain, axis_field, p, u, z, zs, used, free, length, best, best
         for c in range(count):
             weights[active[c]] = max(0.0, weights[active[c]] + rhs[n + 1 + c])
         smallest = min_log_ratio(family, q, v, logs, f)
-        domain_slacks(q, domain, slacks)
+        domain_slacks(q, v, domain, axis_field, chosen, slacks)
         inside = True
         for c in range(slacks.shape[0]):
             inside = inside and slacks[c] >= 0.0

@@ -14,16 +14,30 @@ import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 
-__all__ = ["derivatives", "log_ratios", "min_log_ratio"]
+__all__ = ["derivatives", "log_ratios", "min_log_ratio", "seen_axis"]
+
+
+@inner_kernel
+def seen_axis(turn, j, u):
+    """Return the axis that point j sees."""
+    if turn.shape[0] == 0:
+        return u[0], u[1], u[2]
+    q = turn[j]
+    return (
+        q[0, 0] * u[0] + q[0, 1] * u[1] + q[0, 2] * u[2],
+        q[1, 0] * u[0] + q[1, 1] * u[1] + q[1, 2] * u[2],
+        q[2, 0] * u[0] + q[2, 1] * u[1] + q[2, 2] * u[2],
+    )
 
 
 @kernel
-def link_form(points, j, p, u):
+def link_form(points, turn, j, p, u):
     """Return ``|u x r|^2 / |r|^4`` for point j, without cancellation beside the null."""
     rx, ry, rz = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
-    cx = u[1] * rz - u[2] * ry
-    cy = u[2] * rx - u[0] * rz
-    cz = u[0] * ry - u[1] * rx
+    ux, uy, uz = seen_axis(turn, j, u)
+    cx = uy * rz - uz * ry
+    cy = uz * rx - ux * rz
+    cz = ux * ry - uy * rx
     rho2 = rx * rx + ry * ry + rz * rz
     return (cx * cx + cy * cy + cz * cz) / (rho2 * rho2)
 
@@ -31,15 +45,15 @@ def link_form(points, j, p, u):
 @kernel
 def log_ratios(family, p, u, log_denominators, out):
     """Fill the logarithm of every ratio at position p and axis u, and those of the denominators."""
-    points, n0, nw, npt, den, d0, dstart, dpt, dw = family
+    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     for g in range(d0.shape[0]):
         total = d0[g] * uu
         for e in range(dstart[g], dstart[g + 1]):
-            total += dw[e] * link_form(points, dpt[e], p, u)
+            total += dw[e] * link_form(points, turn, dpt[e], p, u)
         log_denominators[g] = math.log(total) if total > 0.0 else -math.inf
     for k in range(nw.shape[0]):
-        value = n0[k] * uu + nw[k] * link_form(points, npt[k], p, u)
+        value = n0[k] * uu + nw[k] * link_form(points, turn, npt[k], p, u)
         out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominators[den[k]]
 
 
@@ -54,7 +68,32 @@ def min_log_ratio(family, p, u, log_denominators, out):
 
 
 @inner_kernel
-def add_form(points, j, weight, p, u, grad, hess, second):
+def add_form(points, turn, j, weight, p, u, grad, hess, second):
+    """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_seen_form`` does for the axis seen."""
+    if turn.shape[0] == 0:
+        return add_seen_form(points, j, weight, p, u, grad, hess, second)
+    q = turn[j]
+    v, g, h = np.empty(3), np.zeros(6), np.zeros((6, 6))
+    v[0], v[1], v[2] = seen_axis(turn, j, u)
+    value = add_seen_form(points, j, weight, p, v, g, h, second)
+    for i in range(3):
+        grad[i] += g[i]
+        for a in range(3):
+            grad[3 + i] += q[a, i] * g[3 + a]
+    if second:
+        for i in range(3):
+            for k in range(3):
+                hess[i, k] += h[i, k]
+                for a in range(3):
+                    hess[3 + i, k] += q[a, i] * h[3 + a, k]
+                    hess[i, 3 + k] += h[i, 3 + a] * q[a, k]
+                    for b in range(3):
+                        hess[3 + i, 3 + k] += q[a, i] * h[3 + a, 3 + b] * q[b, k]
+    return value
+
+
+@inner_kernel
+def add_seen_form(points, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u) to ``grad`` and, if asked for, ``hess``.
 
     The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (u.r)^2 = |u x r|^2`` and ``h = A
@@ -109,7 +148,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
     ``work`` is scratch of shape (G, 50): per denominator its value, its gradient, its Hessian, its total
     multiplier.
     """
-    points, n0, nw, npt, den, d0, dstart, dpt, dw = family
+    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     for i in range(6):
         for k in range(6):
@@ -124,7 +163,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
             gradient[3 + i] = 2.0 * d0[g] * u[i]
             form[3 + i, 3 + i] = 2.0 * d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            value += add_form(points, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
+            value += add_form(points, turn, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
         work[g, 0] = value
         work[g, 43] = 0.0
         for i in range(6):
@@ -143,7 +182,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
                 gradient[3 + i] = 2.0 * n0[k] * u[i]
                 if second:
                     form[3 + i, 3 + i] = 2.0 * n0[k]
-        value += add_form(points, npt[k], nw[k], p, u, gradient, form, second)
+        value += add_form(points, turn, npt[k], nw[k], p, u, gradient, form, second)
         g = den[k]
         f[k] = math.log(value) - math.log(work[g, 0])
         for i in range(6):

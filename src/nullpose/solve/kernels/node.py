@@ -6,12 +6,15 @@ length, in the world frame; face -1 is every axis.
 
 from __future__ import annotations
 
+import numpy as np
+
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = [
     "AFFINE",
     "ANCHOR",
     "BALL",
+    "BAND",
     "CELL",
     "CENTRE",
     "COLUMNS",
@@ -24,6 +27,7 @@ __all__ = [
     "KIND",
     "LEVEL",
     "NU",
+    "OFF_BAND",
     "SIDE",
     "SUPPORT",
     "WEIGHT",
@@ -31,6 +35,7 @@ __all__ = [
     "cell_side",
     "keep_largest",
     "longest_side",
+    "off_band",
     "reaching_ball",
     "split_axis",
     "split_position",
@@ -44,8 +49,9 @@ ANCHOR = 8  # the point that a frame turns towards, the ratio that is FAR, or th
 FACE = 9  # the cell of axes: its face, or -1
 CELL = 10  # and its rectangle: low and high of two coordinates
 SIDE = 14  # multipliers of the cell's two sides
-COUNT = 16  # how many ratios have a multiplier
-INDEX = 17  # which they are
+BAND = 16  # multiplier of the band: of its upper end, or, if negative, minus that of its lower one
+COUNT = 17  # how many ratios have a multiplier
+INDEX = 18  # which they are
 SUPPORT = 8
 WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
 BALL = WEIGHT + SUPPORT  # a keep-out ball that reaches into the box, or -1
@@ -55,6 +61,7 @@ COLUMNS = NU + 1
 AFFINE = 2
 FAR = 3
 KEPT_OUT = 4
+OFF_BAND = 5
 
 
 @inner_kernel
@@ -91,7 +98,7 @@ def keep_largest(weights, total, row):
     row[COUNT] = chosen
     for s in range(chosen):
         row[WEIGHT + s] /= gathered
-    for side in range(2):
+    for side in range(3):  # and the band's
         row[SIDE + side] /= gathered
 
 
@@ -145,19 +152,25 @@ def split_position(row, side, stack, top):
 
 
 @inner_kernel
-def split_axis(row, stack, top):
-    """Push the parts of a cell of axes, three faces or two halves; return the new top."""
+def split_axis(row, level_axes, stack, top):
+    """Push the parts of a cell of axes, three faces or two halves; return the new top.
+
+    Where all axes are level, only the coordinate in the level plane is cut.
+    """
     if row[FACE] < 0.0:
         for face in range(3):
             for m in range(COLUMNS):
                 stack[top, m] = row[m]
             stack[top, FACE] = face
+            stack[top, BAND] = 0.0
             for side in range(2):
                 stack[top, CELL + 2 * side], stack[top, CELL + 2 * side + 1] = -1.0, 1.0
                 stack[top, SIDE + side] = 0.0
             top += 1
         return top
     side = 0 if row[CELL + 1] - row[CELL] >= row[CELL + 3] - row[CELL + 2] else 1
+    if level_axes:
+        side = 0 if row[FACE] == 0.0 else 1
     middle = 0.5 * (row[CELL + 2 * side] + row[CELL + 2 * side + 1])
     for child in range(2):
         for m in range(COLUMNS):
@@ -165,3 +178,21 @@ def split_axis(row, stack, top):
         stack[top, CELL + 2 * side + (0 if child else 1)] = middle
         top += 1
     return top
+
+
+@inner_kernel
+def off_band(ends, row):
+    """Return whether no axis of a row's cell has its elevation within the band."""
+    face = int(row[FACE])
+    if face < 0:
+        return False
+    # squares of the two free coordinates over the cell, the face's own being one
+    low, high = np.ones(3), np.ones(3)
+    for side in range(2):
+        v = (face + 1 + side) % 3
+        a, b = row[CELL + 2 * side], row[CELL + 2 * side + 1]
+        low[v] = 0.0 if a < 0.0 < b else min(a * a, b * b)
+        high[v] = max(a * a, b * b)
+    least = low[2] / (low[2] + high[0] + high[1])
+    most = high[2] / (high[2] + low[0] + low[1])
+    return most < ends[0] * (1.0 - 1e-12) or least > ends[1] * (1.0 + 1e-12)

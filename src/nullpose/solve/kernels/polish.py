@@ -23,10 +23,13 @@ from nullpose.solve.kernels.barrier import (
 from nullpose.solve.kernels.chart import (
     axis_at,
     chart,
+    choose_sides,
+    clamp_axis,
     domain_slacks,
     move,
     nearest_node,
     reduce_hessian,
+    slack_count,
     turning,
 )
 from nullpose.solve.kernels.jit import inner_kernel, kernel
@@ -40,11 +43,12 @@ _MU_END = 1e-12
 _LONGEST = 0.7
 _INSIDE = 0.995
 _ATTEMPTS = 31
+_BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 
 
 @inner_kernel
-def enter(domain, p, free, used):
-    """Move a position strictly inside its faces; fill which coordinates and faces are in play."""
+def enter(domain, axis_field, p, u, free, used):
+    """Move a pose strictly inside its faces and its band; fill which coordinates and slacks are in play."""
     low, high = domain[0], domain[1]
     for i in range(3):
         width = high[i] - low[i]
@@ -56,30 +60,47 @@ def enter(domain, p, free, used):
             p[i] = low[i]
         used[i] = free[i] and low[i] > -math.inf
         used[3 + i] = free[i] and high[i] < math.inf
-    for c in range(6, used.shape[0]):
+    band = used.shape[0] - 2
+    for c in range(6, band):
         used[c] = True
+    least, greatest = axis_field[1][0], axis_field[1][1]
+    is_band = axis_field[0] == 2
+    used[band] = is_band and least > 0.0
+    used[band + 1] = is_band and greatest < 1.0
+    if is_band:
+        margin = min(1e-3, 1e-2 * (greatest - least))
+        inside = (axis_field[0], axis_field[1].copy(), axis_field[2])
+        inside[1][0] += margin if used[band] else 0.0
+        inside[1][1] -= margin if used[band + 1] else 0.0
+        clamp_axis(inside, u)
 
 
 @inner_kernel
-def value_in_domain(family, domain, p, u, slacks, logs, f):
+def value_in_domain(family, domain, axis_field, chosen, p, u, slacks, logs, f):
     """Return the smallest log ratio, minus infinity outside the domain; fill the slacks."""
-    domain_slacks(p, domain, slacks)
-    for c in range(slacks.shape[0]):
+    domain_slacks(p, u, domain, axis_field, chosen, slacks)
+    band = slacks.shape[0] - 2
+    for c in range(band):
         if slacks[c] < 0.0 or (c >= 6 and slacks[c] == 0.0):
             return -math.inf
+    if not min(slacks[band], slacks[band + 1]) >= -_BAND_EDGE:
+        return -math.inf
     return min_log_ratio(family, p, u, logs, f)
 
 
 @kernel
 def begin(family, domain, axis_field, p, u, work, best_p, best_u):
     """Move a pose strictly inside; fill the better of it and the start, return both values."""
-    free, used, slacks, logs, f = work
+    free, used, chosen, slacks, logs, f = work
     best = value = -math.inf
+    clamp_axis(axis_field, u)
+    choose_sides(domain, p, chosen)
     for turn in range(2):  # the start itself is the first incumbent
         if turn == 1:
-            enter(domain, p, free, used)
+            enter(domain, axis_field, p, u, free, used)
+            choose_sides(domain, p, chosen)
         axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
-        value = value_in_domain(family, domain, p, u, slacks, logs, f)
+        value = value_in_domain(family, domain, axis_field, chosen, p, u, slacks, logs, f)
         if turn == 0 or value > best:
             best = value
             copy_into(p, best_p)
@@ -88,9 +109,10 @@ def begin(family, domain, axis_field, p, u, work, best_p, best_u):
 
 
 @inner_kernel
-def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
-    """Fill the slopes of ratios and constraints in the search variables; add the balls' curvature."""
+def linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h):
+    """Fill the slopes of ratios and constraints in the search variables; add the constraints' curvature."""
     keep_points = domain[2]
+    after = 6 + keep_points.shape[0]
     for k in range(grads.shape[0]):
         for m in range(n):
             s = 0.0
@@ -107,17 +129,49 @@ def linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h):
                 for j in range(n):
                     h[m, j] += 2.0 * zs[6 + q] * jacobian[i, m] * jacobian[i, j]
             rows[6 + q, m] = s
+        for c in range(chosen.shape[0]):
+            side = domain[5][chosen[c]]
+            s = 0.0
+            for i in range(3 if side[0] == 0.0 else 2):
+                s += (side[1 + i] if side[0] == 0.0 else 2.0 * (p[i] - side[1 + i])) * jacobian[i, m]
+                if side[0] == 1.0:
+                    for j in range(n):
+                        h[m, j] += 2.0 * zs[after + c] * jacobian[i, m] * jacobian[i, j]
+            rows[after + c, m] = s
+    if axis_field[0] == 2:
+        bend_band(axis_field[1], u, jacobian, n, zs, rows, h)
+    elif axis_field[0] == 3:  # the cone bends away from the step by u_z e3, in units of the axis's variable
+        for k in range(grads.shape[0]):
+            h[n - 1, n - 1] += z[k] * grads[k, 5] * u[2]
 
 
 @inner_kernel
-def longest_scale(rows, slacks, used, step, n):
+def bend_band(ends, u, jacobian, n, zs, rows, h):
+    """Fill the slopes of a band's ends, ``u_z^2 - c |u|^2`` and its like, and add their curvature."""
+    for end in range(2):
+        c = rows.shape[0] - 2 + end
+        sign = 1.0 if end == 0 else -1.0
+        for m in range(n):
+            s = u[2] * jacobian[5, m]
+            for i in range(3):
+                s -= ends[end] * u[i] * jacobian[3 + i, m]
+            rows[c, m] = 2.0 * sign * s
+            for j in range(n):
+                s = jacobian[5, m] * jacobian[5, j]
+                for i in range(3):
+                    s -= ends[end] * jacobian[3 + i, m] * jacobian[3 + i, j]
+                h[m, j] += 2.0 * sign * zs[c] * s
+
+
+@inner_kernel
+def longest_scale(rows, slacks, used, step, n, balls):
     """Return the largest share of a step that stays inside the faces, and the step's size."""
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
     scale = min(1.0, _LONGEST / largest) if largest > 0.0 else 1.0
-    for c in range(6):
-        if used[c]:
+    for c in range(used.shape[0]):  # not the balls and cylinders, whose slack is not linear
+        if used[c] and (c < 6 or c >= balls):
             s = 0.0
             for m in range(n):
                 s += rows[c, m] * step[m]
@@ -134,20 +188,21 @@ def line_search(family, domain, axis_field, here, there, model, way):
     """
     p, u, f, t, slacks = here
     new_p, new_u, new_f, new_slacks, logs = there
-    jacobian, slopes, rows, used, z, factor, n, mu = model
+    jacobian, slopes, rows, used, chosen, z, factor, n, mu = model
+    balls = 6 + domain[2].shape[0]
     step, slope, scale = way
     floor = barrier_value(f, t, slacks, used, mu)
     bent = np.empty(6)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
             bent_step(f, t, new_f, slopes, z, factor, n, scale, step, bent)
-            share = longest_scale(rows, slacks, used, bent, n)[0]
+            share = longest_scale(rows, slacks, used, bent, n, balls)[0]
             move(axis_field, p, u, jacobian, n, bent, share, new_p, new_u)
         else:
             scale *= 0.5 if attempt > 1 else 1.0
             move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u)
         log_ratios(family, new_p, new_u, logs, new_f)
-        domain_slacks(new_p, domain, new_slacks)
+        domain_slacks(new_p, new_u, domain, axis_field, chosen, new_slacks)
         new_t = best_level(new_f, mu)
         value = barrier_value(new_f, new_t, new_slacks, used, mu)
         if value >= floor + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(floor)):
@@ -161,19 +216,22 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
 
     Args:
         family: arrays of the family.
-        domain: (low (3,), high (3,), keep-out points (q, 3), keep-out radius).
-        axis_field: (0 free, 1 affine; offset (3,); matrix (3, 3)).
+        domain: box, keep-out balls and forbidden pieces, as ``Family.domain`` has them.
+        axis_field: kind, offset (3,) and matrix (3, 3), as ``AxisField.arrays`` has them.
         p: position, (3,), updated; must lie in the domain.
         u: unit axis, (3,), updated; ignored on entry when the field is affine.
         mu_start: first barrier weight, in units of the log ratio.
         max_steps: limit on interior-point steps.
         multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
     """
-    ratios, groups, sides = family[1].shape[0], family[5].shape[0], 6 + domain[2].shape[0]
+    ratios, groups, sides = family[1].shape[0], family[5].shape[0], slack_count(domain)
+    chosen = np.empty(domain[4].shape[0] - 1, np.int64)
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
     best_p, best_u = np.empty(3), np.empty(3)
-    best, value = begin(family, domain, axis_field, p, u, (free, used, slacks, logs, f), best_p, best_u)
+    best, value = begin(
+        family, domain, axis_field, p, u, (free, used, chosen, slacks, logs, f), best_p, best_u
+    )
     for k in range(ratios):
         multipliers[k] = 1.0 / ratios
     if not value > -math.inf:
@@ -201,14 +259,14 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         n = chart(axis_field[0], axis_field[2], turning(family, p, u), u, free, length, jacobian)
         derivatives(family, p, u, z, f, grads, hess, work)
         reduce_hessian(hess, jacobian, n, h)
-        linearise(domain, p, grads, jacobian, n, zs, used, slopes, rows, h)
+        linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h)
         if stalled >= 2 or residual(f, t, slacks, used, z, zs, slopes, rows, n, mu) <= 10.0 * mu:
             if mu <= _MU_END or stalled >= 6:
                 break
             mu = max(_MU_END, min(0.1 * mu, mu**1.5))
             t = best_level(f, mu)
         slope = newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, factor, step)
-        dual_scale, largest = longest_scale(rows, slacks, used, step, n)
+        dual_scale, largest = longest_scale(rows, slacks, used, step, n, 6 + domain[2].shape[0])
         if math.isnan(slope):
             break
         scale, new_t = line_search(
@@ -217,7 +275,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             axis_field,
             (p, u, f, t, slacks),
             (new_p, new_u, new_f, new_slacks, logs),
-            (jacobian, slopes, rows, used, z, factor, n, mu),
+            (jacobian, slopes, rows, used, chosen, z, factor, n, mu),
             (step, slope, dual_scale),
         )
         if not scale > 0.0:
@@ -239,7 +297,21 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             copy_into(p, best_p)
             copy_into(u, best_u)
     best = land(
-        family, domain, axis_field, p, u, z, zs, used, free, length, best, best_p, best_u, multipliers
+        family,
+        domain,
+        axis_field,
+        chosen,
+        p,
+        u,
+        z,
+        zs,
+        used,
+        free,
+        length,
+        best,
+        best_p,
+        best_u,
+        multipliers,
     )
     copy_into(best_p, p)
     copy_into(best_u, u)

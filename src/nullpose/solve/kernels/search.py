@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.chart import axis_at
+from nullpose.solve.kernels.chart import axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solve.kernels.jit import inner_kernel, kernel
@@ -25,6 +25,7 @@ _MU_START = 0.1
 _MAX_STEPS = 100
 _SAME = 1e-9
 _ROUGH = 1e-2
+_STEP = 1e-3  # m beyond a forbidden piece's side
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -43,14 +44,55 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)
 
 
+@inner_kernel
+def step_outside(p, domain, chosen):
+    """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
+    low, high, start, sides = domain[0], domain[1], domain[4], domain[5]
+    clear = True
+    choose_sides(domain, p, chosen)
+    for c in range(start.shape[0] - 1):
+        if side_slack(sides[chosen[c]], p) > 0.0:
+            continue
+        clear = False
+        least = math.inf
+        best = p.copy()
+        q = np.empty(3)
+        for s in range(start[c], start[c + 1]):  # the side that is nearest and in the box
+            side = sides[s]
+            for i in range(3):
+                q[i] = p[i]
+            if side[0] == 0.0:
+                away = side_slack(side, p)
+                for i in range(3):
+                    q[i] += (_STEP - away) * side[1 + i]
+            else:
+                d = math.hypot(p[0] - side[1], p[1] - side[2])
+                x, y = ((p[0] - side[1]) / d, (p[1] - side[2]) / d) if d > 1e-9 else (1.0, 0.0)
+                q[0], q[1] = side[1] + x * (side[4] + _STEP), side[2] + y * (side[4] + _STEP)
+            inside = True
+            moved = 0.0
+            for i in range(3):
+                inside = inside and low[i] <= q[i] <= high[i]
+                moved += (q[i] - p[i]) ** 2
+            if inside and moved < least:
+                least = moved
+                for i in range(3):
+                    best[i] = q[i]
+        for i in range(3):
+            p[i] = best[i]
+    return clear
+
+
 @kernel
-def push_out(p, low, high, keep_points, keep_radius):
-    """Move a position into the box and out of any keep-out ball; return whether it got there."""
+def push_out(p, domain):
+    """Move a position into the box and out of keep-out balls and forbidden pieces; return whether it is."""
+    low, high, keep_points, keep_radius = domain[:4]
+    chosen = np.empty(domain[4].shape[0] - 1, np.int64)
     for i in range(3):
         p[i] = min(max(p[i], low[i]), high[i])
     margin = 1.01 * keep_radius
     for _ in range(8):
-        clear = True
+        clear = step_outside(p, domain, chosen)
         for q in range(keep_points.shape[0]):
             d = 0.0
             for i in range(3):
@@ -71,20 +113,47 @@ def push_out(p, low, high, keep_points, keep_radius):
 
 @kernel
 def likely_axis(family, p, axis):
-    """Fill the axis that the relaxation of the best axis suggests at a position (one shared denominator).
+    """Fill the axis that the relaxation of the best axis suggests at a position.
 
     The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
-    start.
+    start. With several denominators, that of the ratios' excess over a level, taken three times.
     """
-    ratios = family[1].shape[0]
-    numerators, denominators = np.empty((ratios, 6)), np.empty((family[5].shape[0], 6))
+    ratios, groups = family[1].shape[0], family[5].shape[0]
+    numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
-    back, forms = np.empty((3, 3)), np.empty((ratios, 6))
-    inverse_factor(denominators[0], back)
+    back, forms, mean, plain = np.empty((3, 3)), np.empty((ratios, 6)), np.zeros(6), np.empty(6)
+    for g in range(groups):
+        for m in range(6):
+            mean[m] += denominators[g, m] / groups
+    inverse_factor(mean, back)
     level = math.inf
     for k in range(ratios):
         congruence(numerators[k], back, forms[k])
         level = min(level, (forms[k, 0] + forms[k, 1] + forms[k, 2]) / 3.0)
+    axis_of_forms(forms, back, level, axis)
+    if groups == 1:
+        return
+    logs, f = np.empty(groups), np.empty(ratios)
+    best, trial = min_log_ratio(family, p, axis, logs, f), np.empty(3)
+    for _ in range(3):
+        level = math.exp(best) if best > -20.0 else level
+        for k in range(ratios):
+            for m in range(6):
+                plain[m] = numerators[k, m] + level * (mean[m] - denominators[family[4][k], m])
+            congruence(plain, back, forms[k])
+        axis_of_forms(forms, back, level, trial)
+        value = min_log_ratio(family, p, trial, logs, f)
+        if not value > best + 1e-3:
+            break
+        best = value
+        for i in range(3):
+            axis[i] = trial[i]
+
+
+@inner_kernel
+def axis_of_forms(forms, back, level, axis):
+    """Fill the axis that the dual of the smallest of several whitened forms suggests."""
+    ratios = forms.shape[0]
     start, matrix, v, multipliers = np.zeros(6), np.empty(6), np.empty(3), np.empty(ratios)
     for i in range(3):
         start[i] = 1.0 / 3.0
@@ -101,10 +170,11 @@ def likely_axis(family, p, axis):
 @inner_kernel
 def start_axis(family, axis_field, p, u, logs, f):
     """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
-    if axis_field[0] == 0:
-        likely_axis(family, p, u)
-    else:
+    if axis_field[0] == 1:
         axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+    else:
+        likely_axis(family, p, u)
+        clamp_axis(axis_field, u)
     return min_log_ratio(family, p, u, logs, f)
 
 
@@ -116,9 +186,9 @@ def surround(points, margin, box_low, box_high):
         for j in range(points.shape[0]):
             least, most = min(least, points[j, i]), max(most, points[j, i])
         if not math.isfinite(box_low[i]):
-            box_low[i] = least - margin
+            box_low[i] = least - margin - (most - least)
         if not math.isfinite(box_high[i]):
-            box_high[i] = most + margin
+            box_high[i] = most + margin + (most - least)
 
 
 @kernel
@@ -140,8 +210,8 @@ def search(
 
     Args:
         family: arrays of the family.
-        domain: (low, high, keep-out points, keep-out radius); the altitude is bounded.
-        axis_field: (0 free, 1 affine; offset; matrix).
+        domain: box, keep-out balls and forbidden pieces; the altitude is bounded.
+        axis_field: kind, offset and matrix, as ``AxisField.arrays`` has them.
         landmarks: (m, 3) positions polished first, each after being moved into the domain.
         shift: (3,) offset in [0, 1) of the low-discrepancy sequence: the seed.
         coarse: positions judged in each round.
@@ -152,7 +222,7 @@ def search(
         best_u: output, (3,).
         best_z: output, (ratios,): the ratios' multipliers at that pose.
     """
-    low, high, keep_points, keep_radius = domain
+    low, high, keep_radius = domain[0], domain[1], domain[3]
     f = np.empty(family[1].shape[0])
     logs = np.empty(family[5].shape[0])
     z = np.empty(f.shape[0])
@@ -169,8 +239,7 @@ def search(
     for turn in range(rounds + 1):  # the first turn is the landmarks'
         judged = landmarks.shape[0] if turn == 0 else coarse
         cut_box(family, low, high, best - 1e-12, box_low, box_high)
-        if not best > -math.inf:
-            surround(family[0], high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
+        surround(family[0], high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
         for c in range(judged):
             if turn == 0:
                 for i in range(3):
@@ -179,7 +248,7 @@ def search(
                 drawn += 1
                 draw(shift, drawn, box_low, box_high, p)
             pool[c] = -math.inf
-            if push_out(p, low, high, keep_points, keep_radius):
+            if push_out(p, domain):
                 pool[c] = start_axis(family, axis_field, p, u, logs, f)
                 for i in range(3):
                     pool_p[c, i], pool_u[c, i] = p[i], u[i]
