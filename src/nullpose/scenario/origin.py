@@ -27,6 +27,7 @@ __all__ = [
     "Origin",
     "located",
     "origin_faults",
+    "unlocated",
 ]
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
@@ -115,6 +116,18 @@ def located(
             members = changed[str(key)] = list(_members(changed, str(key)))
             members[int(index)] = {**_table(members[int(index)]), "position_m": position_m}
     return changed
+
+
+def unlocated(data: Mapping[str, object]) -> None:
+    """Takes position_m from the points of a plain scenario that are stated by latitude and longitude too.
+
+    Args:
+        data: the scenario's dictionary, which is changed.
+    """
+    for key in _POINT_LISTS:
+        for member in _members(data, key):
+            if isinstance(member, dict) and any(member.get(way) is not None for way in GEODETIC_KEYS):
+                member.pop("position_m", None)
 
 
 def origin_faults(data: Mapping[str, object]) -> Iterator[tuple[Place, str]]:

@@ -12,6 +12,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import Jammer, Node
+from nullpose.scenario.origin import Origin, unlocated
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
@@ -19,7 +20,7 @@ from nullpose.scenario.wording import listed, nearest, plain
 
 __all__ = ["Override", "apply_overrides", "parse_override"]
 
-_TABLES: dict[str, type[Section]] = {"airspace": Airspace, "receiver": Receiver}
+_TABLES: dict[str, type[Section]] = {"origin": Origin, "airspace": Airspace, "receiver": Receiver}
 _LISTS: dict[str, type[Section]] = {"nodes": Node, "jammers": Jammer}
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
@@ -63,7 +64,9 @@ def parse_override(text: str) -> Override:
 def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> Scenario:
     """Returns the scenario with the given values in place of its own, validated anew.
 
-    Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency) drops the other.
+    Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency) drops the other;
+    so does setting position_m where a latitude was stated, or a latitude where position_m was. Points that
+    are stated by latitude and longitude stay there when the origin moves.
 
     Args:
         scenario: where to start.
@@ -84,7 +87,9 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         except ScenarioError as error:
             faults += error.faults
         except _UnknownPathError as error:
-            faults.append(Fault(parsed.path, f"{error}; did you mean {_nearest_path(parsed.path, known)}?"))
+            guess = _nearest_path(parsed.path, known)
+            meant = f"; did you mean {guess}?" if guess != parsed.path else ""
+            faults.append(Fault(parsed.path, f"{error}{meant}"))
     source = f"override {listed([str(override) for override in applied])}"
     try:
         changed = Scenario.from_dict(data)
@@ -134,10 +139,12 @@ def _assign(data: dict[str, Any], steps: Place, value: object) -> None:
     if not steps or steps[0] not in Scenario.model_fields:
         raise _UnknownPathError("there is no such value in a scenario")
     key, rest = str(steps[0]), steps[1:]
+    if key == "origin":
+        unlocated(data)
     if not rest:
         data[key] = value
     elif key in _TABLES:
-        _assign_key(_TABLES[key], data[key], rest, value)
+        _assign_key(_TABLES[key], data.get(key), rest, value)
     elif key in _LISTS:
         index = _index(key, data[key], rest[0])
         if len(rest) == 1:
@@ -164,6 +171,8 @@ def _index(key: str, members: object, step: str | int) -> int:
 def _assign_key(kind: type[Section], table: object, steps: Place, value: object) -> None:
     """Sets a key of a table, or a member of its list; drops the other key of a pair."""
     key = steps[0]
+    if table is None:
+        raise _UnknownPathError(f"the scenario has no {kind.header.removeprefix('a ')}")
     if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
         raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
     if len(steps) == 1:
@@ -171,11 +180,14 @@ def _assign_key(kind: type[Section], table: object, steps: Place, value: object)
         for pair in kind.pairs:
             if key in pair:
                 table.pop(pair[1 - pair.index(key)], None)
-        return
-    index, row = steps[1], table.get(key)
-    if len(steps) > 2 or not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
-        raise _UnknownPathError(f"{key} {_shape(row)}")
-    row[index] = value
+    else:
+        index, row = steps[1], table.get(key)
+        if len(steps) > 2 or not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
+            raise _UnknownPathError(f"{key} {_shape(row)}")
+        row[index] = value
+    if any(key in way for way in kind.ways):
+        for other in [other for way in kind.ways if key not in way for other in way]:
+            table.pop(other, None)
 
 
 def _shape(row: object) -> str:
