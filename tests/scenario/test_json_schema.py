@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from nullpose.errors import ScenarioError
 from nullpose.scenario import (
     Airframe,
     Airspace,
@@ -70,13 +71,28 @@ def accepts(schema: dict[str, Any], value: Any) -> bool:
             fits = schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value))
             return fits and all(accepts(schema["items"], member) for member in value)
         case _:
-            pairs = [rule["oneOf"] for rule in (*schema.get("allOf", ()), schema) if "oneOf" in rule]
             return (
-                value.keys() <= schema["properties"].keys()
-                and all(key in value for key in schema.get("required", ()))
-                and all(sum(choice["required"][0] in value for choice in pair) == 1 for pair in pairs)
+                isinstance(value, dict)
+                and value.keys() <= schema["properties"].keys()
+                and keeps(schema, value)
                 and all(accepts(schema["properties"][key], member) for key, member in value.items())
             )
+
+
+def keeps(rule: dict[str, Any], value: dict[str, Any]) -> bool:
+    """Returns whether a table keeps the rules on keys together, for the few words that this schema uses."""
+    members = rule.get("properties", {}).get("nodes", {}).get("items", {})
+    constant = rule.get("properties", {}).get("objective", {}).get("const")
+    return (
+        all(key in value for key in rule.get("required", ()))
+        and all(keeps(one, value) for one in rule.get("allOf", ()))
+        and ("anyOf" not in rule or any(keeps(one, value) for one in rule["anyOf"]))
+        and ("oneOf" not in rule or sum(keeps(one, value) for one in rule["oneOf"]) == 1)
+        and ("not" not in rule or not keeps(rule["not"], value))
+        and ("if" not in rule or keeps(rule["if"], value) or keeps(rule["else"], value))
+        and (constant is None or value.get("objective") == constant)
+        and ("$ref" in members or all(keeps(members, node) for node in value.get("nodes", ())))
+    )
 
 
 def test_dialect_and_title() -> None:
@@ -102,20 +118,72 @@ def test_tables_are_closed() -> None:
 
 def test_required_keys() -> None:
     """Keys without which there is no scenario are required."""
-    assert json_schema()["required"] == ["airspace", "receiver", "nodes"]
+    assert json_schema()["required"] == ["airspace", "receiver"]
     assert schema_of("Airspace")["required"] == ["altitude_m"]
-    assert schema_of("Node")["required"] == schema_of("Jammer")["required"] == ["position_m"]
+    assert schema_of("Array")["required"] == ["elements", "layout", "spacing_wavelengths"]
     assert json_schema()["properties"]["nodes"]["minItems"] == 1
+
+
+POWER = {"oneOf": [{"required": ["power_w"]}, {"required": ["power_dbm"]}]}
 
 
 def test_pairs_are_either_or() -> None:
     """Of a quantity in two units, exactly one is required."""
-    power = [{"required": ["power_w"]}, {"required": ["power_dbm"]}]
-    assert schema_of("Node")["oneOf"] == schema_of("Jammer")["oneOf"] == power
+    assert schema_of("Transmitter")["oneOf"] == POWER["oneOf"]
+    assert POWER in schema_of("Jammer")["allOf"]
+    assert schema_of("Airframe")["oneOf"] == [{"required": ["preset"]}, {"required": ["tilt_max_deg"]}]
     assert schema_of("Receiver")["allOf"] == [
         {"oneOf": [{"required": ["noise_w"]}, {"required": ["noise_dbm"]}]},
         {"oneOf": [{"required": ["reference_gain_db"]}, {"required": ["frequency_hz"]}]},
     ]
+
+
+def test_alternatives_exclude_each_other() -> None:
+    """Of keys that say the same of a node or eavesdropper, at most one is taken."""
+    rules = schema_of("Node")["allOf"]
+    for pair in Node.alternatives:
+        assert {"not": {"required": list(pair)}} in rules
+    assert {"not": {"required": ["noise_w", "noise_dbm"]}} in schema_of("Eavesdropper")["allOf"]
+
+
+@pytest.mark.parametrize(
+    ("table", "fits"),
+    [
+        ({"x_m": [0, 1], "y_m": [0, 1]}, True),
+        ({"centre_m": [0, 1], "radius_m": 2}, True),
+        ({"polygon_m": [[0, 0], [1, 0], [0, 1]], "altitude_m": [0, 9]}, True),
+        ({}, False),
+        ({"x_m": [0, 1]}, False),
+        ({"polygon_m": [[0, 0], [1, 0]]}, False),
+        ({"x_m": [0, 1], "y_m": [0, 1], "centre_m": [0, 1], "radius_m": 2}, False),
+    ],
+)
+def test_a_zone_has_one_shape(table: dict[str, Any], fits: bool) -> None:
+    """A no-fly zone has exactly one of the three shapes, as the schema says and as the program does."""
+    assert accepts(schema_of("NoFlyZone"), table) is fits
+    if fits:
+        NoFlyZone(**table)
+    else:
+        with pytest.raises(ScenarioError):
+            NoFlyZone(**table)
+
+
+def test_nodes_have_a_power_unless_the_drone_transmits() -> None:
+    """A node without a power fits with objective secrecy-rate only."""
+    data = tomllib.loads((EXAMPLES / "paper.toml").read_text(encoding="utf-8"))
+    del data["nodes"][0]["power_w"]
+    assert not accepts(json_schema(), data)
+    assert not accepts(json_schema(), data | {"objective": "min-sinr"})
+    assert accepts(json_schema(), data | {"objective": "secrecy-rate"})
+
+
+@pytest.mark.parametrize("value", [3.0, 0, [1, 2.5, 0]])
+def test_uncertainty_is_a_number_or_three(value: object) -> None:
+    """A radius or three semi-axes fit, and nothing else does."""
+    extent = schema_of("Jammer")["properties"]["uncertainty_m"]
+    assert accepts(extent, value)
+    for other in (-1.0, "3", [1, 2], [1, 2, -3], [1, 2, 3, 4], {}, True):
+        assert not accepts(extent, other)
 
 
 UNITS = {"_m": "metres", "_w": "watts", "_dbm": "dBm", "_db": "dB", "_hz": "Hz", "_deg": "degrees"}
@@ -137,7 +205,7 @@ def test_every_key_is_described(key: str, schema: dict[str, Any]) -> None:
 def test_no_null_and_no_internal_words() -> None:
     """TOML has no null, so the schema has none; nor does it speak of Python."""
     text = json.dumps(json_schema())
-    for words in ("null", "None", "tuple", "anyOf", "prefixItems", "Args", "Raises"):
+    for words in ("null", "None", "tuple", "prefixItems", "Args", "Raises"):
         assert words not in text.replace("nullpose", "")
 
 

@@ -104,15 +104,27 @@ class Airspace(Section):
         Returns:
             Array of shape ``(...)``.
         """
+        return np.asarray(self.clearance_m(position_m) >= -BORDER_M)
+
+    def clearance_m(self, position_m: ArrayLike) -> NDArray[np.float64]:
+        """Returns how far each position is from what is forbidden [m], without regard to the keep-out balls.
+
+        Below 0 where it is forbidden, 0 on a border; it changes by no more than the distance between two
+        positions.
+
+        Args:
+            position_m: positions [m], (..., 3).
+
+        Returns:
+            Array of shape ``(...)``.
+        """
         position = np.asarray(position_m, dtype=np.float64)
-        allowed = np.all(
-            (position >= self.lower_m - BORDER_M) & (position <= self.upper_m + BORDER_M), axis=-1
-        )
+        clearance = np.minimum(position - self.lower_m, self.upper_m - position).min(axis=-1)
         if self.geofence_m is not None:
-            allowed &= depth_m(position[..., :2], self.geofence_outline_m) >= -BORDER_M
+            clearance = np.minimum(clearance, depth_m(position[..., :2], self.geofence_outline_m))
         for zone in self.no_fly:
-            allowed &= zone.depth_m(position) <= BORDER_M
-        return np.asarray(allowed)
+            clearance = np.minimum(clearance, -zone.depth_m(position))
+        return np.asarray(clearance)
 
     def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
         unbounded = (-math.inf, math.inf)

@@ -109,10 +109,8 @@ class Emitter(GroundPoint):
 
     @property
     def transmit_power_w(self) -> float:
-        """Transmit power, however it was stated [W]."""
-        power = power_w(self.power_w, self.power_dbm)
-        assert power is not None, "validation lets exactly one of the two through"
-        return power
+        """Transmit power, however it was stated [W]; 0 where none is."""
+        return power_w(self.power_w, self.power_dbm) or 0.0
 
 
 class Node(Emitter):
@@ -124,7 +122,7 @@ class Node(Emitter):
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
         power_w: transmit power [W]; or else
-        power_dbm: the same in dBm.
+        power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
         min_sinr_db: the SINR that the node requires [dB]; its margin is its SINR over this.
         noise_w: noise of the node's own receiver [W], for the downlink; or else
@@ -135,7 +133,10 @@ class Node(Emitter):
 
     header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
     letter: ClassVar[str] = "S"
+    # A node need not transmit where the drone does; a scenario judges whether it has to.
+    pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("power_w", "power_dbm"),
         ("weight", "min_sinr_db"),
         ("noise_w", "noise_dbm"),
         ("jamming_w", "jamming_dbm"),

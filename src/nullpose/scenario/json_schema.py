@@ -8,6 +8,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
+from nullpose.scenario.ground_points import Emitter
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
 
@@ -50,16 +51,43 @@ class _TomlSchema(GenerateJsonSchema):
         if issubclass(kind, Section):
             # The class docstring speaks of Python; the fields describe themselves.
             described["description"] = str(described.get("description", "")).split("\n", 1)[0]
-            described |= _either_or(kind.pairs)
+            either = {key for way in kind.ways for key in way}
+            required = [key for key in described.pop("required", ()) if key not in either]
+            described |= {"required": required} if required else {}
+            described |= _together(_rules(kind))
         return described
 
 
-def _either_or(pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
-    rules: list[dict[str, Any]] = [{"oneOf": [{"required": [key]} for key in pair]} for pair in pairs]
+def _rules(kind: type[Section]) -> list[dict[str, Any]]:
+    """Returns what a table says of keys together: one of several, at most one, one of several ways."""
+    rules: list[dict[str, Any]] = [_either_or(*((key,) for key in pair)) for pair in kind.pairs]
+    rules += [{"not": {"required": list(pair)}} for pair in kind.alternatives]
+    if kind.shapes:
+        rules.append(_either_or(*kind.shapes))
+    if kind.ways:
+        # Not "oneOf": a scenario that is written to a file states such things in every way that it knows.
+        rules.append({"anyOf": [{"required": list(way)} for way in kind.ways]})
+    if issubclass(kind, Scenario):
+        rules.append(_NODES_TRANSMIT)
+    return rules
+
+
+def _either_or(*groups: Sequence[str]) -> dict[str, Any]:
+    return {"oneOf": [{"required": list(group)} for group in groups]}
+
+
+_NODES_TRANSMIT: dict[str, Any] = {
+    "if": {"properties": {"objective": {"const": "secrecy-rate"}}, "required": ["objective"]},
+    "else": {"properties": {"nodes": {"items": _either_or(*((key,) for key in Emitter.pairs[0]))}}},
+}
+"""Every node has a power, but where the drone transmits."""
+
+
+def _together(rules: Sequence[dict[str, Any]]) -> dict[str, Any]:
     match rules:
         case []:
             return {}
         case [rule]:
             return rule
         case _:
-            return {"allOf": rules}
+            return {"allOf": list(rules)}

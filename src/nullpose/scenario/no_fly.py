@@ -15,16 +15,11 @@ from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
 from nullpose.scenario.polygon import Polygon, area_m2, depth_m
+from nullpose.scenario.rewording import meant_keys
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import PlanePoint, RadiusMetres, Range
 
 __all__ = ["NoFlyZone"]
-
-_SHAPES: dict[str, tuple[str, ...]] = {
-    "box": ("x_m", "y_m"),
-    "cylinder": ("centre_m", "radius_m"),
-    "polygon": ("polygon_m",),
-}
 
 
 class NoFlyZone(Section):
@@ -45,6 +40,11 @@ class NoFlyZone(Section):
 
     header: ClassVar[str] = "a no-fly zone, in a table of its own headed [[airspace.no_fly]]"
     letter: ClassVar[str] = "Z"
+    shapes: ClassVar[tuple[tuple[str, ...], ...]] = (
+        ("x_m", "y_m"),
+        ("centre_m", "radius_m"),
+        ("polygon_m",),
+    )
 
     name: Label = Field(
         default="",
@@ -129,15 +129,16 @@ class NoFlyZone(Section):
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between several values of the raw table: no shape, several, or half of one."""
         yield from super().cross_faults(data)
-        given = {shape: [key for key in keys if data.get(key) is not None] for shape, keys in _SHAPES.items()}
-        begun = [shape for shape, keys in given.items() if keys]
-        allowed = "x_m and y_m, or centre_m and radius_m, or polygon_m"
-        if not begun:
+        given = [[key for key in shape if data.get(key) is not None] for shape in cls.shapes]
+        begun = [index for index, keys in enumerate(given) if keys]
+        allowed = ", or ".join(" and ".join(shape) for shape in cls.shapes)
+        meant = meant_keys(data, cls.model_fields)
+        if len(begun) > 1:
+            stated = ", ".join(key for keys in given for key in keys)
+            yield (), f"{stated} are given, exactly one shape is allowed: {allowed}; remove the others"
+        elif not begun and meant.isdisjoint(key for shape in cls.shapes for key in shape):
             yield (), f"no shape is given, exactly one must be: add {allowed}"
-        elif len(begun) > 1:
-            keys = ", ".join(key for shape in begun for key in given[shape])
-            yield (), f"{keys} are given, exactly one shape is allowed: {allowed}; remove the others"
-        else:
-            for key in _SHAPES[begun[0]]:
-                if key not in given[begun[0]]:
+        elif begun:
+            for key in cls.shapes[begun[0]]:
+                if key not in given[begun[0]] and key not in meant:
                     yield (), f"{given[begun[0]][0]} is given without {key}; add {key}"

@@ -11,7 +11,7 @@ from pydantic_core import InitErrorDetails
 from nullpose.scenario.faults import KIND, as_error_details
 from nullpose.scenario.wording import described, listed, nearest
 
-__all__ = ["table_faults"]
+__all__ = ["meant_keys", "table_faults"]
 
 
 def table_faults(
@@ -65,6 +65,12 @@ def _stated_otherwise(
         return False
     others = [other for way in ways if key not in way for other in way]
     return any(data.get(other) is not None or other in meant for other in others)
+
+
+def meant_keys(data: Mapping[str, object], keys: Collection[str]) -> set[str]:
+    """Returns the keys for which the unknown keys of a raw table seem to be meant."""
+    absent = [key for key in keys if data.get(key) is None]
+    return {nearest(str(key), absent) for key in data if key not in keys}
 
 
 def _unknown_key(key: str, absent: Collection[str], fields: Collection[str]) -> str:

@@ -20,6 +20,7 @@ from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
 from nullpose.scenario.members import Members
 from nullpose.scenario.names import FileOnly, Title
+from nullpose.scenario.objective_faults import objective_faults
 from nullpose.scenario.origin import Origin, located, origin_faults
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.section import Section
@@ -122,6 +123,7 @@ class Scenario(Section):
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between several values of the raw scenario, as far as they can be judged."""
         yield from origin_faults(data)
+        yield from objective_faults(data, list(cls.model_fields))
         yield from cross_faults(located(data))
 
     def to_toml(self) -> str:

@@ -26,6 +26,8 @@ class Section(BaseModel):
     """Keys of which exactly one is given, each pair being one quantity in two units."""
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Keys of which at most one is given."""
+    shapes: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Groups of keys of which exactly one is given, and given whole."""
     ways: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """Groups of keys that state one required thing; one group is given whole."""
     unstated: ClassVar[frozenset[str]] = frozenset()
