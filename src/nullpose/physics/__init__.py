@@ -5,6 +5,14 @@ Every number that nullpose reports is evaluated here from the reported pose.
 
 from nullpose.physics.decibel import from_db, to_db
 from nullpose.physics.evaluate import Link, evaluate, min_margin, min_secrecy_rate, min_sinr
+from nullpose.physics.frames import (
+    FramePose,
+    Geodetic,
+    PoseFrames,
+    flu_from_frd,
+    frd_from_flu,
+    pose_frames,
+)
 from nullpose.physics.gain import antenna_gain, elevation_cosine
 from nullpose.physics.maximum_gain import (
     maximum_gain_axis,
@@ -19,14 +27,19 @@ from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
 __all__ = [
+    "FramePose",
+    "Geodetic",
     "Link",
     "Pose",
+    "PoseFrames",
     "antenna_axis",
     "antenna_gain",
     "attitude_from_axis",
     "eavesdropper_snr",
     "elevation_cosine",
     "evaluate",
+    "flu_from_frd",
+    "frd_from_flu",
     "from_db",
     "margin",
     "maximum_gain_axis",
@@ -37,6 +50,7 @@ __all__ = [
     "min_sinr",
     "node_snr",
     "objective_value",
+    "pose_frames",
     "received_power_w",
     "rotation_world_from_body",
     "secrecy_rate",

@@ -9,7 +9,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any
 
-from nullpose.physics import Link, Pose
+from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
 from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.scheme import Scheme
@@ -143,6 +143,7 @@ class Solution:
                 "pitch_rad": pose.pitch_rad,
                 "yaw_rad": pose.yaw_rad,
                 "antenna_axis": [float(x) for x in pose.antenna_axis],
+                "frames": pose_frames(self.scenario, pose).to_dict(),
             },
             "links": [
                 {"node": link.node, "sinr": link.sinr, "sinr_db": _finite(link.sinr_db)}
