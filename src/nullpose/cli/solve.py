@@ -54,6 +54,15 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    geojson: Annotated[
+        Path | None,
+        typer.Option(
+            "--geojson",
+            metavar="FILE",
+            help="Write the pose, the nodes and the airspace here, for a map, as GeoJSON; needs an origin.",
+            show_default=False,
+        ),
+    ] = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Find the best pose for a scenario, and prove how far from the best of all it can be."""
@@ -62,11 +71,16 @@ def solve(
     scenario = apply_overrides(load(file), overrides or [])
     from nullpose.certificate import write_certificate
     from nullpose.errors import UsageError
+    from nullpose.report.export import require_origin, write_geojson
     from nullpose.solve import certificate_of, default_gap
     from nullpose.solve import solve as solve_scenario
+    from nullpose.study import prepare_folder
 
     if fast and certificate is not None:
         raise UsageError("--certificate: given with --fast, which proves nothing; leave out one of the two")
+    if geojson is not None:
+        require_origin(scenario)
+        prepare_folder(geojson.parent)
     target = default_gap(len(scenario.nodes)) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(
@@ -82,6 +96,8 @@ def solve(
         )
     if certificate is not None:
         write_certificate(certificate_of(solution), certificate)
+    if geojson is not None:
+        write_geojson(solution, geojson)
     if json_output:
         show_json(solution.to_dict())
     else:

@@ -19,10 +19,11 @@ def _standard(value: object) -> object:
     return value
 
 
-def json_text(value: object) -> str:
-    """Return a value as indented JSON in ASCII; what JSON has no number for (NaN, infinities) becomes null.
+def json_text(value: object, indent: int | None = 2) -> str:
+    """Return a value as JSON in ASCII; what JSON has no number for (NaN, infinities) becomes null.
 
     Args:
         value: mappings, sequences, texts, numbers, truth values and None, nested at will.
+        indent: blanks by which each level is indented; None for all on one line.
     """
-    return json.dumps(_standard(value), indent=2, allow_nan=False)
+    return json.dumps(_standard(value), indent=indent, allow_nan=False)

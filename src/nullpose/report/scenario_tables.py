@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from nullpose.report.frames import place_words
 from nullpose.report.summary import PointSummary, ScenarioSummary
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ def _surroundings_table(summary: ScenarioSummary) -> Table:
     airspace = summary.scenario.airspace
     table = Table(box=box.SIMPLE, show_header=False, pad_edge=False, title="Airspace and receiver")
     table.title_justify, table.title_style = "left", "bold"
+    if summary.scenario.origin is not None:
+        table.add_row("origin", place_words(summary.scenario.origin))
     table.add_row("altitude (m)", _range(airspace.altitude_m))
     table.add_row("x, east (m)", _range(airspace.x_m))
     table.add_row("y, north (m)", _range(airspace.y_m))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from nullpose.physics import Pose, antenna_gain, received_power_w, to_db
 from nullpose.report.comparison import Comparison
+from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution, Status
@@ -120,15 +121,16 @@ def solution_view(solution: Solution) -> RenderableType:
     head.append(f"\n{status_words(solution)}")
     if solution.note:
         head.append(f"\n{solution.note}")
-    parts: list[RenderableType] = [head, Text(), _pose_table(solution.pose), _links_table(solution)]
+    parts: list[RenderableType] = [head, Text(), _pose_table(solution), _links_table(solution)]
     if solution.scenario.jammers:
         parts.append(_jammers_table(solution))
     return Group(*parts)
 
 
-def _pose_table(pose: Pose) -> Table:
+def _pose_table(solution: Solution) -> Table:
     from rich.table import Table
 
+    pose = solution.pose
     x, y, z = (_fixed(float(component), 4) for component in pose.position_m)
     roll, pitch, yaw = (_degrees(angle, 3) for angle in (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))
     tilt = f"{_degrees(tilt_rad(pose), 3)} deg from vertical"
@@ -139,6 +141,8 @@ def _pose_table(pose: Pose) -> Table:
     table.add_row("attitude", f"roll {roll} deg, pitch {pitch} deg, yaw {yaw} deg")
     table.add_row("antenna axis", f"{tilt}{azimuth}")
     table.add_row("", f"({', '.join(_fixed(float(x), 6) for x in pose.antenna_axis)})")
+    for name, words in frame_rows(solution):
+        table.add_row(name, words)
     return table
 
 
