@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario import Override, Scenario, apply_overrides, load, parse_override
+from nullpose.scenario import (
+    Airframe,
+    NoFlyZone,
+    Override,
+    Scenario,
+    apply_overrides,
+    load,
+    parse_override,
+)
 
 PAPER = load(Path(__file__).parents[2] / "examples" / "paper.toml")
 
@@ -112,6 +120,70 @@ def test_power_in_the_other_unit() -> None:
     assert jammer.transmit_power_w == pytest.approx(10.0, rel=1e-15)
 
 
+def test_keys_of_tables_that_are_not_there_yet() -> None:
+    """Setting a key begins its table; one that could not be set leaves no trace."""
+    assert apply_overrides(PAPER, ["airframe.tilt_max_deg=10"]).airframe == Airframe(tilt_max_deg=10.0)
+    secret = apply_overrides(
+        PAPER,
+        [
+            "objective=secrecy-rate",
+            "transmitter.power_dbm=30",
+            "eavesdroppers=[{position_m = [9, 9, 0]}]",
+            "eavesdroppers.E1.noise_dbm=-90",
+        ],
+    )
+    assert secret.eavesdroppers[0].noise_dbm == -90.0
+    assert list(faults_of("airframe.tilt_deg=10")) == ["airframe.tilt_deg"]
+
+
+def test_presets_and_limits_of_tilt_take_each_others_place() -> None:
+    """Setting a tilt drops the preset, and the other way round; the mount stays."""
+    level = apply_overrides(PAPER, ["airframe={preset = 'level', mount_deg = 90}"])
+    tilted = apply_overrides(level, ["airframe.tilt_max_deg=10"])
+    assert tilted.airframe == Airframe(tilt_max_deg=10.0, mount_deg=90.0)
+    assert apply_overrides(tilted, ["airframe.preset=level"]) == level
+
+
+def test_alternatives_take_each_others_place() -> None:
+    """Setting a weight drops a requirement, and the other way round."""
+    required = apply_overrides(PAPER, ["nodes.S1.min_sinr_db=3"])
+    assert required.nodes[0].min_sinr_db == 3.0
+    weighted = apply_overrides(required, ["nodes.S1.weight=2"])
+    assert (weighted.nodes[0].min_sinr_db, weighted.nodes[0].weight) == (None, 2.0)
+    assert apply_overrides(weighted, ["nodes.S1.min_sinr_db=3"]) == required
+
+
+def test_uncertainty() -> None:
+    """A radius is one value, and of three semi-axes each can be set by its place."""
+    ball = apply_overrides(PAPER, ["jammers.M.uncertainty_m=3", "receiver.attitude_error_deg=2"])
+    assert (ball.jammers[0].uncertainty_m, ball.receiver.attitude_error_deg) == (3.0, 2.0)
+    long = apply_overrides(ball, ["jammers.M.uncertainty_m=[3, 2, 1]", "jammers.M.uncertainty_m[0]=3.5"])
+    assert long.jammers[0].uncertainty_m == (3.5, 2.0, 1.0)
+    message = faults_of("jammers.M.uncertainty_m[0]=1", scenario=ball)["jammers.M.uncertainty_m[0]"]
+    assert message.startswith("uncertainty_m is a single value")
+
+
+def test_zones_and_fences() -> None:
+    """Zones are members by name or index, and of a fence each number has a place."""
+    fenced = apply_overrides(
+        PAPER,
+        [
+            "airspace.geofence_m=[[-50, -50], [50, -50], [50, 90], [-50, 90]]",
+            "airspace.geofence_m[2][1]=99",
+            "airspace.no_fly=[{name = 'tower', centre_m = [17, 15], radius_m = 5}, {x_m=[0, 1], y_m=[0, 1]}]",
+            "airspace.no_fly.tower.radius_m=6",
+            "airspace.no_fly[0].centre_m[0]=18",
+            "airspace.no_fly.Z2.altitude_m=[0, 9]",
+        ],
+    )
+    assert fenced.airspace.geofence_m[2] == (50.0, 99.0)
+    assert fenced.airspace.no_fly[0] == NoFlyZone(name="tower", centre_m=(18, 15), radius_m=6)
+    assert fenced.airspace.no_fly[1].altitude_m == (0.0, 9.0)
+    message = faults_of("airspace.no_fly.towr.radius_m=6", scenario=fenced)["airspace.no_fly.towr.radius_m"]
+    assert "no_fly has no member towr, it has [0] tower, [1] Z2" in message
+    assert message.endswith("did you mean airspace.no_fly.tower.radius_m?")
+
+
 def test_later_overrides_win_and_see_earlier_ones() -> None:
     """Overrides are applied in order, and only the outcome has to be a scenario."""
     assert apply_overrides(PAPER, ["name=a", "name=b"]).name == "b"
@@ -130,9 +202,17 @@ def test_no_override_changes_nothing() -> None:
 
 def test_override_values_from_python() -> None:
     """Overrides may be values, with numpy numbers and arrays."""
+    position = [1.0, 1.0, 9.0]
     changed = apply_overrides(
-        PAPER, [Override("jammers.M.power_w", np.float64(3.0)), Override("nodes.S1.position_m", np.ones(3))]
+        PAPER,
+        [
+            Override("jammers.M.power_w", np.float64(3.0)),
+            Override("nodes.S1.position_m", position),
+            Override("nodes.S1.position_m[2]", 1.0),
+            Override("nodes.S2.position_m", np.zeros(3)),
+        ],
     )
+    assert position == [1.0, 1.0, 9.0]
     assert changed.jammers[0].power_w == 3.0
     assert changed.nodes[0].position_m == (1.0, 1.0, 1.0)
 
@@ -159,7 +239,7 @@ def test_names_that_need_quotes() -> None:
         ("receiver[0]", "no such key", "receiver"),
         ("airspace.altitude_m[2]", "altitude_m has the members [0] to [1]", "airspace.altitude_m"),
         ("airspace.altitude_m.low", "altitude_m has the members [0] to [1]", "airspace.altitude_m"),
-        ("airspace.altitude_m[0][0]", "altitude_m has the members", "airspace.altitude_m"),
+        ("airspace.altitude_m[0][0]", "altitude_m[0] is a single value", "airspace.altitude_m"),
         ("airspace.x_m[0]", "x_m is not given, so set it whole", "airspace.x_m"),
         ("receiver.noise_w[0]", "noise_w is a single value", "receiver.noise_w"),
         ("name.first", "name is a single value", "name"),

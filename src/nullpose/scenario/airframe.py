@@ -18,7 +18,7 @@ PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexaroto
 
 _Preset = Annotated[
     Literal["omnidirectional", "level", "fixed-tilt-hexarotor"],
-    Choice("an airframe that has a name", tuple(PRESET_TILTS_DEG)),
+    Choice("a preset", tuple(PRESET_TILTS_DEG)),
 ]
 
 

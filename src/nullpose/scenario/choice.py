@@ -9,7 +9,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from nullpose.scenario.faults import rejection
-from nullpose.scenario.wording import described, nearest
+from nullpose.scenario.wording import described, listed, nearest
 
 __all__ = ["Choice"]
 
@@ -32,7 +32,8 @@ class Choice:
             return value
         guess = nearest(value, self.words) if isinstance(value, str) else ""
         hint = f'; did you mean "{guess}"?' if guess else ""
-        allowed = " or ".join(f'"{word}"' for word in self.words)
+        quoted = [f'"{word}"' for word in self.words]
+        allowed = f"{listed(quoted[:-1])} or {quoted[-1]}"
         raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{hint}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

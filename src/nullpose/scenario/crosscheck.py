@@ -141,9 +141,10 @@ def _shared_places(points: list[_Member]) -> Iterator[tuple[Place, str]]:
         if not rivals or earlier_m.min() >= SAME_PLACE_M:
             continue
         owner = placed[rivals[int(earlier_m.argmin())]]
+        kinds = " and ".join(dict.fromkeys([str(owner.place[0]), str(lists[index])]))
         message = (
             f"got {list(point.position_m or ())}, the place of {path_of(owner.place)} already; "
-            "nodes and jammers must be at different places; move or remove one"
+            f"{kinds} must be at different places; move or remove one"
         )
         yield (*point.place, "position_m"), message
 

@@ -37,8 +37,6 @@ class GroundPoint(Section):
     """
 
     ways: ClassVar[tuple[tuple[str, ...], ...]] = (("position_m",), GEODETIC_KEYS)
-    letter: ClassVar[str]
-    """The letter of names given by place: S1, S2 and so on for nodes, M1, M2 for jammers."""
 
     name: Label = Field(
         default="",

@@ -5,23 +5,19 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.faults import Place, path_of
-from nullpose.scenario.ground_points import Jammer, Node
-from nullpose.scenario.origin import Origin, unlocated
-from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.names import named
+from nullpose.scenario.origin import unlocated
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, inner_section
 from nullpose.scenario.wording import listed, nearest, plain
 
 __all__ = ["Override", "apply_overrides", "parse_override"]
-
-_TABLES: dict[str, type[Section]] = {"origin": Origin, "airspace": Airspace, "receiver": Receiver}
-_LISTS: dict[str, type[Section]] = {"nodes": Node, "jammers": Jammer}
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
@@ -32,8 +28,9 @@ class Override:
     """A new value for one place of a scenario.
 
     Args:
-        path: the place, such as ``jammers.M.power_w``, ``jammers[0].power_w``, ``nodes.S1.position_m[2]``
-            or ``airspace.altitude_m``; names that hold a dot, a bracket or an equals sign stand in quotes.
+        path: the place, such as ``jammers.M.power_w``, ``jammers[0].power_w``, ``nodes.S1.position_m[2]``,
+            ``airframe.tilt_max_deg`` or ``airspace.no_fly.tower.radius_m``; names that hold a dot, a bracket
+            or an equals sign stand in quotes.
         value: a number, text, list or table, as a TOML file would hold.
     """
 
@@ -64,9 +61,10 @@ def parse_override(text: str) -> Override:
 def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> Scenario:
     """Returns the scenario with the given values in place of its own, validated anew.
 
-    Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency) drops the other;
-    so does setting position_m where a latitude was stated, or a latitude where position_m was. Points that
-    are stated by latitude and longitude stay there when the origin moves.
+    Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency, weight or
+    requirement) drops the other; so does setting position_m where a latitude was stated, or a latitude where
+    position_m was. Points that are stated by latitude and longitude stay there when the origin moves. A table
+    that the scenario has not is begun.
 
     Args:
         scenario: where to start.
@@ -76,14 +74,14 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         ScenarioError: with every path that does not exist and every fault of the result.
     """
     data = scenario.to_dict()
-    known = tuple(_known_paths(scenario))
+    known = tuple(_known_paths(Scenario, scenario))
     faults: list[Fault] = []
     applied: list[Override] = []
     for override in overrides:
         try:
             parsed = parse_override(override) if isinstance(override, str) else override
             applied.append(parsed)
-            _assign(data, _steps(parsed.path), plain(parsed.value))
+            _assign(data, _steps(parsed.path), deepcopy(plain(parsed.value)))
         except ScenarioError as error:
             faults += error.faults
         except _UnknownPathError as error:
@@ -138,28 +136,51 @@ def _assign(data: dict[str, Any], steps: Place, value: object) -> None:
     """Sets the value at the place that the steps lead to."""
     if not steps or steps[0] not in Scenario.model_fields:
         raise _UnknownPathError("there is no such value in a scenario")
-    key, rest = str(steps[0]), steps[1:]
-    if key == "origin":
+    if steps[0] == "origin":
         unlocated(data)
+    _assign_in_table(Scenario, data, steps, value)
+
+
+def _assign_in_table(kind: type[Section], table: object, steps: Place, value: object) -> None:
+    """Sets what the steps lead to inside a table; drops what it takes the place of."""
+    key, rest = steps[0], steps[1:]
+    if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
+        raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
+    inner = inner_section(kind.model_fields[key])
     if not rest:
-        data[key] = value
-    elif key in _TABLES:
-        _assign_key(_TABLES[key], data.get(key), rest, value)
-    elif key in _LISTS:
-        index = _index(key, data[key], rest[0])
-        if len(rest) == 1:
-            data[key][index] = value
-        else:
-            _assign_key(_LISTS[key], data[key][index], rest[1:], value)
+        table[key] = value
+    elif inner is None:
+        _assign_in_row(key, table.get(key), rest, value)
+    elif inner.letter is None:
+        # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
+        begun = table.get(key, {})
+        _assign_in_table(inner, begun, rest, value)
+        table[key] = begun
     else:
-        raise _UnknownPathError(f"{key} is a single value")
+        members: Any = table.get(key)
+        index = _index(key, inner.letter, members, rest[0])
+        if len(rest) == 1:
+            members[index] = value
+        else:
+            _assign_in_table(inner, members[index], rest[1:], value)
+    for other in _replaced(kind, key):
+        table.pop(other, None)
 
 
-def _index(key: str, members: object, step: str | int) -> int:
-    """Returns the index of the node or jammer with a name or an index."""
+def _replaced(kind: type[Section], key: str) -> Iterator[str]:
+    """Yields the keys that state in another way what a key states."""
+    for one, other in (*kind.pairs, *kind.alternatives):
+        if key in (one, other):
+            yield other if key == one else one
+    if any(key in way for way in kind.ways):
+        yield from (other for way in kind.ways if key not in way for other in way)
+
+
+def _index(key: str, letter: str, members: object, step: str | int) -> int:
+    """Returns the index of the member with a name or an index."""
     if not isinstance(members, list) or not members:
         raise _UnknownPathError(f"the scenario has no {key}")
-    names = [member.get("name") if isinstance(member, dict) else None for member in members]
+    names = [member.get("name") if isinstance(member, dict) else None for member in named(members, letter)]
     if step in names:
         return names.index(str(step))
     if isinstance(step, int) and step < len(members):
@@ -168,26 +189,15 @@ def _index(key: str, members: object, step: str | int) -> int:
     raise _UnknownPathError(f"{key} has no member {path_of((step,))}, it has {have}")
 
 
-def _assign_key(kind: type[Section], table: object, steps: Place, value: object) -> None:
-    """Sets a key of a table, or a member of its list; drops the other key of a pair."""
-    key = steps[0]
-    if table is None:
-        raise _UnknownPathError(f"the scenario has no {kind.header.removeprefix('a ')}")
-    if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
-        raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
+def _assign_in_row(key: str, row: object, steps: Place, value: object) -> None:
+    """Sets a member of a list of numbers, or of a list of such lists."""
+    index = steps[0]
+    if not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
+        raise _UnknownPathError(f"{key} {_shape(row)}")
     if len(steps) == 1:
-        table[key] = value
-        for pair in kind.pairs:
-            if key in pair:
-                table.pop(pair[1 - pair.index(key)], None)
-    else:
-        index, row = steps[1], table.get(key)
-        if len(steps) > 2 or not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
-            raise _UnknownPathError(f"{key} {_shape(row)}")
         row[index] = value
-    if any(key in way for way in kind.ways):
-        for other in [other for way in kind.ways if key not in way for other in way]:
-            table.pop(other, None)
+    else:
+        _assign_in_row(f"{key}[{index}]", row[index], steps[1:], value)
 
 
 def _shape(row: object) -> str:
@@ -203,13 +213,16 @@ def _nearest_path(path: str, known: Sequence[str]) -> str:
     return nearest(path, same_depth, at_least=0.7) or beginning or nearest(path, known, at_least=0.0)
 
 
-def _known_paths(scenario: Scenario) -> Iterator[str]:
-    """Yields every path that may be set, members by name and by index."""
-    yield from Scenario.model_fields
-    for key, kind in _TABLES.items():
-        yield from (path_of((key, field)) for field in kind.model_fields)
-    for key, kind in _LISTS.items():
-        for index, member in enumerate(getattr(scenario, key)):
-            for step in (member.name, index):
-                yield path_of((key, step))
-                yield from (path_of((key, step, field)) for field in kind.model_fields)
+def _known_paths(kind: type[Section], values: Section | None, at: Place = ()) -> Iterator[str]:
+    """Yields every path that may be set below a place, members by name and by index."""
+    for key, field in kind.model_fields.items():
+        yield path_of((*at, key))
+        inner = inner_section(field)
+        value = getattr(values, key, None)
+        if inner is not None and inner.letter is None:
+            yield from _known_paths(inner, value, (*at, key))
+        elif inner is not None:
+            for index, member in enumerate(value or ()):
+                for step in (member.name, index):
+                    yield path_of((*at, key, step))
+                    yield from _known_paths(type(member), member, (*at, key, step))

@@ -13,6 +13,7 @@ from nullpose.scenario.ellipsoid import distance_m
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.room import has_room
 from nullpose.scenario.subdivision import find_position
+from nullpose.scenario.wording import listed
 
 __all__ = ["Known", "has_any_room", "reach_faults"]
 
@@ -72,6 +73,7 @@ def reach_faults(airspace: Airspace, points: Sequence[Known], error_m: float) ->
         error_m: how far the vehicle may be from where it is meant to be [m].
     """
     centres_m = np.array([point.position_m for point in points], dtype=np.float64).reshape(-1, 3)
+    exact = []
     for point in points:
         total_m = point.reach_m + error_m
         if total_m == 0.0 or total_m < airspace.keep_out_m:
@@ -85,8 +87,24 @@ def reach_faults(airspace: Airspace, points: Sequence[Known], error_m: float) ->
         lower_m = np.maximum(airspace.lower_m, point.position_m - half_m)
         upper_m = np.minimum(airspace.upper_m, point.position_m + half_m)
         met_m = find_position(lower_m, upper_m, clearance_m).position_m
-        if met_m is not None:
-            yield _fault(airspace, point, error_m, met_m)
+        if met_m is None:
+            continue
+        if point.reach_m == 0.0:
+            exact.append(path_of(point.place))
+            continue
+        slack = f", with position_error_m = {error_m:g}," if error_m else ""
+        message = (
+            f"the positions that it allows{slack} reach into the airspace, at "
+            f"{[float(f'{x:.4g}') for x in met_m]} for one, where the vehicle may meet it; make it smaller, "
+            f"keep the airspace away from it, or make keep_out_m more than {total_m:g}"
+        )
+        yield (*point.place, "uncertainty_m"), message
+    if exact:
+        message = (
+            f"a vehicle up to {error_m:g} m from where it is meant to be may meet {listed(exact)}; make it "
+            f"smaller, or keep_out_m more than {error_m:g}"
+        )
+        yield ("receiver", "position_error_m"), message
 
 
 def _clearance_m(airspace: Airspace, centres_m: Array, at: Array) -> Array:
@@ -95,20 +113,3 @@ def _clearance_m(airspace: Airspace, centres_m: Array, at: Array) -> Array:
         return clearance
     nearest = np.linalg.norm(at[:, None] - centres_m, axis=-1).min(axis=1)
     return np.asarray(np.minimum(clearance, nearest - airspace.keep_out_m))
-
-
-def _fault(airspace: Airspace, point: Known, error_m: float, met_m: Array) -> tuple[Place, str]:
-    where = [float(f"{x:.4g}") for x in met_m]
-    enough = f"keep_out_m more than {point.reach_m + error_m:g}"
-    if point.reach_m == 0.0:
-        message = (
-            f"a vehicle up to {error_m:g} m from where it is meant to be may meet {path_of(point.place)}, "
-            f"from {where} for one; make it smaller, or {enough}"
-        )
-        return ("receiver", "position_error_m"), message
-    slack = f", with position_error_m = {error_m:g}," if error_m else ""
-    message = (
-        f"the positions that it allows{slack} reach into the airspace, at {where} for one, where the vehicle "
-        f"may meet it; make it smaller, keep the airspace away from it, or make {enough}"
-    )
-    return (*point.place, "uncertainty_m"), message

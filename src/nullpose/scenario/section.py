@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic.fields import FieldInfo
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from nullpose.scenario.faults import Place, as_error_details, collected, rejection, scenario_error
 from nullpose.scenario.rewording import table_faults
 from nullpose.scenario.wording import described
 
-__all__ = ["Section"]
+__all__ = ["Section", "inner_section"]
 
 
 class Section(BaseModel):
@@ -22,6 +23,8 @@ class Section(BaseModel):
 
     header: ClassVar[str] = ""
     """What the table is called and how it is headed in a file."""
+    letter: ClassVar[str | None] = None
+    """The letter of names given by place, as the S of S1, S2, ...; None for a table alone of its kind."""
     pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Keys of which exactly one is given, each pair being one quantity in two units."""
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()
@@ -140,6 +143,22 @@ class Section(BaseModel):
 
         def __delattr__(self, name: str) -> None:
             raise AttributeError(f"cannot delete {name}: scenarios are frozen")
+
+
+def inner_section(field: FieldInfo, kind: type[Section] = Section) -> type[Section] | None:
+    """Returns the kind of table that a field holds, or a list of; None if it holds no table of a kind.
+
+    Args:
+        field: a field of a table.
+        kind: the kind looked for, with those made from it.
+    """
+    pending = [field.annotation]
+    while pending:
+        annotation = pending.pop()
+        if isinstance(annotation, type) and issubclass(annotation, kind):
+            return annotation
+        pending += get_args(annotation)
+    return None
 
 
 def _plain(value: object) -> object:
