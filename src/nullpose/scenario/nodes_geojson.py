@@ -91,7 +91,7 @@ def _features(data: object) -> list[object]:
         got = described(data.get("type"))
         faults.append(Fault("type", f'got {got}, must be "FeatureCollection", of Points with properties'))
     features = data.get("features")
-    if not isinstance(features, list) or not features:
+    if not faults and not (isinstance(features, list) and features):
         faults.append(Fault("features", f"got {described(features)}, must be a list of one feature or more"))
     if "crs" in data and not json.dumps(data["crs"]).rstrip('}"]').endswith(_WGS84):
         message = (

@@ -1,0 +1,147 @@
+"""A pose in ENU with quaternions, in NED and on the Earth, against scipy's rotations and pymap3d."""
+
+import json
+import math
+from itertools import pairwise
+
+import numpy as np
+import pymap3d
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics import (
+    Pose,
+    flu_from_frd,
+    frd_from_flu,
+    pose_frames,
+    rotation_world_from_body,
+)
+from nullpose.scenario import Origin, Scenario
+from nullpose.scenario.geodesy import ned_from_enu
+
+LOCAL = Scenario.from_dict(
+    {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
+    }
+)
+ON_EARTH = LOCAL.model_copy(update={"origin": Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0)})
+
+angles = st.floats(-math.pi, math.pi)
+metres = st.floats(-1e4, 1e4)
+poses = st.builds(Pose, st.tuples(metres, metres, metres), angles, angles, angles)
+vectors = st.tuples(metres, metres, metres)
+
+
+@given(poses)
+def test_the_quaternion_is_the_rotation(pose: Pose) -> None:
+    """As scipy reads it, scalar last, it is the matrix of the conventions; its two orders are one."""
+    enu = pose_frames(LOCAL, pose).enu
+    matrix = rotation_world_from_body(pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
+    np.testing.assert_allclose(Rotation.from_quat(enu.quaternion_xyzw).as_matrix(), matrix, atol=1e-14)
+    w, x, y, z = enu.quaternion_wxyz
+    assert enu.quaternion_xyzw == (x, y, z, w)
+    assert math.hypot(w, x, y, z) == pytest.approx(1.0, abs=1e-15)
+    assert w >= 0.0
+
+
+@given(poses)
+def test_scipy_gives_the_same_quaternion(pose: Pose) -> None:
+    """Roll, pitch and yaw about fixed axes, turned into a quaternion by scipy, up to the sign."""
+    theirs = Rotation.from_euler("xyz", [pose.roll_rad, pose.pitch_rad, pose.yaw_rad]).as_quat()
+    ours = np.array(pose_frames(LOCAL, pose).enu.quaternion_xyzw)
+    assert abs(theirs @ ours) == pytest.approx(1.0, abs=1e-14)
+
+
+@given(poses, vectors)
+def test_ned_and_frd_see_the_same_vehicle(pose: Pose, body: tuple[float, float, float]) -> None:
+    """A vector fixed to the body, told in FRD and turned to NED, is the one told in FLU and turned to ENU."""
+    frames = pose_frames(LOCAL, pose)
+    enu = Rotation.from_quat(frames.enu.quaternion_xyzw).apply(body)
+    ned = Rotation.from_quat(frames.ned.quaternion_xyzw).apply(frd_from_flu(body))
+    np.testing.assert_allclose(ned, ned_from_enu(enu), atol=1e-10)
+
+
+@given(poses)
+def test_the_angles_in_ned_give_its_quaternion(pose: Pose) -> None:
+    """Roll, pitch and yaw of the NED frame are those of its own quaternion, by scipy."""
+    ned = pose_frames(LOCAL, pose).ned
+    theirs = Rotation.from_euler("ZYX", [ned.yaw_rad, ned.pitch_rad, ned.roll_rad])
+    turned = theirs.inv() * Rotation.from_quat(ned.quaternion_xyzw)
+    assert turned.magnitude() < 1e-12
+    assert -math.pi < ned.yaw_rad <= math.pi
+
+
+@given(poses)
+def test_angles_change_by_the_rule_that_is_stated(pose: Pose) -> None:
+    """Roll stays, pitch changes its sign, and yaw becomes the bearing of the nose."""
+    ned = pose_frames(LOCAL, pose).ned
+    assert (ned.roll_rad, ned.pitch_rad) == (pose.roll_rad, -pose.pitch_rad)
+    level = pose_frames(LOCAL, Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad)).enu
+    east, north, _ = Rotation.from_quat(level.quaternion_xyzw).apply([1.0, 0.0, 0.0])
+    bearing = math.atan2(east, north)
+    assert math.cos(bearing - ned.yaw_rad) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_level_vehicle_that_faces_north() -> None:
+    """It has no rotation at all in NED, and a quarter turn in ENU."""
+    frames = pose_frames(LOCAL, Pose((1.0, 2.0, 3.0), 0.0, 0.0, math.pi / 2.0))
+    assert frames.ned.quaternion_wxyz == (1.0, 0.0, 0.0, 0.0)
+    np.testing.assert_allclose(frames.enu.quaternion_wxyz, [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)])
+    assert frames.enu.position_m == (1.0, 2.0, 3.0)
+    assert frames.ned.position_m == (2.0, 1.0, -3.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "world"),
+    [((1, 0, 0), (0, 0, -1)), ((0, 1, 0), (0, 1, 0)), ((0, 0, 1), (1, 0, 0))],
+)
+def test_pitch_of_a_quarter_turn(body: tuple[int, ...], world: tuple[int, ...]) -> None:
+    """With a pitch of 90 degrees the nose points down, left stays north, and the dipole points east."""
+    frames = pose_frames(LOCAL, Pose((0.0, 0.0, 0.0), 0.0, math.pi / 2.0))
+    turned = Rotation.from_quat(frames.enu.quaternion_xyzw).apply(body)
+    np.testing.assert_allclose(turned, world, atol=1e-15)
+    turned = Rotation.from_quat(frames.ned.quaternion_xyzw).apply(frd_from_flu(body))
+    np.testing.assert_allclose(turned, ned_from_enu(world), atol=1e-15)
+    assert (frames.ned.pitch_rad, frames.ned.yaw_rad) == (-math.pi / 2.0, math.pi / 2.0)
+
+
+@given(poses)
+def test_the_place_on_the_earth_is_that_of_the_position(pose: Pose) -> None:
+    """Latitude, longitude and altitude are pymap3d's for the position and the scenario's origin."""
+    place = pose_frames(ON_EARTH, pose).geodetic
+    assert place is not None
+    theirs = pymap3d.enu2geodetic(*pose.position_m, 50.0, 14.5, 230.0)
+    assert (place.lat_deg, place.lon_deg, place.alt_m) == pytest.approx(tuple(map(float, theirs)), abs=1e-12)
+
+
+def test_plain_data_names_the_order_and_leaves_out_what_is_not_known() -> None:
+    """Without an origin there is no place on the Earth, not an empty one; both orders are there by name."""
+    pose = Pose((1.0, 2.0, 3.0), 0.1, 0.2, 0.3)
+    local, earthly = (pose_frames(scenario, pose).to_dict() for scenario in (LOCAL, ON_EARTH))
+    assert list(local) == ["enu", "ned"]
+    assert list(earthly) == ["enu", "ned", "geodetic"]
+    assert list(earthly["geodetic"]) == ["lat_deg", "lon_deg", "alt_m"]
+    for frame in ("enu", "ned"):
+        wxyz, xyzw = local[frame]["quaternion_wxyz"], local[frame]["quaternion_xyzw"]
+        assert [wxyz[i] for i in (1, 2, 3, 0)] == xyzw
+    assert json.loads(json.dumps(earthly, allow_nan=False)) == earthly
+
+
+def test_body_frames() -> None:
+    """Left is minus right and up minus down; twice is nothing, and no zero gets a sign."""
+    assert frd_from_flu([1.0, 2.0, 3.0]).tolist() == [1.0, -2.0, -3.0]
+    assert flu_from_frd(frd_from_flu([[1.0, 0.0, 3.0]])).tolist() == [[1.0, 0.0, 3.0]]
+    assert math.copysign(1.0, frd_from_flu([0.0, 0.0, 0.0])[1]) == 1.0
+
+
+def test_turning_on_and_on_keeps_the_angle_in_range() -> None:
+    """Yaw far beyond a turn is reported as the same direction within one."""
+    for turns in range(-3, 4):
+        enu = pose_frames(LOCAL, Pose((0.0, 0.0, 0.0), 0.0, 0.0, 1.0 + turns * math.tau)).enu
+        assert enu.yaw_rad == pytest.approx(1.0, abs=1e-12)
+    headings = [pose_frames(LOCAL, Pose((0, 0, 0), 0, 0, yaw)).ned.yaw_rad for yaw in (0.0, 0.5, 1.0)]
+    assert all(later < earlier for earlier, later in pairwise(headings))

@@ -1,0 +1,147 @@
+"""Places on the Earth: against ECEF coordinates worked out here, against pymap3d, and there and back."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pymap3d
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.scenario.geodesy import enu_from_geodetic, enu_from_ned, geodetic_from_enu, ned_from_enu
+
+SEMI_MAJOR_M = 6378137.0
+FLATTENING = 1.0 / 298.257223563
+ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
+
+origins = st.tuples(st.floats(-90.0, 90.0), st.floats(-180.0, 180.0), st.floats(-500.0, 9000.0))
+sideways = st.floats(-20e3, 20e3)
+positions = st.tuples(sideways, sideways, st.floats(-5e3, 20e3))
+
+
+def ecef_m(geodetic: tuple[float, float, float]) -> np.ndarray:
+    """Returns Earth-centred coordinates from the textbook's closed form."""
+    lat, lon = math.radians(geodetic[0]), math.radians(geodetic[1])
+    normal_m = SEMI_MAJOR_M / math.sqrt(1.0 - ECCENTRICITY_SQUARED * math.sin(lat) ** 2)
+    axial_m = (normal_m + geodetic[2]) * math.cos(lat)
+    polar_m = (normal_m * (1.0 - ECCENTRICITY_SQUARED) + geodetic[2]) * math.sin(lat)
+    return np.array([axial_m * math.cos(lon), axial_m * math.sin(lon), polar_m])
+
+
+def east_north_up(origin: tuple[float, float, float]) -> np.ndarray:
+    """Returns the three directions at a place as rows, in Earth-centred coordinates."""
+    lat, lon = math.radians(origin[0]), math.radians(origin[1])
+    east = np.array([-math.sin(lon), math.cos(lon), 0.0])
+    up = np.array([math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat)])
+    return np.stack([east, np.cross(up, east), up])
+
+
+@given(origins, positions)
+def test_there_and_back(origin: tuple[float, float, float], position_m: tuple[float, float, float]) -> None:
+    """A position within 20 km comes back from latitude and longitude to within a micrometre."""
+    geodetic = geodetic_from_enu(position_m, origin)
+    np.testing.assert_allclose(enu_from_geodetic(geodetic, origin), position_m, rtol=0, atol=1e-6)
+
+
+@given(origins, positions)
+def test_positions_are_those_of_earth_centred_coordinates(
+    origin: tuple[float, float, float], position_m: tuple[float, float, float]
+) -> None:
+    """The latitude and longitude of a position, taken to Earth-centred coordinates, are where it points."""
+    lat_deg, lon_deg, alt_m = geodetic_from_enu(position_m, origin)
+    assert -90.0 <= lat_deg <= 90.0
+    assert -180.0 <= lon_deg <= 180.0
+    offset_m = ecef_m((lat_deg, lon_deg, alt_m)) - ecef_m(origin)
+    np.testing.assert_allclose(east_north_up(origin) @ offset_m, position_m, rtol=0, atol=1e-6)
+
+
+@given(origins, positions)
+def test_pymap3d_agrees_by_its_other_functions(
+    origin: tuple[float, float, float], position_m: tuple[float, float, float]
+) -> None:
+    """Its conversions to NED and to range and bearing, which are not called here, say the same."""
+    lat_deg, lon_deg, alt_m = geodetic_from_enu(position_m, origin)
+    ned_m = pymap3d.geodetic2ned(lat_deg, lon_deg, alt_m, *origin)
+    np.testing.assert_allclose(ned_m, ned_from_enu(position_m), rtol=0, atol=1e-6)
+    bearing, elevation, distance_m = pymap3d.geodetic2aer(lat_deg, lon_deg, alt_m, *origin)
+    level_m = distance_m * math.cos(math.radians(elevation))
+    east, north = level_m * math.sin(math.radians(bearing)), level_m * math.cos(math.radians(bearing))
+    up = distance_m * math.sin(math.radians(elevation))
+    np.testing.assert_allclose([east, north, up], position_m, rtol=0, atol=1e-6)
+
+
+@given(origins, positions, positions)
+def test_the_frame_is_rigid(
+    origin: tuple[float, float, float], one_m: tuple[float, float, float], other_m: tuple[float, float, float]
+) -> None:
+    """The distance of two positions is the straight one through the Earth-centred frame."""
+    one, other = (ecef_m(tuple(geodetic_from_enu(each, origin))) for each in (one_m, other_m))
+    assert math.dist(one, other) == pytest.approx(math.dist(one_m, other_m), abs=1e-6)
+
+
+@given(origins)
+def test_the_origin_is_zero(origin: tuple[float, float, float]) -> None:
+    """The origin itself is at zero, and straight up from it only the altitude changes."""
+    np.testing.assert_allclose(enu_from_geodetic(origin, origin), 0.0, rtol=0, atol=1e-8)
+    lat_deg, _, alt_m = geodetic_from_enu((0.0, 0.0, 120.0), origin)
+    assert lat_deg == pytest.approx(origin[0], abs=1e-12)
+    assert alt_m == pytest.approx(origin[2] + 120.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("origin", [(50.0, 14.5, 0.0), (-33.0, 151.0, 600.0)])
+def test_short_ways_are_arcs_of_the_curvature(origin: tuple[float, float, float]) -> None:
+    """Ten metres north or east are ten metres over the radii of curvature, M and N cos(latitude)."""
+    lat = math.radians(origin[0])
+    bent = 1.0 - ECCENTRICITY_SQUARED * math.sin(lat) ** 2
+    meridian_m = SEMI_MAJOR_M * (1.0 - ECCENTRICITY_SQUARED) / bent**1.5 + origin[2]
+    parallel_m = (SEMI_MAJOR_M / math.sqrt(bent) + origin[2]) * math.cos(lat)
+    north, east = geodetic_from_enu([[0.0, 10.0, 0.0], [10.0, 0.0, 0.0]], origin)
+    assert north[0] - origin[0] == pytest.approx(math.degrees(10.0 / meridian_m), rel=1e-5)
+    assert east[1] - origin[1] == pytest.approx(math.degrees(10.0 / parallel_m), rel=1e-5)
+
+
+def test_the_ground_falls_away() -> None:
+    """A place at the origin's altitude lies d^2 / 2R below the frame's level, 0.8 m at 3.2 km."""
+    place = (50.0, 14.5 + 3200.0 / 71696.0, 230.0)
+    east, _, up = enu_from_geodetic(place, (50.0, 14.5, 230.0))
+    assert east == pytest.approx(3200.0, rel=1e-3)
+    assert up == pytest.approx(-(east**2) / (2.0 * 6.39e6), rel=1e-2)
+    assert up == pytest.approx(-0.8, abs=0.01)
+
+
+def test_arrays_are_converted_row_by_row() -> None:
+    """Any leading shape goes through, each row as if it were alone."""
+    origin = (12.0, 34.0, 56.0)
+    many = np.arange(24.0).reshape(2, 4, 3)
+    geodetic = geodetic_from_enu(many, origin)
+    assert geodetic.shape == (2, 4, 3)
+    np.testing.assert_array_equal(geodetic[1, 2], geodetic_from_enu(many[1, 2], origin))
+    np.testing.assert_array_equal(
+        enu_from_geodetic(geodetic, origin)[0, 3], enu_from_geodetic(geodetic[0, 3], origin)
+    )
+
+
+def test_north_east_down() -> None:
+    """East is second and up is down; twice is nothing, and no zero gets a sign."""
+    assert ned_from_enu([1.0, 2.0, 3.0]).tolist() == [2.0, 1.0, -3.0]
+    assert enu_from_ned(ned_from_enu([[1.0, 2.0, 3.0], [4.0, 5.0, 0.0]])).tolist() == [[1, 2, 3], [4, 5, 0]]
+    assert math.copysign(1.0, ned_from_enu([0.0, 0.0, 0.0])[2]) == 1.0
+
+
+def test_only_places_on_the_earth_import_the_library() -> None:
+    """A scenario in metres leaves pymap3d alone; one with latitudes imports it."""
+    code = (
+        "import sys; from nullpose.scenario import Scenario\n"
+        "data = {'airspace': {'altitude_m': [8, 30]}, 'receiver': {'noise_w': 1.0, 'frequency_hz': 1e9},\n"
+        "        'origin': {'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}, 'nodes': [{'power_w': 1.0} | {place}]}\n"
+        "Scenario.from_dict(data); print('pymap3d' in sys.modules)"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code.replace("{place}", place)], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        for place in ("{'position_m': [0, 0, 0]}", "{'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}")
+    ]
+    assert said == ["False", "True"]

@@ -1,0 +1,203 @@
+"""Points by latitude and longitude, and the origin from which they get their metres."""
+
+import json
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Node, Origin, Scenario
+from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
+
+ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
+HERE = {"lat_deg": 50.001, "lon_deg": 14.502, "alt_m": 232.0}
+THERE = {"lat_deg": 50.002, "lon_deg": 14.501, "alt_m": 231.0}
+NAN = float("nan")
+
+
+def data(**changes: Any) -> dict[str, Any]:
+    """Returns a scenario with two nodes and a jammer by latitude and longitude; None takes a key away."""
+    whole = {
+        "origin": ORIGIN,
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"power_w": 1.0} | HERE, {"power_w": 2.0} | THERE],
+        "jammers": [{"power_w": 3.0, "lat_deg": 50.0015, "lon_deg": 14.503, "alt_m": 230.0}],
+    }
+    return {key: value for key, value in (whole | changes).items() if value is not None}
+
+
+def faults_of(**changes: Any) -> dict[str, str]:
+    """Returns the messages of the faults, by path."""
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_dict(data(**changes))
+    faults = {fault.path: fault.message for fault in caught.value.faults}
+    assert len(faults) == len(caught.value.faults)
+    return faults
+
+
+def test_positions_follow_from_the_origin() -> None:
+    """Every point has its position in metres from the origin, and keeps what was stated."""
+    scenario = Scenario.from_dict(data())
+    places = [[50.001, 14.502, 232.0], [50.002, 14.501, 231.0]]
+    expected = enu_from_geodetic(places, [50.0, 14.5, 230.0])
+    np.testing.assert_array_equal(scenario.node_positions_m, expected)
+    assert scenario.jammer_positions_m[0] == pytest.approx([215.1, 166.8, 0.0], abs=0.1)
+    assert (scenario.nodes[0].lat_deg, scenario.nodes[0].alt_m) == (50.001, 232.0)
+    assert scenario.origin == Origin(**ORIGIN)
+
+
+def test_a_scenario_in_metres_is_the_same() -> None:
+    """Stated by latitude and longitude or in metres, the points are at the same places."""
+    earthly = Scenario.from_dict(data())
+    points = [{"power_w": 1.0, "position_m": list(position)} for position in earthly.node_positions_m]
+    local = Scenario.from_dict(data(nodes=points, jammers=None))
+    np.testing.assert_array_equal(local.node_positions_m, earthly.node_positions_m)
+    assert local.nodes[0].lat_deg is None
+
+
+def test_written_and_read_back() -> None:
+    """What is written holds both the metres and the latitude, and loads as an equal scenario."""
+    scenario = Scenario.from_dict(data())
+    assert Scenario.from_dict(json.loads(json.dumps(scenario.to_dict(), allow_nan=False))) == scenario
+    assert Scenario.from_dict(tomllib.loads(scenario.to_toml())) == scenario
+    assert scenario.to_dict()["nodes"][0].keys() == {"name", "position_m", *HERE, "power_w"}
+    assert scenario.to_dict()["origin"] == ORIGIN
+    assert scenario.model_copy(update={"name": "again"}).nodes == scenario.nodes
+
+
+def test_a_position_that_was_written_is_kept_to_the_last_bit() -> None:
+    """A position that differs from its latitude in the last digits only is taken as it stands."""
+    written = Scenario.from_dict(data()).to_dict()
+    written["nodes"][0]["position_m"][0] += 1e-9
+    moved = Scenario.from_dict(written)
+    assert list(moved.nodes[0].position_m) == written["nodes"][0]["position_m"]
+
+
+@given(st.floats(-80.0, 80.0), st.floats(-179.0, 179.0), st.floats(-20e3, 20e3), st.floats(-20e3, 20e3))
+def test_any_place_within_20_km(lat_deg: float, lon_deg: float, east_m: float, north_m: float) -> None:
+    """Wherever the origin is, a point stated by its latitude is where it was measured from."""
+    origin = [lat_deg, lon_deg, 100.0]
+    place = dict(zip(ORIGIN, geodetic_from_enu([east_m, north_m, 5.0], origin).tolist(), strict=True))
+    scenario = Scenario.from_dict(
+        data(origin=dict(zip(ORIGIN, origin, strict=True)), nodes=[{"power_w": 1.0} | place], jammers=None)
+    )
+    np.testing.assert_allclose(scenario.node_positions_m, [[east_m, north_m, 5.0]], rtol=0, atol=1e-6)
+
+
+def test_missing_origin() -> None:
+    """Without an origin there is one fault, however many points need it."""
+    assert list(faults_of(origin=None)) == ["origin"]
+    assert "missing, but nodes[0] is stated by lat_deg, lon_deg and alt_m" in faults_of(origin=None)["origin"]
+    assert "add a table headed [origin]" in faults_of(origin=None)["origin"]
+
+
+def test_misspelt_origin() -> None:
+    """A misspelt origin is told as that, and not as missing too."""
+    faults = faults_of(origin=None, orgin=ORIGIN)
+    assert list(faults) == ["orgin"]
+    assert 'did you mean "origin"?' in faults["orgin"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("lat_deg", 91.0, "got 91.0, must be a latitude in degrees from -90 to 90"),
+        ("lat_deg", NAN, "got NaN, must be a latitude"),
+        ("lon_deg", 180.5, "got 180.5, must be a longitude in degrees from -180 to 180"),
+        ("lon_deg", "14.5", "write it without quotes"),
+        ("alt_m", 2e5, "must be an altitude in m over the WGS-84 ellipsoid from -10000 to 100000"),
+        ("alt_m", [1.0], "got a list of one value, must be a number"),
+    ],
+)
+def test_values_out_of_range(key: str, value: object, words: str) -> None:
+    """In the origin or in a point, a number that is none is one fault, at its own place."""
+    for path, faults in (
+        (f"origin.{key}", faults_of(origin=ORIGIN | {key: value})),
+        (
+            f"nodes[1].{key}",
+            faults_of(nodes=[{"power_w": 1.0} | HERE, {"power_w": 1.0} | THERE | {key: value}]),
+        ),
+    ):
+        assert list(faults) == [path]
+        assert words in faults[path]
+
+
+@pytest.mark.parametrize("key", list(ORIGIN))
+def test_all_three_or_none(key: str) -> None:
+    """A place needs all three keys: one that is left out is named once, in a point and in the origin."""
+    part = {other: value for other, value in HERE.items() if other != key}
+    faults = faults_of(nodes=[{"power_w": 1.0} | part])
+    assert list(faults) == ["nodes[0]"]
+    assert f"without {key}; give all three, or position_m" in faults["nodes[0]"]
+    faults = faults_of(origin={other: value for other, value in ORIGIN.items() if other != key})
+    assert list(faults) == [f"origin.{key}"]
+    assert "missing; it must be given" in faults[f"origin.{key}"]
+
+
+def test_a_misspelt_key_is_told_alone() -> None:
+    """A latitude that is misspelt is not told as missing too, nor is the position."""
+    part = {"power_w": 1.0, "lat": 50.001, "lon_deg": 14.502, "alt_m": 232.0}
+    faults = faults_of(nodes=[part])
+    assert list(faults) == ["nodes[0].lat"]
+    assert 'did you mean "lat_deg"?' in faults["nodes[0].lat"]
+
+
+def test_mixed_points() -> None:
+    """Points in metres among points by latitude are refused, at the first that differs."""
+    local = {"power_w": 1.0, "position_m": [1.0, 2.0, 3.0]}
+    faults = faults_of(jammers=[local, local | {"position_m": [4.0, 5.0, 6.0]}])
+    assert list(faults) == ["jammers[0]"]
+    assert "stated by position_m, but nodes[0] by lat_deg, lon_deg and alt_m" in faults["jammers[0]"]
+    faults = faults_of(nodes=[local])
+    assert list(faults) == ["jammers[0]"]
+    assert "stated by lat_deg, lon_deg and alt_m, but nodes[0] by position_m" in faults["jammers[0]"]
+
+
+def test_both_ways_in_one_point() -> None:
+    """A point may be stated both ways if they agree; if not, it is told how far apart they are."""
+    place = enu_from_geodetic([50.001, 14.502, 232.0], [50.0, 14.5, 230.0])
+    node = {"power_w": 1.0} | HERE
+    assert Scenario.from_dict(data(nodes=[node | {"position_m": place}])).nodes[0].lat_deg == 50.001
+    faults = faults_of(nodes=[node | {"position_m": (place + np.array([3.0, 4.0, 0.0])).tolist()}])
+    assert list(faults) == ["nodes[0]"]
+    assert "are 5 m apart, must be one place" in faults["nodes[0]"]
+
+
+def test_exchanged_latitude_and_longitude() -> None:
+    """A point thousands of kilometres away is refused with what is likely wrong with it."""
+    faults = faults_of(nodes=[{"power_w": 1.0, "lat_deg": 14.5, "lon_deg": 50.0, "alt_m": 230.0}])
+    assert list(faults) == ["nodes[0]"]
+    assert "km from the origin, must be within 100 km" in faults["nodes[0]"]
+    assert "are latitude and longitude exchanged" in faults["nodes[0]"]
+
+
+def test_other_faults_are_reported_beside() -> None:
+    """A missing origin hides no fault of the points themselves, and none of the rest."""
+    nodes = [{"power_w": -1.0} | HERE, {"power_w": 2.0, "name": "S1"} | THERE]
+    faults = faults_of(origin=None, nodes=nodes, airspace={"altitude_m": [30.0, 8.0]})
+    assert set(faults) == {"origin", "airspace.altitude_m", "nodes[0].power_w", "nodes[1].name"}
+
+
+def test_two_points_at_one_place() -> None:
+    """Points by latitude are held to different places, as those in metres are."""
+    faults = faults_of(nodes=[{"power_w": 1.0} | HERE, {"power_w": 2.0} | HERE])
+    assert list(faults) == ["nodes[1].position_m"]
+    assert "the place of nodes[0] already" in faults["nodes[1].position_m"]
+
+
+def test_a_point_alone_has_no_origin() -> None:
+    """A node built outside a scenario is told that a latitude needs the scenario's origin."""
+    with pytest.raises(ScenarioError, match=r"need the \[origin\] of a scenario; give position_m"):
+        Node(power_w=1.0, **HERE)
+
+
+def test_nodes_built_in_python_move_with_no_origin() -> None:
+    """Nodes taken from one scenario into another with a different origin are refused, not moved silently."""
+    scenario = Scenario.from_dict(data())
+    with pytest.raises(ScenarioError, match="m apart, must be one place"):
+        scenario.model_copy(update={"origin": Origin(lat_deg=50.001, lon_deg=14.5, alt_m=230.0)})
