@@ -1,0 +1,197 @@
+"""A solution as GeoJSON: valid by RFC 7946, every place where the scenario has it, and readable again."""
+
+import json
+import math
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nullpose import Pose, Solution, solve
+from nullpose.errors import OutputError, UsageError
+from nullpose.report.export import require_origin, solution_geojson, write_geojson
+from nullpose.scenario import Scenario, load
+from nullpose.scenario.geodesy import enu_from_geodetic
+
+ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
+AIRSPACE = {
+    "altitude_m": [8.0, 30.0],
+    "x_m": [-60.0, 60.0],
+    "y_m": [-40.0, 90.0],
+    "geofence_m": [[-50.0, 80.0], [50.0, 80.0], [0.0, -30.0]],  # clockwise
+    "no_fly": [
+        {"name": "mast", "centre_m": [30.0, 40.0], "radius_m": 10.0, "altitude_m": [0.0, 20.0]},
+        {"x_m": [-30.0, -20.0], "y_m": [50.0, 60.0]},
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def solution(paper: Scenario) -> Solution:
+    """The paper's solution, told of an origin and a richer airspace afterwards: neither moves a number."""
+    scenario = Scenario.from_dict(paper.to_dict() | {"origin": ORIGIN, "airspace": AIRSPACE})
+    return replace(solve(paper, certify=False), scenario=scenario)
+
+
+def features(solution: Solution, kind: str) -> list[dict[str, Any]]:
+    """Returns the features of a kind, as JSON has them."""
+    collection = json.loads(json.dumps(solution_geojson(solution), allow_nan=False))
+    assert collection["type"] == "FeatureCollection"
+    return [each for each in collection["features"] if each["properties"]["kind"] == kind]
+
+
+def local_m(coordinates: list[float], alt_m: float = 238.0) -> np.ndarray:
+    """Returns GeoJSON coordinates in metres from the origin."""
+    lon_deg, lat_deg, *height = coordinates
+    return enu_from_geodetic([lat_deg, lon_deg, *(height or [alt_m])], list(ORIGIN.values()))
+
+
+def test_every_part_is_there(solution: Solution) -> None:
+    """One feature for each point and each outline, each of the type that its kind has."""
+    found = Counter(
+        (each["properties"]["kind"], each["geometry"]["type"])
+        for each in json.loads(json.dumps(solution_geojson(solution)))["features"]
+    )
+    assert found == {
+        ("pose", "Point"): 1,
+        ("node", "Point"): 2,
+        ("jammer", "Point"): 1,
+        ("airspace", "Polygon"): 1,
+        ("geofence", "Polygon"): 1,
+        ("no-fly", "Polygon"): 2,
+    }
+
+
+def test_points_are_where_the_scenario_has_them(solution: Solution) -> None:
+    """Longitude, latitude and altitude, in this order, lead back to the positions within a millimetre."""
+    (pose,) = features(solution, "pose")
+    np.testing.assert_allclose(
+        local_m(pose["geometry"]["coordinates"]), solution.pose.position_m, rtol=0, atol=1e-3
+    )
+    for kind, points in (("node", solution.scenario.nodes), ("jammer", solution.scenario.jammers)):
+        for feature, point in zip(features(solution, kind), points, strict=True):
+            place = local_m(feature["geometry"]["coordinates"])
+            np.testing.assert_allclose(place, point.position_m, rtol=0, atol=1e-3)
+            assert feature["properties"]["name"] == point.name
+            assert feature["properties"]["position_m"] == list(point.position_m)
+
+
+def test_properties_are_the_solutions(solution: Solution) -> None:
+    """Value, attitude and links are those of the solution, angles in degrees."""
+    properties = features(solution, "pose")[0]["properties"]
+    frames = solution.to_dict()["pose"]["frames"]
+    assert properties["value_db"] == solution.objective.value_db
+    assert properties["status"] == "best-found"
+    assert properties["upper_bound"] is None
+    for frame in ("enu", "ned"):
+        assert properties[f"{frame}_quaternion_wxyz"] == frames[frame]["quaternion_wxyz"]
+        for angle in ("roll", "pitch", "yaw"):
+            assert properties[f"{frame}_{angle}_deg"] == math.degrees(frames[frame][f"{angle}_rad"])
+    for feature, link in zip(features(solution, "node"), solution.links, strict=True):
+        assert feature["properties"]["sinr_db"] == link.sinr_db
+    binding = [each["properties"]["binding"] for each in features(solution, "node")]
+    assert any(binding)
+    assert features(solution, "jammer")[0]["properties"]["power_w"] == 1.0
+
+
+def test_the_antennas_bearing_is_clockwise_from_north(solution: Solution) -> None:
+    """A dipole that leans to the east bears 90 degrees, one that leans to the north 0."""
+    for axis, bearing in (((0.6, 0.0, 0.8), 90.0), ((0.0, 0.6, 0.8), 0.0), ((-0.6, 0.0, 0.8), 270.0)):
+        pose = Pose.from_axis(solution.pose.position_m, axis)
+        properties = features(replace(solution, pose=pose), "pose")[0]["properties"]
+        assert properties["antenna_bearing_deg"] == pytest.approx(bearing, abs=1e-9)
+        assert properties["antenna_tilt_deg"] == pytest.approx(math.degrees(math.acos(0.8)))
+
+
+def test_outlines_are_rings(solution: Solution) -> None:
+    """Each outline is closed and runs counter-clockwise, as RFC 7946 asks for an outer ring."""
+    for kind in ("airspace", "geofence", "no-fly"):
+        for feature in features(solution, kind):
+            (ring,) = feature["geometry"]["coordinates"]
+            assert ring[0] == ring[-1]
+            assert len(ring) >= 4
+            assert sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(ring)) > 0.0
+
+
+def test_outlines_are_where_the_airspace_has_them(solution: Solution) -> None:
+    """The corners lead back to the box, the fence and the zone within a millimetre."""
+    box = features(solution, "airspace")[0]
+    corners = np.array([local_m(corner) for corner in box["geometry"]["coordinates"][0]])
+    np.testing.assert_allclose(corners.min(axis=0)[:2], [-60.0, -40.0], rtol=0, atol=1e-3)
+    np.testing.assert_allclose(corners.max(axis=0)[:2], [60.0, 90.0], rtol=0, atol=1e-3)
+    assert box["properties"]["altitude_m"] == [8.0, 30.0]
+    fence = features(solution, "geofence")[0]["geometry"]["coordinates"][0]
+    assert {tuple(round(x, 2) + 0.0 for x in local_m(corner)[:2]) for corner in fence} == {
+        (-50.0, 80.0),
+        (50.0, 80.0),
+        (0.0, -30.0),
+    }
+
+
+def test_a_cylinder_is_enclosed(solution: Solution) -> None:
+    """The polygon that stands for a cylinder lies outside it, by less than 0.1 % of its radius."""
+    mast, other = features(solution, "no-fly")
+    assert (mast["properties"]["name"], other["properties"]["name"]) == ("mast", "Z2")
+    assert mast["properties"]["altitude_m"] == [0.0, 20.0]
+    assert other["properties"]["altitude_m"] is None
+    ring = np.array([local_m(corner)[:2] for corner in mast["geometry"]["coordinates"][0]])
+    middles = (ring[1:] + ring[:-1]) / 2.0
+    outer = np.linalg.norm(ring - [30.0, 40.0], axis=1)
+    inner = np.linalg.norm(middles - [30.0, 40.0], axis=1)
+    assert 10.0 - 1e-3 < inner.min() < 10.0 + 1e-3
+    assert outer.max() < 10.01 + 1e-3
+
+
+def test_an_unbounded_airspace_has_no_outline(solution: Solution, paper: Scenario) -> None:
+    """Without bounds, fence and zones there are points alone."""
+    bare = replace(solution, scenario=paper.model_copy(update={"origin": ORIGIN}))
+    kinds = {each["properties"]["kind"] for each in solution_geojson(bare)["features"]}
+    assert kinds == {"pose", "node", "jammer"}
+
+
+def test_without_an_origin(solution: Solution, paper: Scenario, tmp_path: Path) -> None:
+    """A scenario that lies nowhere on the Earth is refused, with what to add, and nothing is written."""
+    nowhere = replace(solution, scenario=paper)
+    for refused in (lambda: require_origin(paper), lambda: write_geojson(nowhere, tmp_path / "x.geojson")):
+        with pytest.raises(UsageError, match=r"has no origin.*add a table headed \[origin\]"):
+            refused()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_written_file_is_the_collection(solution: Solution, tmp_path: Path) -> None:
+    """The file holds the same, a feature a line; a number that JSON lacks is null."""
+    silent = replace(solution, links=(replace(solution.links[0], sinr_db=-math.inf), solution.links[1]))
+    path = write_geojson(silent, tmp_path / "out.geojson")
+    text = path.read_text(encoding="utf-8")
+    collection = json.loads(text)
+    assert len(text.splitlines()) == len(collection["features"]) + 2
+    values = [each["properties"].get("sinr_db") for each in collection["features"]]
+    assert values[1:3] == [None, solution.links[1].sinr_db]
+    assert collection["features"][3:] == json.loads(json.dumps(solution_geojson(solution)))["features"][3:]
+
+
+def test_a_folder_that_is_not_there(solution: Solution, tmp_path: Path) -> None:
+    """A file that cannot be written is an error with its name."""
+    with pytest.raises(OutputError, match=r"none.out\.geojson"):
+        write_geojson(solution, tmp_path / "none" / "out.geojson")
+
+
+def test_its_nodes_can_be_read_as_nodes(solution: Solution, tmp_path: Path) -> None:
+    """The places of the nodes, given a power, are nodes of a scenario again, at the same positions."""
+    nodes = [
+        {**each, "properties": {"name": each["properties"]["name"], "power_w": 1.0}}
+        for each in features(solution, "node")
+    ]
+    collection = json.dumps({"type": "FeatureCollection", "features": nodes})
+    (tmp_path / "nodes.geojson").write_text(collection, encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(
+        'nodes_from = "nodes.geojson"\n[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\n'
+        "reference_gain_db = 0.0\n[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\n",
+        encoding="utf-8",
+    )
+    again = load(tmp_path / "scene.toml")
+    np.testing.assert_allclose(again.node_positions_m, solution.scenario.node_positions_m, rtol=0, atol=1e-3)
