@@ -27,3 +27,76 @@ def test_a_fixed_value_is_a_range() -> None:
     """Equal ends are allowed in every direction."""
     airspace = Airspace(altitude_m=(20.0, 20.0), x_m=(1.0, 1.0), y_m=(2.0, 2.0))
     np.testing.assert_array_equal(airspace.lower_m, airspace.upper_m)
+
+
+FENCED = Airspace(
+    altitude_m=(8.0, 30.0),
+    x_m=(-50.0, 50.0),
+    geofence_m=[[-40, -40], [60, -40], [60, 80], [0, 20], [-40, 80]],
+    no_fly=[
+        {"centre_m": [17, 15], "radius_m": 5},
+        {"name": "mast", "x_m": [-20, -10], "y_m": [0, 10], "altitude_m": [0, 15]},
+    ],
+)
+
+
+@pytest.mark.parametrize(
+    ("position", "allowed"),
+    [
+        ([0, 0, 8], True),
+        ([0, 0, 7.99], False),
+        ([0, 0, 30], True),
+        ([0, 0, 30.01], False),
+        ([50, 0, 10], True),
+        ([55, 0, 10], False),  # inside the fence, outside the box
+        ([0, 20, 10], True),  # a vertex of the fence
+        ([0, 21, 10], False),
+        ([17, 15, 10], False),
+        ([22, 15, 10], True),
+        ([21.99, 15, 10], False),
+        ([-15, 5, 10], False),
+        ([-15, 5, 15], True),
+        ([-15, 5, 16], True),
+        ([-10, 5, 10], True),
+    ],
+)
+def test_what_is_allowed(position: list[float], allowed: bool) -> None:
+    """Inside the box and the fence and outside the zones; their borders are allowed."""
+    assert FENCED.allows(position) == allowed
+
+
+def test_allows_is_vectorised_and_agrees_with_the_clearance() -> None:
+    """Any leading shape; allowed is where the clearance is not negative, up to a billionth of a metre."""
+    rng = np.random.default_rng(5)
+    positions = rng.uniform([-60.0, -50.0, 5.0], [70.0, 90.0, 33.0], (40, 50, 3))
+    allowed, clearance = FENCED.allows(positions), FENCED.clearance_m(positions)
+    assert allowed.shape == clearance.shape == (40, 50)
+    assert allowed.dtype == bool
+    np.testing.assert_array_equal(allowed, clearance >= -1e-9)
+    assert 0.1 < allowed.mean() < 0.9
+    step = rng.normal(0.0, 3.0, positions.shape)
+    change = np.abs(FENCED.clearance_m(positions + step) - clearance)
+    assert (change <= np.linalg.norm(step, axis=-1) + 1e-9).all()
+
+
+def test_allows_forgives_rounding() -> None:
+    """A pose computed on a slanted border counts as on it."""
+    fence = Airspace(altitude_m=(8.0, 30.0), geofence_m=[[0, 0], [30, 10], [7, 40]])
+    share = np.linspace(0.0, 1.0, 101)[:, None]
+    border = np.concatenate([share * [30.0, 10.0], np.full((101, 1), 8.0)], axis=1)
+    assert fence.allows(border).all()
+    assert not fence.allows(border[1:-1] - [0.0, 1e-6, 0.0]).any()
+
+
+def test_a_plain_airspace_allows_its_box() -> None:
+    """Without fence and zones, everything between the corners."""
+    slab = Airspace(altitude_m=(8.0, 30.0))
+    np.testing.assert_array_equal(slab.allows([[1e9, -1e9, 20.0], [0.0, 0.0, 31.0]]), [True, False])
+    assert slab.geofence_outline_m.shape == (0, 2)
+
+
+def test_zones_are_named_by_their_place() -> None:
+    """Zones without a name are Z1, Z2 and so on; an airspace without zones does not mention them."""
+    assert [zone.name for zone in FENCED.no_fly] == ["Z1", "mast"]
+    assert Airspace.from_dict(FENCED.to_dict()) == FENCED
+    assert Airspace(altitude_m=(8.0, 30.0)).to_dict() == {"altitude_m": [8.0, 30.0], "keep_out_m": 1.0}

@@ -1,0 +1,106 @@
+"""Which axes an airframe reaches."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Airframe
+
+tilts = st.floats(0.0, 180.0)
+mounts = st.floats(0.0, 90.0)
+
+
+@given(tilt=tilts, mount=mounts, seed=st.integers(0, 2**32 - 1))
+def test_every_attitude_puts_the_dipole_in_the_band(tilt: float, mount: float, seed: int) -> None:
+    """However the vehicle yaws and tilts within its limit, the dipole's u_z^2 lies in the band."""
+    rng = np.random.default_rng(seed)
+    body = Rotation.from_euler("z", rng.uniform(-np.pi, np.pi, (200, 1)))
+    heading = rng.uniform(-np.pi, np.pi, 200)
+    lean = np.radians(tilt) * rng.uniform(0.0, 1.0, 200)
+    tilting = Rotation.from_rotvec(
+        np.stack([np.cos(heading), np.sin(heading), np.zeros(200)], axis=1) * lean[:, None]
+    )
+    axes = (tilting * body).apply([math.sin(math.radians(mount)), 0.0, math.cos(math.radians(mount))])
+    low, high = Airframe(tilt_max_deg=tilt, mount_deg=mount).axis_band
+    assert 0.0 <= low <= high <= 1.0
+    assert (axes[:, 2] ** 2 >= low - 1e-12).all()
+    assert (axes[:, 2] ** 2 <= high + 1e-12).all()
+
+
+@given(tilt=tilts, mount=mounts)
+def test_both_ends_of_the_band_are_reached(tilt: float, mount: float) -> None:
+    """Leaning the dipole straight down, and straight up, comes to the two ends of the band."""
+
+    def vertical_squared(angle_deg: float) -> float:
+        return math.cos(math.radians(angle_deg)) ** 2
+
+    upright = vertical_squared(mount - min(tilt, mount))
+    flat = vertical_squared(mount + min(tilt, 90.0 - mount))
+    low, high = Airframe(tilt_max_deg=tilt, mount_deg=mount).axis_band
+    assert low == pytest.approx(flat, abs=1e-15)
+    assert high == pytest.approx(upright, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("airframe", "band"),
+    [
+        (Airframe(preset="omnidirectional"), (0.0, 1.0)),
+        (Airframe(preset="omnidirectional", mount_deg=37.0), (0.0, 1.0)),
+        (Airframe(preset="level"), (1.0, 1.0)),
+        (Airframe(preset="level", mount_deg=90.0), (0.0, 0.0)),
+        (Airframe(tilt_max_deg=90.0), (0.0, 1.0)),
+        (Airframe(tilt_max_deg=45.0, mount_deg=45.0), (0.0, 1.0)),
+        (Airframe(preset="fixed-tilt-hexarotor"), (0.75, 1.0)),
+        (Airframe(tilt_max_deg=10.0, mount_deg=90.0), (0.0, math.sin(math.radians(10.0)) ** 2)),
+    ],
+)
+def test_known_bands(airframe: Airframe, band: tuple[float, float]) -> None:
+    """The ends are exact at 0 and 90 degrees; all of [0, 1] is what omnidirectional means."""
+    assert airframe.axis_band == pytest.approx(band, rel=1e-15, abs=0.0)
+    assert airframe.is_omnidirectional is (band == (0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("preset", "tilt"), [("omnidirectional", 180.0), ("level", 0.0), ("fixed-tilt-hexarotor", 30.0)]
+)
+def test_presets_are_names_for_tilts(preset: str, tilt: float) -> None:
+    """A preset reaches what its tilt does, whatever the mount."""
+    for mount in (0.0, 20.0, 90.0):
+        named, stated = Airframe(preset=preset, mount_deg=mount), Airframe(tilt_max_deg=tilt, mount_deg=mount)
+        assert named.axis_band == stated.axis_band
+        assert named.tilt_max_rad == stated.tilt_max_rad == math.radians(tilt)
+        assert named.mount_rad == math.radians(mount)
+
+
+@given(tilt=tilts, mount=mounts)
+def test_round_trip(tilt: float, mount: float) -> None:
+    """What was stated comes back, and a mount of 0 is left out."""
+    airframe = Airframe(tilt_max_deg=tilt, mount_deg=mount)
+    assert Airframe.from_dict(airframe.to_dict()) == airframe
+    assert airframe.to_dict().keys() == ({"tilt_max_deg", "mount_deg"} if mount else {"tilt_max_deg"})
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, "neither preset nor tilt_max_deg"),
+        ({"preset": "level", "tilt_max_deg": 0.0}, "both preset and tilt_max_deg"),
+        ({"tilt_max_deg": -1e-9}, "reaches no axis"),
+        ({"tilt_max_deg": 180.5}, "from 0 to 180"),
+        ({"tilt_max_deg": math.nan}, "got NaN"),
+        ({"tilt_max_deg": 1.0, "mount_deg": 90.5}, "from 0 to 90"),
+        ({"tilt_max_deg": 1.0, "mount_deg": -1.0}, "0 is along the body's vertical"),
+        ({"preset": "hexarotor"}, 'or "fixed-tilt-hexarotor"; did you mean "fixed-tilt-hexarotor"?'),
+        ({"preset": 3}, 'got 3, must be a preset: "omnidirectional", "level" or'),
+    ],
+)
+def test_airframes_that_are_none(values: dict[str, object], words: str) -> None:
+    """A tilt that is no angle, two tilts, or none, are refused in plain words."""
+    with pytest.raises(ScenarioError) as caught:
+        Airframe.from_dict(values)
+    assert words in str(caught.value)

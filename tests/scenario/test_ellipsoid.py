@@ -1,0 +1,81 @@
+"""Distances from ellipsoids."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from nullpose.scenario.ellipsoid import distance_m
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def random_matrix(rng: np.random.Generator) -> np.ndarray:
+    """Returns the matrix of a turned ellipsoid with semi-axes over two decades."""
+    return Rotation.random(random_state=rng).as_matrix() @ np.diag(10.0 ** rng.uniform(-1.0, 1.0, 3))
+
+
+@given(SEEDS, st.floats(0.0, 50.0))
+def test_from_a_ball(seed: int, radius: float) -> None:
+    """From a ball, a point's distance is that from its centre less the radius, and 0 inside."""
+    rng = np.random.default_rng(seed)
+    points, centre = rng.normal(0.0, 30.0, (20, 3)), rng.normal(0.0, 10.0, 3)
+    expected = np.maximum(0.0, np.linalg.norm(points - centre, axis=1) - radius)
+    np.testing.assert_allclose(distance_m(points, centre, radius * np.eye(3)), expected, atol=1e-10)
+
+
+@given(SEEDS)
+def test_along_the_normal(seed: int) -> None:
+    """A point put at a distance from the surface along its normal there is at that distance."""
+    rng = np.random.default_rng(seed)
+    matrix, centre = random_matrix(rng), rng.normal(0.0, 10.0, 3)
+    on_ball = rng.normal(size=(20, 3))
+    on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
+    normals = on_ball @ np.linalg.inv(matrix)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    far = 10.0 ** rng.uniform(-3.0, 2.0, 20)
+    points = centre + on_ball @ matrix.T + far[:, None] * normals
+    np.testing.assert_allclose(distance_m(points, centre, matrix), far, rtol=1e-9, atol=1e-9)
+
+
+@given(SEEDS)
+def test_inside_it_is_zero(seed: int) -> None:
+    """Points of the set are at no distance from it."""
+    rng = np.random.default_rng(seed)
+    matrix, centre = random_matrix(rng), rng.normal(0.0, 10.0, 3)
+    inside = rng.normal(size=(20, 3))
+    inside *= rng.uniform(0.0, 1.0, (20, 1)) / np.linalg.norm(inside, axis=1, keepdims=True)
+    np.testing.assert_allclose(distance_m(centre + inside @ matrix.T, centre, matrix), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_against_a_general_minimiser(seed: int) -> None:
+    """A constrained minimiser comes to the same distance."""
+    rng = np.random.default_rng(seed)
+    matrix, centre, point = random_matrix(rng), rng.normal(size=3), rng.normal(0.0, 20.0, 3)
+    found = minimize(
+        lambda x: np.sum((centre + matrix @ x - point) ** 2),
+        np.zeros(3),
+        method="SLSQP",
+        constraints={"type": "ineq", "fun": lambda x: 1.0 - x @ x},
+        options={"ftol": 1e-14, "maxiter": 500},
+    )
+    assert distance_m(point[None], centre, matrix)[0] == pytest.approx(np.sqrt(found.fun), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("semi_axes", "point", "expected"),
+    [
+        ([0.0, 0.0, 0.0], [3.0, 4.0, 0.0], 5.0),
+        ([2.0, 0.0, 0.0], [5.0, 0.0, 4.0], 5.0),
+        ([2.0, 0.0, 0.0], [1.0, 0.0, 4.0], 4.0),
+        ([2.0, 2.0, 0.0], [5.0, 0.0, 4.0], 5.0),
+        ([2.0, 2.0, 0.0], [0.0, 1.0, 0.0], 0.0),
+    ],
+)
+def test_flat_sets(semi_axes: list[float], point: list[float], expected: float) -> None:
+    """A point, a stretch and a disc are ellipsoids too."""
+    (distance,) = distance_m(np.array([point]), np.zeros(3), np.diag(semi_axes))
+    assert distance == pytest.approx(expected, abs=1e-9)

@@ -1,0 +1,95 @@
+"""Zones that the vehicle stays out of."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import NoFlyZone
+
+SEEDS = st.integers(0, 2**32 - 1)
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
+ROUND = NoFlyZone(polygon_m=6.0 * np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1), altitude_m=(10.0, 20.0))
+BOX = NoFlyZone(x_m=(-2.0, 3.0), y_m=(1.0, 5.0), altitude_m=(10.0, 20.0))
+
+
+def test_shapes() -> None:
+    """Each zone knows its shape and, seen from above, its outline, counter-clockwise."""
+    prism = NoFlyZone(polygon_m=[[0, 0], [0, 3], [4, 0]])
+    cylinder = NoFlyZone(centre_m=[17, 15], radius_m=5)
+    assert (BOX.shape, prism.shape, cylinder.shape) == ("box", "polygon", "cylinder")
+    np.testing.assert_array_equal(BOX.outline_m, [[-2, 1], [3, 1], [3, 5], [-2, 5]])
+    np.testing.assert_array_equal(prism.outline_m, [[4, 0], [0, 3], [0, 0]])
+    assert cylinder.outline_m.shape == (0, 2)
+
+
+def test_altitudes() -> None:
+    """Without a range of altitudes a zone has neither floor nor ceiling."""
+    assert (BOX.floor_m, BOX.ceiling_m) == (10.0, 20.0)
+    tower = NoFlyZone(centre_m=[0, 0], radius_m=5)
+    assert (tower.floor_m, tower.ceiling_m) == (-math.inf, math.inf)
+    assert tower.depth_m([1.0, 0.0, 1e6]) == 4.0
+
+
+def test_depth_of_known_places() -> None:
+    """Inside it is the distance to the nearest wall, floor or ceiling, on the border 0, outside negative."""
+    places = [[0, 2, 15], [0, 3, 19.5], [0, 1, 15], [0, 3, 20], [3, 5, 10], [0, 3, 25], [-6, 3, 15]]
+    np.testing.assert_allclose(BOX.depth_m(places), [1.0, 0.5, 0.0, 0.0, 0.0, -5.0, -4.0], atol=1e-15)
+
+
+@given(SEEDS)
+def test_a_box_is_a_polygon_too(seed: int) -> None:
+    """A box stated by its sides and by its corners has the same depths, and turning both changes none."""
+    rng = np.random.default_rng(seed)
+    places = rng.uniform([-6.0, -3.0, 5.0], [7.0, 9.0, 25.0], (100, 3))
+    corners = BOX.outline_m
+    prism = NoFlyZone(polygon_m=corners, altitude_m=(10.0, 20.0))
+    np.testing.assert_array_equal(BOX.depth_m(places), prism.depth_m(places))
+    angle = rng.uniform(-np.pi, np.pi)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turned = NoFlyZone(polygon_m=corners @ turn.T, altitude_m=(10.0, 20.0))
+    turned_places = np.concatenate([places[:, :2] @ turn.T, places[:, 2:]], axis=1)
+    np.testing.assert_allclose(turned.depth_m(turned_places), BOX.depth_m(places), atol=1e-12)
+
+
+@given(SEEDS)
+def test_a_cylinder_is_the_limit_of_polygons(seed: int) -> None:
+    """A polygon of many vertices on a circle comes close to the cylinder."""
+    rng = np.random.default_rng(seed)
+    places = rng.uniform([-9.0, -9.0, 5.0], [9.0, 9.0, 25.0], (50, 3))
+    cylinder = NoFlyZone(centre_m=(0.0, 0.0), radius_m=6.0, altitude_m=(10.0, 20.0))
+    np.testing.assert_allclose(ROUND.depth_m(places), cylinder.depth_m(places), atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "path", "words"),
+    [
+        ({}, "", "no shape is given, exactly one must be: add x_m and y_m, or centre_m and radius_m, or"),
+        ({"altitude_m": [0, 9]}, "", "no shape is given"),
+        ({"x_m": [0, 1]}, "", "x_m is given without y_m; add y_m"),
+        ({"radius_m": 1.0}, "", "radius_m is given without centre_m; add centre_m"),
+        (
+            {"x_m": [0, 1], "y_m": [0, 1], "radius_m": 1.0},
+            "",
+            "x_m, y_m, radius_m are given, exactly one shape",
+        ),
+        ({"centre_m": [0, 0], "radius_m": 0.0}, "radius_m", "a shape has an inside"),
+        ({"centre_m": [0, 0, 0], "radius_m": 1.0}, "centre_m", "a list of two numbers [x, y]"),
+        ({"centre_m": [0, 0], "radiu_m": 1.0}, "radiu_m", 'did you mean "radius_m"?'),
+        ({"polygn_m": [[0, 0], [1, 0], [0, 1]]}, "polygn_m", 'did you mean "polygon_m"?'),
+        ({"x_m": [1, 0], "y_m": [0, 1]}, "x_m", "reversed"),
+        ({"x_m": [0, 1], "y_m": [0, 1], "altitude_m": [9, 0]}, "altitude_m", "reversed"),
+        ({"polygon_m": [[0, 0], [1, 1], [1, 0], [0, 1]]}, "polygon_m", "crosses or touches itself"),
+        ({"x_m": [0, 1], "y_m": [0, 1], "name": ""}, "name", "an empty text"),
+    ],
+)
+def test_what_is_no_zone(values: dict[str, object], path: str, words: str) -> None:
+    """No shape, several, half of one, and numbers out of range are refused, once each."""
+    with pytest.raises(ScenarioError) as caught:
+        NoFlyZone.from_dict(values)
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert words in fault.message

@@ -1,0 +1,132 @@
+"""Simple polygons."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.path import Path
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Airspace
+from nullpose.scenario.polygon import area_m2, depth_m
+
+SEEDS = st.integers(0, 2**32 - 1)
+SQUARE = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
+L_SHAPE = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]]
+
+
+def star(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Returns a polygon that a point inside sees all of, so that it does not cross itself."""
+    gaps = rng.uniform(0.5, 1.0, count)
+    angles = np.cumsum(gaps) * 2.0 * np.pi / gaps.sum()
+    return rng.uniform(3.0, 30.0, (count, 1)) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def accepted(vertices: object) -> np.ndarray:
+    """Returns the outline that an airspace makes of the vertices of its fence."""
+    return Airspace(altitude_m=(8.0, 30.0), geofence_m=vertices).geofence_outline_m
+
+
+@given(SEEDS, st.integers(3, 12))
+def test_stars_are_accepted_and_run_counter_clockwise(seed: int, count: int) -> None:
+    """A simple polygon is accepted in either sense of rotation, and kept counter-clockwise."""
+    vertices = star(np.random.default_rng(seed), count)
+    for given_as in (vertices, vertices[::-1]):
+        outline = accepted(given_as)
+        assert area_m2(outline) > 0.0
+        np.testing.assert_array_equal(outline, vertices)
+
+
+@given(SEEDS, st.integers(4, 9))
+def test_two_vertices_exchanged_cross(seed: int, count: int) -> None:
+    """Exchanging two neighbouring vertices of a convex polygon makes its border cross itself."""
+    angles = np.sort(np.random.default_rng(seed).choice(60, count, replace=False)) * np.pi / 30.0
+    vertices = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    accepted(vertices)
+    with pytest.raises(ScenarioError, match="crosses or touches itself"):
+        accepted(vertices[[1, 0, *range(2, count)]])
+
+
+@given(SEEDS, st.integers(3, 9))
+def test_depth_agrees_with_another_test_and_with_a_walk_along_the_border(seed: int, count: int) -> None:
+    """The sign is that of an independent point-in-polygon test; the size that of the nearest border point."""
+    rng = np.random.default_rng(seed)
+    vertices = star(rng, count)
+    points = rng.uniform(-40.0, 40.0, (50, 2))
+    depths = depth_m(points, vertices)
+    np.testing.assert_array_equal(depths > 0.0, Path(vertices).contains_points(points))
+    share = np.linspace(0.0, 1.0, 501)[:, None, None]
+    border = (vertices + share * (np.roll(vertices, -1, axis=0) - vertices)).reshape(-1, 2)
+    nearest = np.linalg.norm(points[:, None] - border, axis=-1).min(axis=1)
+    np.testing.assert_allclose(np.abs(depths), nearest, atol=0.1)
+    assert (np.abs(depths) <= nearest + 1e-12).all()
+
+
+@given(SEEDS)
+def test_depth_changes_by_no_more_than_the_step(seed: int) -> None:
+    """Between two points the depth changes by no more than their distance."""
+    rng = np.random.default_rng(seed)
+    vertices, points = star(rng, 7), rng.uniform(-40.0, 40.0, (2, 100, 2))
+    change = np.abs(np.subtract(*depth_m(points, vertices)))
+    assert (change <= np.linalg.norm(points[0] - points[1], axis=-1) + 1e-9).all()
+
+
+def test_depth_in_an_l() -> None:
+    """In and around an L the depths are those read off a drawing."""
+    points = np.array([[0.5, 0.5], [2.0, 2.0], [4.0, 1.0], [0.5, 3.8], [-3.0, -4.0]])
+    np.testing.assert_allclose(depth_m(points, np.array(L_SHAPE)), [0.5, -1.0, 0.0, 0.2, -5.0], atol=1e-15)
+
+
+@pytest.mark.parametrize(("vertices", "area"), [(SQUARE, 16.0), (L_SHAPE, 7.0), (SQUARE[::-1], -16.0)])
+def test_area(vertices: list[list[float]], area: float) -> None:
+    """The area is signed, and keeps its digits far from the origin."""
+    assert area_m2(np.array(vertices)) == area
+    assert area_m2(np.array(vertices) + 8e6) == area
+
+
+@pytest.mark.parametrize(
+    ("vertices", "path", "words"),
+    [
+        ([], "geofence_m", "got an empty list, must be at least three vertices"),
+        ([[0, 0], [1, 0]], "geofence_m", "got a list of 2 values"),
+        (3, "geofence_m", "must be a list of at least three vertices"),
+        ({}, "geofence_m", "got a table"),
+        ([[0, 0], [1, 0], [1]], "geofence_m[2]", "a list of two numbers [x, y]: metres east and north"),
+        ([[0, 0], [1, 0], 3], "geofence_m[2]", "got 3"),
+        ([[0, 0], [1, 0], [1, "a"]], "geofence_m[2][1]", 'got the text "a"'),
+        ([[0, 0], [1, 0], [1, float("nan")]], "geofence_m[2][1]", "got NaN"),
+        ([[0, 0], [1, 0], [1, -2e7]], "geofence_m[2][1]", "from -1e+07"),
+        (
+            [*SQUARE, [0, 0]],
+            "geofence_m",
+            "vertex [4] repeats vertex [0]; remove it, the last vertex is joined",
+        ),
+        (
+            [[0, 0], [1, 0], [1, 0], [0, 1]],
+            "geofence_m",
+            "vertex [2] repeats vertex [1]; give every vertex once",
+        ),
+        ([[0, 0], [4, 0], [2, 1], [0, 0], [-2, 1]], "geofence_m", "vertex [3] repeats vertex [0]"),
+        ([[0, 0], [1, 1], [2, 2]], "geofence_m", "on one line"),
+        ([[0, 0], [2, 0], [1, 0], [3, 0]], "geofence_m", "touches itself"),
+        (
+            [[0, 0], [4, 4], [4, 0], [0, 4]],
+            "geofence_m",
+            "the edge from vertex [0] to [1] meets the one from [2]",
+        ),
+        ([[0, 0], [4, 0], [4, 4], [2, 0], [0, 4]], "geofence_m", "crosses or touches itself"),
+        ([[0, 0], [4, 0], [4, 4], [4, 2], [0, 4]], "geofence_m", "the edge from vertex [1] to [2] meets"),
+        (
+            [[0, 0], [4, 0], [2, 0], [2, 4]],
+            "geofence_m",
+            "the edge from vertex [0] to [1] meets the one from [1]",
+        ),
+    ],
+)
+def test_what_is_no_polygon(vertices: object, path: str, words: str) -> None:
+    """Too few vertices, repeated ones, no area, and borders that meet themselves are refused, once."""
+    with pytest.raises(ScenarioError) as caught:
+        accepted(vertices)
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert words in fault.message

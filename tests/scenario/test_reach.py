@@ -1,0 +1,174 @@
+"""Whether an airspace has room, and whether what is uncertain reaches into it."""
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import Scenario
+
+SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
+
+
+def faults(
+    airspace: dict[str, Any] | None = None,
+    jammer: dict[str, Any] | None = None,
+    receiver: dict[str, Any] | None = None,
+) -> tuple[Fault, ...]:
+    """Returns the faults of the paper's scene with keys added to some of its tables."""
+    try:
+        Scenario.from_dict(
+            {
+                "airspace": {"altitude_m": [8.0, 30.0]} | (airspace or {}),
+                "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0} | (receiver or {}),
+                "nodes": [
+                    {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
+                    {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0},
+                ],
+                "jammers": [{"position_m": [17.0, 15.0, 4.0], "power_w": 1.0} | (jammer or {})],
+            }
+        )
+    except ScenarioError as error:
+        return error.faults
+    return ()
+
+
+@pytest.mark.parametrize(
+    "airspace",
+    [
+        {"geofence_m": SQUARE, "no_fly": [{"centre_m": [5, 5], "radius_m": 8}]},
+        {"geofence_m": SQUARE, "x_m": [10.5, 30]},
+        {
+            "x_m": [0, 10],
+            "y_m": [0, 10],
+            "no_fly": [{"x_m": [-1, 6], "y_m": [-1, 11]}, {"x_m": [4, 11], "y_m": [-1, 11]}],
+        },
+        {"geofence_m": SQUARE, "no_fly": [{"polygon_m": [[-1, -1], [30, -1], [-1, 30]]}]},
+        {
+            "geofence_m": SQUARE,
+            "no_fly": [
+                {"x_m": [-1, 11], "y_m": [-1, 11], "altitude_m": [0, 20]},
+                {"x_m": [-1, 11], "y_m": [-1, 11], "altitude_m": [15, 40]},
+            ],
+        },
+        {"geofence_m": SQUARE, "altitude_m": [8, 8], "keep_out_m": 20.0},
+    ],
+)
+def test_no_room(airspace: dict[str, Any]) -> None:
+    """Where fence, zones and keep-out balls leave nothing, the airspace is at fault."""
+    (fault,) = faults(airspace)
+    assert fault.path == "airspace"
+    assert "there is no room for the vehicle" in fault.message
+    assert ("in a no-fly zone" in fault.message) is ("no_fly" in airspace)
+    assert "outside the geofence" in fault.message or "geofence_m" not in airspace
+
+
+@pytest.mark.parametrize(
+    "airspace",
+    [
+        {"geofence_m": SQUARE, "no_fly": [{"centre_m": [5, 5], "radius_m": 7.05}]},
+        {"geofence_m": SQUARE, "x_m": [10, 30]},
+        {"geofence_m": SQUARE, "no_fly": [{"x_m": [0, 10], "y_m": [0, 10]}]},  # its border is left
+        {"no_fly": [{"centre_m": [0, 0], "radius_m": 1e6}]},
+        {"x_m": [0, 10], "no_fly": [{"x_m": [-1, 11], "y_m": [-1e6, 1e6]}]},
+        {"geofence_m": SQUARE, "no_fly": [{"x_m": [-1, 11], "y_m": [-1, 11], "altitude_m": [0, 29.9]}]},
+        {"geofence_m": SQUARE, "altitude_m": [8, 8], "keep_out_m": 9.4},
+    ],
+)
+def test_room_enough(airspace: dict[str, Any]) -> None:
+    """A corner, a border or a layer that is left is room."""
+    assert faults(airspace) == ()
+
+
+@pytest.mark.parametrize("uncertain", [{"uncertainty_m": 3.9}, {"uncertainty_m": [100.0, 100.0, 3.0]}])
+def test_clear_of_the_airspace(uncertain: dict[str, Any]) -> None:
+    """A set that ends below the airspace is no fault, however wide."""
+    assert faults(jammer=uncertain) == ()
+
+
+@pytest.mark.parametrize(
+    ("jammer", "receiver", "words"),
+    [
+        ({"uncertainty_m": 4.0}, {}, "make keep_out_m more than 4"),
+        ({"uncertainty_m": 5.0}, {}, "reach into the airspace, at ["),
+        ({"uncertainty_m": [1.0, 1.0, 4.5]}, {}, "more than 4.5"),
+        (
+            {"uncertainty_m": [30.0, 1.0, 1.0], "uncertainty_attitude_deg": [0.0, 30.0, 0.0]},
+            {},
+            "keep the airspace away from it",
+        ),
+        ({"uncertainty_m": 3.0}, {"position_error_m": 1.5}, "with position_error_m = 1.5, reach into"),
+    ],
+)
+def test_uncertainty_that_reaches_in(jammer: dict[str, Any], receiver: dict[str, Any], words: str) -> None:
+    """A set, with the vehicle's own error, that holds an allowed position is a fault of the set."""
+    (fault,) = faults(jammer=jammer, receiver=receiver)
+    assert fault.path == "jammers[0].uncertainty_m"
+    assert words in fault.message
+
+
+@pytest.mark.parametrize(
+    "airspace",
+    [
+        {"keep_out_m": 6.0},
+        {"no_fly": [{"centre_m": [17, 15], "radius_m": 5.5}]},
+        {"no_fly": [{"x_m": [10, 24], "y_m": [8, 22], "altitude_m": [0, 10]}]},
+        {"geofence_m": [[-40, -20], [10, -20], [10, 70], [-40, 70]]},
+        {"x_m": [-50, 10]},
+    ],
+)
+def test_an_airspace_kept_away(airspace: dict[str, Any]) -> None:
+    """A larger keep-out radius, a zone, a fence or a bound keeps the vehicle away from a set."""
+    assert faults(jammer={"uncertainty_m": 5.0})
+    assert faults(airspace, {"uncertainty_m": 5.0}) == ()
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    error=st.sampled_from([0.0, 0.5]),
+    keep_out=st.sampled_from([0.5, 3.0, 20.0]),
+)
+def test_the_witness_is_one(seed: int, error: float, keep_out: float) -> None:
+    """The place named is allowed, and no further from the set than the vehicle's error."""
+    rng = np.random.default_rng(seed)
+    axes, turn = rng.uniform(0.5, 8.0, 3), rng.uniform(-180.0, 180.0, 3)
+    found = faults(
+        {"keep_out_m": keep_out, "no_fly": [{"centre_m": [18, 15], "radius_m": 4}]},
+        {"uncertainty_m": axes, "uncertainty_attitude_deg": turn},
+        {"position_error_m": error},
+    )
+    for fault in found:
+        place = np.array([float(x) for x in re.search(r"at \[(.*?)\]", fault.message)[1].split(",")])
+        offset = place - [17.0, 15.0, 4.0]
+        assert place[2] >= 8.0 - 1e-2
+        assert np.linalg.norm(place[:2] - [18, 15]) >= 4.0 - 1e-2
+        assert keep_out - 1e-2 <= np.linalg.norm(offset) <= axes.max() + error + 1e-2
+    if axes.max() + error < keep_out or axes.max() + error < 4.0:
+        assert found == ()
+
+
+def test_an_error_of_the_vehicle_alone() -> None:
+    """A vehicle that may be off by more than the keep-out radius may meet points that are known exactly."""
+    assert faults(receiver={"position_error_m": 7.9}) != ()  # the jammer is 4 m below the floor
+    assert faults(receiver={"position_error_m": 3.9}) == ()
+    assert faults({"keep_out_m": 9.0}, receiver={"position_error_m": 8.5}) == ()
+    (fault,) = faults(receiver={"position_error_m": 8.5})
+    assert fault.path == "receiver.position_error_m"
+    assert (
+        "may meet nodes[0], nodes[1], jammers[0]; make it smaller, or keep_out_m more than 8.5"
+        in fault.message
+    )
+
+
+def test_parts_with_faults_of_their_own_are_not_judged() -> None:
+    """A set or an airspace that cannot be read has its own fault only."""
+    (fault,) = faults(jammer={"uncertainty_m": -9.0})
+    assert fault.path == "jammers[0].uncertainty_m"
+    paths = [fault.path for fault in faults({"altitude_m": [9, 8]}, {"uncertainty_m": 9.0})]
+    assert paths == ["airspace.altitude_m"]
+    paths = [fault.path for fault in faults(jammer={"uncertainty_m": 9.0}, receiver={"position_error_m": -1})]
+    assert paths == ["receiver.position_error_m", "jammers[0].uncertainty_m"]

@@ -1,0 +1,143 @@
+"""What a scenario makes of requirements, eavesdroppers and noise of their own."""
+
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nullpose.scenario import Airframe, Eavesdropper, Jammer, Node, Scenario, Transmitter
+
+
+def scene(**tables: Any) -> Scenario:
+    """Returns a scene of two nodes, with other tables in place of those here."""
+    return Scenario(
+        **{
+            "airspace": {"altitude_m": [8.0, 30.0]},
+            "receiver": {"noise_dbm": 0.0, "reference_gain_db": 10.0},
+            "nodes": [
+                Node(position_m=(0, 0, 0), power_w=1),
+                Node(position_m=(0, 50, 0), power_w=1),
+            ],
+        }
+        | tables
+    )
+
+
+def test_required_sinr() -> None:
+    """A requirement is taken out of decibels, a weight as it is, and 1 where neither is stated."""
+    nodes = [
+        Node(position_m=(0, 0, 0), power_w=1, min_sinr_db=10.0),
+        Node(position_m=(1, 0, 0), power_w=1, weight=2.5),
+        Node(position_m=(2, 0, 0), power_w=1),
+    ]
+    weighted = scene(nodes=nodes)
+    np.testing.assert_allclose(weighted.node_required_sinr, [10.0, 2.5, 1.0], rtol=1e-15)
+    assert weighted.has_margins
+    assert not scene().has_margins
+    np.testing.assert_array_equal(scene().node_required_sinr, [1.0, 1.0])
+
+
+SECRET: dict[str, Any] = {
+    "objective": "secrecy-rate",
+    "transmitter": Transmitter(power_w=1.0),
+    "eavesdroppers": [
+        Eavesdropper(position_m=(9, 9, 1)),
+        Eavesdropper(name="van", position_m=(8, 9, 1), noise_dbm=-30.0, uncertainty_m=2.0),
+    ],
+}
+
+
+def test_eavesdroppers() -> None:
+    """Names, positions and noise in order; the receiver's noise where they state none."""
+    secret = scene(**SECRET)
+    assert secret.eavesdropper_names == ("E1", "van")
+    np.testing.assert_array_equal(secret.eavesdropper_positions_m, [[9, 9, 1], [8, 9, 1]])
+    np.testing.assert_allclose(secret.eavesdropper_noise_w, [1e-3, 1e-6], rtol=1e-14)
+    np.testing.assert_array_equal(secret.eavesdropper_uncertainty_m, [np.zeros((3, 3)), 2.0 * np.eye(3)])
+
+
+def test_without_eavesdroppers_the_arrays_are_empty() -> None:
+    """Without eavesdroppers the arrays keep their dimensions."""
+    assert scene().eavesdropper_positions_m.shape == (0, 3)
+    assert scene().eavesdropper_noise_w.shape == (0,)
+    assert scene().eavesdropper_uncertainty_m.shape == (0, 3, 3)
+    assert scene().jammer_uncertainty_m.shape == (0, 3, 3)
+    assert scene().eavesdropper_names == ()
+
+
+def test_noise_of_the_nodes() -> None:
+    """Their own or the receiver's, raised by the jamming: as stated, or the sum over the jammers."""
+    nodes = [
+        Node(position_m=(0, 0, 0)),
+        Node(position_m=(0, 50, 0), noise_w=2e-3),
+        Node(position_m=(0, 60, 0), noise_dbm=10.0, jamming_dbm=20.0),
+    ]
+    jammers = [Jammer(position_m=(0, 0, 5), power_w=3.0), Jammer(position_m=(0, 50, 10), power_dbm=30.0)]
+    quiet = scene(**SECRET | {"nodes": nodes[:2]})
+    np.testing.assert_allclose(quiet.node_noise_w, [1e-3, 2e-3], rtol=1e-14)
+    jammed = scene(**SECRET, nodes=nodes, jammers=jammers)
+    at_first = 10.0 * (3.0 / 25.0 + 1.0 / 2600.0)
+    at_second = 10.0 * (3.0 / 2525.0 + 1.0 / 100.0)
+    np.testing.assert_allclose(
+        jammed.node_noise_w, [1e-3 + at_first, 2e-3 + at_second, 0.01 + 0.1], rtol=1e-14
+    )
+
+
+def test_nodes_need_not_transmit_where_the_drone_does() -> None:
+    """With the secrecy rate a node may leave its power out, which counts as none."""
+    listening = scene(**SECRET, nodes=[Node(position_m=(0, 0, 0)), Node(position_m=(5, 0, 0), power_w=2.0)])
+    np.testing.assert_array_equal(listening.node_powers_w, [0.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    ("tables", "uncertain"),
+    [
+        ({}, False),
+        (SECRET, True),
+        (SECRET | {"eavesdroppers": SECRET["eavesdroppers"][:1]}, False),
+        ({"jammers": [Jammer(position_m=(9, 9, 1), power_w=1, uncertainty_m=0.0)]}, False),
+        ({"jammers": [Jammer(position_m=(9, 9, 1), power_w=1, uncertainty_m=[0, 0, 1])]}, True),
+        ({"receiver": {"noise_w": 1, "reference_gain_db": 0, "attitude_error_deg": 2}}, True),
+        ({"receiver": {"noise_w": 1, "reference_gain_db": 0, "position_error_m": 0.5}}, True),
+    ],
+)
+def test_whether_anything_is_uncertain(tables: dict[str, Any], uncertain: bool) -> None:
+    """Any set larger than a point, or any error of the vehicle, makes a scene uncertain."""
+    assert scene(**tables).is_uncertain is uncertain
+
+
+def test_axis_band() -> None:
+    """Without an airframe every axis is reached."""
+    assert scene().axis_band == (0.0, 1.0)
+    assert scene(airframe=Airframe(preset="level")).axis_band == (1.0, 1.0)
+
+
+def test_errors_of_the_vehicle() -> None:
+    """Errors are none unless stated, and then left out of what is written."""
+    receiver = scene().receiver
+    assert (receiver.attitude_error_rad, receiver.position_error_m) == (0.0, 0.0)
+    assert receiver.to_dict() == {"noise_dbm": 0.0, "reference_gain_db": 10.0}
+    shaky = receiver.model_copy(update={"attitude_error_deg": 2.0, "position_error_m": 0.5})
+    assert shaky.attitude_error_rad == np.radians(2.0)
+    assert shaky.to_dict() == receiver.to_dict() | {"attitude_error_deg": 2.0, "position_error_m": 0.5}
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        "eavesdropper_positions_m",
+        "eavesdropper_noise_w",
+        "eavesdropper_uncertainty_m",
+        "jammer_uncertainty_m",
+        "node_noise_w",
+        "node_required_sinr",
+    ],
+)
+def test_arrays_are_cached_and_read_only(array: str) -> None:
+    """An array is the same object on every access and refuses to be written to, after unpickling too."""
+    secret = scene(**SECRET, jammers=[Jammer(position_m=(9, 9, 1), power_w=1)])
+    assert getattr(secret, array) is getattr(secret, array)
+    for one in (secret, pickle.loads(pickle.dumps(secret))):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(one, array)[...] = 0.0
