@@ -8,8 +8,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nullpose.physics import Link, Pose, antenna_axis, evaluate, min_sinr, sinr
-from nullpose.scenario import Scenario
+from nullpose.physics import (
+    Link,
+    Pose,
+    antenna_axis,
+    evaluate,
+    min_margin,
+    min_secrecy_rate,
+    min_sinr,
+    node_snr,
+    objective_value,
+    secrecy_rate,
+    sinr,
+)
+from nullpose.scenario import Scenario, apply_overrides
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -56,3 +68,46 @@ def test_a_link_holds_plain_numbers(paper: Scenario) -> None:
     for link in evaluate(paper, Pose([1.0, 2.0, 10.0], 0.1, 0.2)):
         assert type(link.sinr) is float
         assert type(link.sinr_db) is float
+
+
+POSE = Pose([3.0, 24.0, 9.0], 0.2, -1.1)
+
+
+def test_a_plain_link_has_neither_margin_nor_rate(paper: Scenario) -> None:
+    """Where no node states a weight or requirement, there is the SINR only."""
+    for link in evaluate(paper, POSE):
+        assert (link.margin, link.margin_db, link.secrecy_rate_bps_hz) == (None, None, None)
+    assert min_margin(paper, POSE) == min_sinr(paper, POSE)
+
+
+def test_links_with_margins(paper: Scenario) -> None:
+    """If any node states a requirement every link has a margin; the least is what the scenario asks for."""
+    stated = apply_overrides(paper, ["nodes.S2.min_sinr_db=-6"])
+    first, second = evaluate(stated, POSE)
+    assert first.margin == first.sinr
+    assert first.margin_db == first.sinr_db
+    assert second.margin_db == pytest.approx(second.sinr_db + 6.0, abs=1e-12)
+    assert min_margin(stated, POSE) == min(first.margin, second.margin)
+    assert min_margin(stated, POSE) == objective_value(stated, POSE.position_m, POSE.antenna_axis)
+    assert min_sinr(stated, POSE) == min_sinr(paper, POSE)
+    assert second.secrecy_rate_bps_hz is None
+
+
+def test_links_of_the_downlink(paper: Scenario) -> None:
+    """With the secrecy rate a link is the node's reception of the drone: its SNR and its rate."""
+    secret = apply_overrides(
+        paper,
+        [
+            "objective=secrecy-rate",
+            "transmitter.power_w=2",
+            "eavesdroppers=[{position_m = [-20, 15, 4]}]",
+        ],
+    )
+    links = evaluate(secret, POSE)
+    at = (secret, POSE.position_m, POSE.antenna_axis)
+    assert [link.sinr for link in links] == list(node_snr(*at))
+    assert [link.secrecy_rate_bps_hz for link in links] == list(secrecy_rate(*at))
+    assert [link.margin for link in links] == [None, None]
+    assert min_secrecy_rate(secret, POSE) == min(link.secrecy_rate_bps_hz for link in links)
+    assert min_secrecy_rate(secret, POSE) == objective_value(*at)
+    assert type(links[0].secrecy_rate_bps_hz) is float

@@ -68,7 +68,7 @@ def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> 
     """Return the secrecy rate of every node: what it hears beyond what the best eavesdropper does.
 
     ``C_k = max(0, log2(1 + SNR_k) - max_e log2(1 + SNR_e))``, evaluated as the logarithm of
-    ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number, which keeps its digits where both are alike.
+    ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number, which keeps its digits where signals are weak.
 
     Source: Gaussian wiretap channel (Leung-Yan-Cheong and Hellman, 1978), the stronger eavesdropper counting.
 

@@ -1,0 +1,192 @@
+"""The downlink: what nodes and eavesdroppers receive, and the rate that stays secret."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics import eavesdropper_snr, node_snr, received_power_w, secrecy_rate
+from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario, Transmitter
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def random_secret(
+    rng: np.random.Generator, nodes: int = 3, eavesdroppers: int = 2, **tables: Any
+) -> Scenario:
+    """Returns a scene with places on a field of 100 m and noise over two decades."""
+
+    def somewhere() -> tuple[float, ...]:
+        return tuple(rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0]))
+
+    return Scenario(
+        **{
+            "objective": "secrecy-rate",
+            "airspace": {"altitude_m": [-1e4, 1e4]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 3.0},
+            "transmitter": Transmitter(power_w=10.0 ** rng.uniform(-1.0, 1.0)),
+            "nodes": [
+                Node(position_m=somewhere(), noise_w=10.0 ** rng.uniform(-5.0, -3.0)) for _ in range(nodes)
+            ],
+            "eavesdroppers": [
+                Eavesdropper(position_m=somewhere(), noise_w=10.0 ** rng.uniform(-5.0, -3.0))
+                for _ in range(eavesdroppers)
+            ],
+        }
+        | tables
+    )
+
+
+@given(seed=SEEDS)
+def test_snr_is_the_received_power_over_the_noise(seed: int, random_poses: Callable) -> None:
+    """Each point receives from the drone what the drone would receive from it, over the point's own noise."""
+    rng = np.random.default_rng(seed)
+    scene, (position, axis) = random_secret(rng), random_poses(rng, 5)
+    power = scene.transmitter.transmit_power_w
+    for snr, points, noise in (
+        (node_snr, scene.node_positions_m, scene.node_noise_w),
+        (eavesdropper_snr, scene.eavesdropper_positions_m, scene.eavesdropper_noise_w),
+    ):
+        powers = np.full(len(points), power)
+        expected = received_power_w(position, axis, points, powers, scene.receiver.reference_gain) / noise
+        np.testing.assert_allclose(snr(scene, position, axis), expected, rtol=1e-13)
+
+
+@given(seed=SEEDS)
+def test_rate_is_the_difference_of_two_capacities(seed: int, random_poses: Callable) -> None:
+    """The printed form, log2(1 + SNR) less the largest that is overheard, cut at 0, is the same number."""
+    rng = np.random.default_rng(seed)
+    scene, (position, axis) = random_secret(rng), random_poses(rng, 20)
+    heard = np.log2(1.0 + node_snr(scene, position, axis))
+    overheard = np.log2(1.0 + eavesdropper_snr(scene, position, axis)).max(axis=-1)
+    expected = np.maximum(0.0, heard - overheard[:, None])
+    rate = secrecy_rate(scene, position, axis)
+    assert rate.shape == (20, 3)
+    assert (rate >= 0.0).all()
+    np.testing.assert_allclose(rate, expected, atol=1e-13)
+
+
+@given(seed=SEEDS)
+def test_rate_is_the_logarithm_of_a_ratio_of_quadratic_forms(seed: int, random_poses: Callable) -> None:
+    """As in eq-family-secrecy: 2 to the rate is the least ratio of u'(I + a T)u over the eavesdroppers."""
+    rng = np.random.default_rng(seed)
+    scene, (position, axis) = random_secret(rng), random_poses(rng)
+    gain = scene.receiver.reference_gain * scene.transmitter.transmit_power_w
+
+    def forms(points: np.ndarray, noise: np.ndarray) -> np.ndarray:
+        r = points - position
+        squared = np.sum(r**2, axis=1)[:, None, None]
+        link = (squared * np.eye(3) - r[:, :, None] * r[:, None, :]) / squared**2
+        return np.einsum("i,kij,j->k", axis, np.eye(3) + gain / noise[:, None, None] * link, axis)
+
+    wanted = forms(scene.node_positions_m, scene.node_noise_w)
+    overheard = forms(scene.eavesdropper_positions_m, scene.eavesdropper_noise_w)
+    expected = np.maximum(1.0, wanted / overheard.max())
+    np.testing.assert_allclose(2.0 ** secrecy_rate(scene, position, axis), expected, rtol=1e-12)
+
+
+@given(seed=SEEDS)
+def test_turning_the_scene_changes_nothing(seed: int, random_poses: Callable) -> None:
+    """Turning and shifting nodes, eavesdroppers, drone and axis together leaves every rate as it was."""
+    rng = np.random.default_rng(seed)
+    scene, (position, axis) = random_secret(rng), random_poses(rng, 4)
+    turn, shift = Rotation.random(random_state=rng), rng.normal(0.0, 100.0, 3)
+
+    def moved(points: tuple[Any, ...]) -> tuple[Any, ...]:
+        return tuple(
+            point.model_copy(update={"position_m": turn.apply(point.position_m) + shift}) for point in points
+        )
+
+    turned = scene.model_copy(
+        update={"nodes": moved(scene.nodes), "eavesdroppers": moved(scene.eavesdroppers)}
+    )
+    np.testing.assert_allclose(
+        secrecy_rate(turned, turn.apply(position) + shift, turn.apply(axis)),
+        secrecy_rate(scene, position, axis),
+        atol=1e-9,
+    )
+
+
+@given(seed=SEEDS)
+def test_a_distant_eavesdropper_hears_nothing(seed: int, random_poses: Callable) -> None:
+    """As the eavesdroppers go far away, the rate tends to the node's own capacity, from below."""
+    rng = np.random.default_rng(seed)
+    near, (position, axis) = random_secret(rng), random_poses(rng, 5)
+    capacity = np.log2(1.0 + node_snr(near, position, axis))
+    far = near.model_copy(
+        update={
+            "eavesdroppers": [Eavesdropper(position_m=(9e6, 9e6, 0.0)), Eavesdropper(position_m=(-9e6, 0, 0))]
+        }
+    )
+    rates = secrecy_rate(far, position, axis)
+    np.testing.assert_allclose(rates, capacity, atol=1e-6)
+    assert (rates <= capacity).all()
+    assert (secrecy_rate(near, position, axis) <= capacity).all()
+
+
+def test_the_null_at_the_eavesdropper(random_poses: Callable) -> None:
+    """With the dipole pointing at the only eavesdropper, every node's rate is its capacity."""
+    rng = np.random.default_rng(3)
+    scene, (position, _) = random_secret(rng, eavesdroppers=1), random_poses(rng)
+    axis = scene.eavesdropper_positions_m[0] - position
+    axis /= np.linalg.norm(axis)
+    capacity = np.log2(1.0 + node_snr(scene, position, axis))
+    np.testing.assert_allclose(secrecy_rate(scene, position, axis), capacity, rtol=1e-12)
+    assert (capacity > 0.0).all()
+
+
+def test_a_node_beside_a_better_eavesdropper_has_no_rate(random_poses: Callable) -> None:
+    """Where an eavesdropper hears better than the node the rate is 0, exactly, and not below."""
+    rng = np.random.default_rng(4)
+    node = Node(position_m=(10.0, 0.0, 0.0), noise_w=1e-3)
+    listener = Eavesdropper(position_m=(10.0, 0.001, 0.0), noise_w=0.9e-3)
+    scene = random_secret(rng, eavesdroppers=1)
+    scene = scene.model_copy(update={"nodes": [node], "eavesdroppers": [listener]})
+    position, axis = random_poses(rng, 50)
+    assert (secrecy_rate(scene, position, axis) == 0.0).all()
+
+
+def test_weak_signals_keep_their_digits() -> None:
+    """With SNRs far below the spacing of numbers at 1, the rate is still right to twelve digits."""
+    scene = Scenario(
+        objective="secrecy-rate",
+        airspace={"altitude_m": [8, 30]},
+        receiver={"noise_w": 1.0, "reference_gain_db": 0.0},
+        transmitter={"power_w": 1e-15},
+        nodes=[{"position_m": [10, 0, 0]}],
+        eavesdroppers=[{"position_m": [-10, 0, 0], "noise_w": 2.0}],
+    )
+    snr = 1e-15 / 164.0 * (1.0 - 64.0 / 164.0)  # 8 m above, 10 m beside an upright dipole
+    rate = secrecy_rate(scene, [0.0, 0.0, 8.0], [0.0, 0.0, 1.0])
+    assert rate[0] == pytest.approx((snr - snr / 2.0) / math.log(2.0), rel=1e-12)
+
+
+def test_a_jammer_lowers_the_rate_by_a_constant_noise(random_poses: Callable) -> None:
+    """A jammer raises the nodes' noise by what reaches them, wherever the drone is, and no eavesdropper's."""
+    rng = np.random.default_rng(6)
+    scene = random_secret(rng)
+    jammer = Jammer(position_m=(50.0, 50.0, 3.0), power_w=0.1)
+    jammed = scene.model_copy(update={"jammers": [jammer]})
+    position, axis = random_poses(rng, 10)
+    ratio = node_snr(scene, position, axis) / node_snr(jammed, position, axis)
+    distance_sq = np.sum((scene.node_positions_m - jammer.position_m) ** 2, axis=1)
+    raised_w = scene.receiver.reference_gain * jammer.transmit_power_w / distance_sq
+    np.testing.assert_allclose(
+        ratio, np.broadcast_to(1.0 + raised_w / scene.node_noise_w, (10, 3)), rtol=1e-12
+    )
+    np.testing.assert_array_equal(
+        eavesdropper_snr(scene, position, axis), eavesdropper_snr(jammed, position, axis)
+    )
+    assert (secrecy_rate(jammed, position, axis) <= secrecy_rate(scene, position, axis)).all()
+
+
+def test_without_a_transmitter(paper: Scenario) -> None:
+    """A scenario in which the drone only listens has no downlink, and says so."""
+    for of_downlink in (node_snr, eavesdropper_snr, secrecy_rate):
+        with pytest.raises(ValueError, match=r"it needs a \[transmitter\]"):
+            of_downlink(paper, [0.0, 0.0, 9.0], [0.0, 0.0, 1.0])
