@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         SolveError,
         UsageError,
     )
-    from nullpose.physics import Link, Pose, evaluate, min_margin, min_secrecy_rate, min_sinr
+    from nullpose.physics import Link, Pose, evaluate, min_margin, min_secrecy_rate, min_sinr, pose_frames
     from nullpose.scenario import (
         Airframe,
         Airspace,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         Jammer,
         Node,
         NoFlyZone,
+        Origin,
         Receiver,
         Scenario,
         Transmitter,
@@ -55,6 +56,7 @@ __all__ = [
     "NoFlyZone",
     "Node",
     "NullposeError",
+    "Origin",
     "OutputError",
     "Pose",
     "Receiver",
@@ -76,6 +78,7 @@ __all__ = [
     "min_margin",
     "min_secrecy_rate",
     "min_sinr",
+    "pose_frames",
     "solve",
     "sweep",
 ]
@@ -89,7 +92,15 @@ _ROOMS = {
         "SolveError",
         "UsageError",
     ),
-    "nullpose.physics": ("Link", "Pose", "evaluate", "min_margin", "min_secrecy_rate", "min_sinr"),
+    "nullpose.physics": (
+        "Link",
+        "Pose",
+        "evaluate",
+        "min_margin",
+        "min_secrecy_rate",
+        "min_sinr",
+        "pose_frames",
+    ),
     "nullpose.scenario": (
         "Airframe",
         "Airspace",
@@ -98,6 +109,7 @@ _ROOMS = {
         "Jammer",
         "NoFlyZone",
         "Node",
+        "Origin",
         "Receiver",
         "Scenario",
         "Transmitter",
