@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.physics.rotation import antenna_axis, attitude_from_axis
+from nullpose.physics.rotation import antenna_axis, attitude_from_axis, attitude_within_tilt
 from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
 
 __all__ = ["Pose"]
 
@@ -22,6 +23,7 @@ class Pose:
         roll_rad: roll of paper eq. 1.1, radians.
         pitch_rad: pitch, radians.
         yaw_rad: yaw, radians.
+        mount_rad: angle of the dipole from the body's vertical, towards the body's x axis, radians.
 
     Raises:
         ValueError: a number is not finite, or the position has not three components.
@@ -31,18 +33,20 @@ class Pose:
     roll_rad: float
     pitch_rad: float
     yaw_rad: float = 0.0
+    mount_rad: float = 0.0
 
     def __post_init__(self) -> None:
         position_m = np.array(self.position_m, dtype=float)
-        angles = (float(self.roll_rad), float(self.pitch_rad), float(self.yaw_rad))
+        names = ("roll_rad", "pitch_rad", "yaw_rad", "mount_rad")
+        angles = tuple(float(getattr(self, name)) for name in names)
         if position_m.shape != (3,) or not np.all(np.isfinite(position_m)) or not np.all(np.isfinite(angles)):
             raise ValueError(
-                "a pose takes three finite coordinates and three finite angles; "
+                "a pose takes three finite coordinates and finite angles; "
                 f"given {self.position_m!r}, {angles}"
             )
         position_m.flags.writeable = False
         object.__setattr__(self, "position_m", position_m)
-        for name, angle in zip(("roll_rad", "pitch_rad", "yaw_rad"), angles, strict=True):
+        for name, angle in zip(names, angles, strict=True):
             object.__setattr__(self, name, angle)
 
     @classmethod
@@ -57,10 +61,36 @@ class Pose:
         roll_rad, pitch_rad = attitude_from_axis(axis, yaw_rad)
         return cls(np.asarray(position_m, dtype=float), float(roll_rad), float(pitch_rad), yaw_rad)
 
+    @classmethod
+    def of_airframe(cls, scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Pose:
+        """Return the pose at a position in which the scenario's airframe has its dipole along an axis.
+
+        Without an airframe, at yaw 0 (paper eq. 1.1); with one, at the attitude of least tilt, which does not
+        exceed the airframe's.
+
+        Args:
+            scenario: with its airframe.
+            position_m: shape ``(3,)``, metres.
+            axis: the dipole's direction, shape ``(3,)``, of any length but zero; one that is reached.
+        """
+        airframe = scenario.airframe
+        if airframe is None:
+            return cls.from_axis(position_m, axis)
+        mount_rad = airframe.mount_rad
+        roll, pitch, yaw = attitude_within_tilt(axis, airframe.tilt_max_rad, mount_rad)
+        return cls(np.asarray(position_m, dtype=float), float(roll), float(pitch), float(yaw), mount_rad)
+
     @property
     def antenna_axis(self) -> FloatArray:
         """Unit vector along the dipole, shape ``(3,)``, world frame (paper eq. 1.1)."""
-        return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad)
+        return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
+
+    @property
+    def tilt_rad(self) -> float:
+        """Angle between the body's vertical and the world's, radians."""
+        forward = np.cos(self.roll_rad) * np.sin(self.pitch_rad)
+        across = np.hypot(np.sin(self.roll_rad), forward)
+        return float(np.arctan2(across, np.cos(self.roll_rad) * np.cos(self.pitch_rad)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Pose):
@@ -71,4 +101,5 @@ class Pose:
         return hash(self._key())
 
     def _key(self) -> tuple[float, ...]:
-        return (*(float(x) for x in self.position_m), self.roll_rad, self.pitch_rad, self.yaw_rad)
+        angles = (self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
+        return (*(float(x) for x in self.position_m), *angles)

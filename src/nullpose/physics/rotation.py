@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 
-__all__ = ["antenna_axis", "attitude_from_axis", "rotation_world_from_body"]
+__all__ = ["antenna_axis", "attitude_from_axis", "attitude_within_tilt", "rotation_world_from_body"]
 
 
 def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike) -> FloatArray:
@@ -41,10 +41,13 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def antenna_axis(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike = 0.0) -> FloatArray:
+def antenna_axis(
+    roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike = 0.0, mount_rad: float = 0.0
+) -> FloatArray:
     """Return the unit vector along the dipole, in world (ENU) coordinates.
 
-    ``u = (cos roll sin pitch cos yaw + sin roll sin yaw,
+    ``u = R (sin a, 0, cos a)`` for a dipole mounted at an angle a from the body's vertical, towards its x
+    axis. For ``a = 0``, as in the paper, ``u = (cos roll sin pitch cos yaw + sin roll sin yaw,
     cos roll sin pitch sin yaw - sin roll cos yaw, cos roll cos pitch)``
 
     Source: paper eq. 1.1.
@@ -53,11 +56,40 @@ def antenna_axis(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike =
         roll_rad: roll, any shape, radians.
         pitch_rad: pitch, broadcast with roll, radians.
         yaw_rad: yaw, broadcast with roll, radians.
+        mount_rad: angle between the dipole and the body's z axis, radians.
 
     Returns:
         Array of shape ``(..., 3)``. ``u`` and ``-u`` are the same antenna.
     """
-    return rotation_world_from_body(roll_rad, pitch_rad, yaw_rad)[..., 2]
+    rotation = rotation_world_from_body(roll_rad, pitch_rad, yaw_rad)
+    if mount_rad == 0.0:
+        return rotation[..., 2]
+    return np.asarray(np.sin(mount_rad) * rotation[..., 0] + np.cos(mount_rad) * rotation[..., 2])
+
+
+def attitude_within_tilt(
+    axis: ArrayLike, tilt_max_rad: float, mount_rad: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the roll, pitch and yaw of least tilt that put a dipole mounted at an angle along an axis.
+
+    The yaw turns the dipole's side of the body to the axis's azimuth; the pitch, kept within the tilt, does
+    the rest: an axis at an angle t from the vertical takes a pitch of ``t - mount``. The inverse of
+    ``antenna_axis`` for every axis that the vehicle reaches.
+
+    Args:
+        axis: directions, shape ``(..., 3)``, not zero, of either sign.
+        tilt_max_rad: largest angle between the body's vertical and the world's, radians.
+        mount_rad: angle between the dipole and the body's vertical, in [0, pi/2], radians.
+
+    Returns:
+        Roll, which is zero, pitch and yaw, each of the leading shape, radians.
+    """
+    u = np.asarray(axis, dtype=float)
+    u = u * np.where(u[..., 2:] < 0.0, -1.0, 1.0)
+    across = np.hypot(u[..., 0], u[..., 1])
+    yaw = np.where(across > 0.0, np.arctan2(u[..., 1], u[..., 0]), 0.0)
+    pitch = np.clip(np.arctan2(across, u[..., 2]) - mount_rad, -tilt_max_rad, tilt_max_rad)
+    return np.zeros_like(yaw), pitch, yaw
 
 
 def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:

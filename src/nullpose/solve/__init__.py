@@ -3,7 +3,7 @@
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.compiling import announce_compiling
 from nullpose.solve.evidence import certificate_of
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap
+from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
-from nullpose.family import build_family
+from nullpose.family import AxisField, build_family
 from nullpose.physics import Link, Pose, evaluate, maximum_gain_sinr_as_printed, to_db
 from nullpose.scenario import Scenario
 from nullpose.solve.effort import Effort
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap
+from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
+from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable, require_applicable
 from nullpose.solve.schemes import maximum_gain, maximum_gain_printed, optimum, vertical, zero_interference
-from nullpose.solve.settle import Settled
-from nullpose.solve.solution import Objective, Solution, Stats, Status
+from nullpose.solve.settle import Settled, settle
+from nullpose.solve.solution import Solution, Stats, Status
 
 __all__ = ["best_axis", "compare", "solve"]
 
@@ -38,16 +41,18 @@ def solve(
 ) -> Solution:
     """Return the best pose for a scenario under a scheme, and a bound that no pose exceeds.
 
-    Maximises the smallest SINR over the nodes (paper eq. 2.2) with the axes that the scheme allows. The
-    value is re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from a
-    branch and bound over positions and axes. On a limit or an interrupt the best pose and the best bound so
-    far are returned, and the status says so.
+    Maximises what the scenario asks for, the smallest SINR over the nodes (paper eq. 2.2), the smallest
+    margin or the smallest secrecy rate, with the axes that the scheme and the airframe allow. The value is
+    re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from a branch and
+    bound over positions and axes. On a limit or an interrupt the best pose and the best bound so far are
+    returned, and the status says so.
 
     Args:
-        scenario: nodes, jammers, receiver and airspace.
+        scenario: what to solve.
         scheme: one of :class:`Scheme`, or its name.
         gap: relative gap between bound and value at which the proof is done; without it
-            :func:`default_gap` of the number of nodes.
+            :func:`default_gap` of the number of nodes, each counted once for every eavesdropper. A rate
+            below 1 bit/s/Hz is proved to so much of itself, one beyond to so many bits/s/Hz.
         time_limit_s: seconds after which the proof stops.
         node_limit: boxes after which the proof stops.
         certify: whether to prove anything; without it the search alone is run, more thoroughly.
@@ -68,29 +73,25 @@ def solve(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; "
             "it goes with zero-interference only"
         )
-    target = default_gap(len(scenario.nodes)) if gap is None else gap
-    limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
+    target = default_gap_of(scenario) if gap is None else gap
+    limits = Limits(
+        gap=target,
+        time_limit_s=time_limit_s,
+        node_limit=node_limit,
+        of_rate=scenario.objective == "secrecy-rate",
+    )
     effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
     began = time.perf_counter()
     settled = _settle(scenario, scheme, effort, null_jammer)
-    pose = Pose.from_axis(settled.found.position_m, settled.found.axis)
+    pose = Pose.of_airframe(scenario, settled.found.position_m, settled.found.axis)
     links = _links(scenario, scheme, pose)
-    value = min(link.sinr for link in links)
-    bound = settled.upper_bound
-    relative_gap = None if bound is None else bound / value - 1.0
     status = _status(settled)
     return Solution(
         scenario=scenario,
         scheme=scheme,
         status=status,
         reason=settled.reason if status is not Status.CERTIFIED else "",
-        objective=Objective(
-            name="min_sinr",
-            value=value,
-            value_db=float(to_db(value)),
-            upper_bound=bound,
-            relative_gap=relative_gap,
-        ),
+        objective=objective_of(scenario, links, settled.upper_bound),
         pose=pose,
         links=links,
         stats=Stats(
@@ -155,13 +156,13 @@ def compare(
 
 
 def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
-    """Return the pose with the best axis at a given position: exact, for any number of nodes.
+    """Return the pose with the best axis at a given position, of those that the airframe reaches.
 
-    Maximises the smallest SINR over the axis alone, by enumeration of the active sets of one, two and three
-    nodes.
+    Maximises what the scenario asks for over the axis alone: by enumeration of the active sets of one, two
+    and three ratios, exact for a smallest SINR or margin; within an airframe's reach by a proved search.
 
     Args:
-        scenario: nodes, jammers and receiver; its airspace is not consulted.
+        scenario: what is asked for; its airspace is not consulted.
         position_m: (3,) metres, at least the keep-out radius from every ground point.
 
     Raises:
@@ -179,9 +180,25 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
             f"position_m: {nearest_m:.3g} m from a ground point; "
             f"allowed: at least keep_out_m = {family.keep_out_m:g} m"
         )
+    band = scenario.axis_band
     axis = np.empty(3)
-    kernel(family.arrays, position, axis)
-    return Pose.from_axis(position, axis)
+    if band == (0.0, 1.0):
+        kernel(family.arrays, position, axis)
+    else:
+        here = replace(family, low_m=position, high_m=position, **_NO_BORDERS)
+        axis = settle(here, [AxisField.within(*band)], Effort(limits=Limits(gap=1e-8))).found.axis
+    return Pose.of_airframe(scenario, position, axis)
+
+
+_NO_BORDERS: dict[str, Any] = {
+    "keep_out_points_m": np.zeros((0, 3)),
+    "piece_start": np.zeros(1, dtype=np.int64),
+    "piece_sides": np.zeros((0, 5)),
+    "zone_kind": np.zeros(0, dtype=np.int64),
+    "zone_start": np.zeros(1, dtype=np.int64),
+    "zone_edges": np.zeros((0, 4)),
+    "zone_range_m": np.zeros((0, 2)),
+}
 
 
 def _settle(scenario: Scenario, scheme: Scheme, effort: Effort, null_jammer: str | None) -> Settled:

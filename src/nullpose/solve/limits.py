@@ -6,11 +6,15 @@ import math
 from dataclasses import dataclass
 
 from nullpose.errors import UsageError
+from nullpose.scenario import Scenario
 
-__all__ = ["NODE_LIMIT", "TIME_LIMIT_S", "Limits", "default_gap"]
+__all__ = ["LEAST_RATE_BPS_HZ", "NODE_LIMIT", "TIME_LIMIT_S", "Limits", "default_gap", "default_gap_of"]
 
 TIME_LIMIT_S = 60.0
 NODE_LIMIT = 10**9
+
+LEAST_RATE_BPS_HZ = 1e-3
+"""The relative gap of a smaller rate is that of this one, bits/s/Hz."""
 
 
 def default_gap(n_nodes: int) -> float:
@@ -24,14 +28,25 @@ def default_gap(n_nodes: int) -> float:
     return 1e-4 if n_nodes <= 20 else 1e-3
 
 
+def default_gap_of(scenario: Scenario) -> float:
+    """Return the default gap of a scenario, by its nodes, each counted once for every eavesdropper.
+
+    Args:
+        scenario: what is to be solved.
+    """
+    return default_gap(len(scenario.nodes) * max(1, len(scenario.eavesdroppers)))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
     """The target of a proof and what it may cost.
 
     Args:
-        gap: relative gap between bound and value at which it is done.
+        gap: relative gap between bound and value at which it is done; of a rate, see ``of_rate``.
         time_limit_s: seconds after which it stops with the bound reached.
         node_limit: nodes after which it stops.
+        of_rate: whether the gap is one of the rate, ``log2`` of the ratio: relative to a rate between
+            ``LEAST_RATE_BPS_HZ`` and 1 bit/s/Hz, and to those beyond.
 
     Raises:
         UsageError: a limit that cannot be met.
@@ -40,6 +55,7 @@ class Limits:
     gap: float
     time_limit_s: float = TIME_LIMIT_S
     node_limit: int = NODE_LIMIT
+    of_rate: bool = False
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.gap) and 1e-8 <= self.gap <= 10.0):
@@ -48,3 +64,14 @@ class Limits:
             raise UsageError(f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds")
         if isinstance(self.node_limit, bool) or not isinstance(self.node_limit, int) or self.node_limit < 1:
             raise UsageError(f"node limit: given {self.node_limit!r}; allowed: a whole number of at least 1")
+
+    def ratio_gap(self, value: float) -> float:
+        """Return the relative gap of the smallest ratio that closes the gap asked for.
+
+        Args:
+            value: the smallest ratio reached.
+        """
+        if not self.of_rate:
+            return self.gap
+        rate = math.log2(max(1.0, value))
+        return math.expm1(math.log(2.0) * self.gap * min(1.0, max(LEAST_RATE_BPS_HZ, rate)))

@@ -41,13 +41,15 @@ def search_positions(
         SolveError: the objective is minus infinity at every position tried.
     """
     from nullpose.solve.kernels.search import cut_box, push_out
+    from nullpose.solve.kernels.zones import in_zone
 
     low, high, keep_points, keep_radius = family.domain[:4]
     evaluations = 0
 
     def inside(position: FloatArray) -> bool:
         clear = np.sum((keep_points - position) ** 2, axis=1) >= keep_radius**2
-        return bool(np.all(position >= low) and np.all(position <= high) and np.all(clear))
+        in_box = bool(np.all(position >= low) and np.all(position <= high) and np.all(clear))
+        return in_box and not any(in_zone(family.domain, z, position) for z in range(len(family.zone_kind)))
 
     def cost(position: FloatArray) -> float:
         nonlocal evaluations

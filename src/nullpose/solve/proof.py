@@ -90,6 +90,7 @@ class _Run:
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
         self.doubt = 0.0
+        self.target = _INSIDE * limits.ratio_gap(self.value)
         self.favourite = self._favourite()
 
     @property
@@ -107,8 +108,12 @@ class _Run:
         from nullpose.solve.kernels.search import cut_box
 
         low, high = np.empty(3), np.empty(3)
-        # a hair wider than the cut itself, which is rounded
-        level = self.found.log_value - 1e-9
+        level = self.found.log_value
+        if np.any(self.family.numerator_isotropic):  # ratios tend to one far away, however little that is
+            level += math.log1p(self.target)
+        level -= (
+            1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
+        )  # a hair wider than the cut, which is rounded
         cut_box(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
         row = self.favourite.copy()
         row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
@@ -229,7 +234,7 @@ def prove(
     run = _Run(family, axis_field, found, limits, on_progress, spent or Spent())
     root = run.root()
     leaves = run.by_distance(root)
-    target = _INSIDE * limits.gap
+    target = run.target
     reason = ""
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it

@@ -56,6 +56,13 @@ def not_applicable(scenario: Scenario, scheme: Scheme) -> str | None:
         scenario: the scenario.
         scheme: the scheme.
     """
+    secret, tied = scenario.objective == "secrecy-rate", scenario.axis_band != (0.0, 1.0)
+    if secret and scheme not in (Scheme.OPTIMUM, Scheme.VERTICAL):
+        return "the paper states it for a drone that receives, and here it transmits (secrecy rate)"
+    if tied and scheme is Scheme.VERTICAL and scenario.axis_band[1] < 1.0:
+        return "the airframe does not reach a vertical antenna"
+    if tied and scheme not in (Scheme.OPTIMUM, Scheme.VERTICAL):
+        return "it may ask for any antenna axis, and the airframe does not reach every one"
     if scheme is Scheme.ZERO_INTERFERENCE and not scenario.jammers:
         return "zero interference needs a jammer to point its null at; the scenario has none"
     if scheme is Scheme.MAXIMUM_GAIN_PRINTED and len(scenario.nodes) != 2:

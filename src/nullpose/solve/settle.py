@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -65,7 +66,8 @@ def settle(family: Family, fields: Sequence[AxisField], effort: Effort) -> Settl
         if effort.limits is None:
             break
         # the level to exclude is that of the best of all; where to look for better poses is this field's
-        start = replace(each[i], log_value=best.log_value)
+        least = 0.0 if effort.limits.of_rate else -math.inf  # a rate is never below zero
+        start = replace(each[i], log_value=max(best.log_value, least))
         spent = Spent(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
         proof = prove(family, field, start, effort.limits, on_progress=effort.on_progress, spent=spent)
         proofs.append(proof)

@@ -11,6 +11,7 @@ from typing import Any
 
 from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
+from nullpose.solve.objective import Objective
 from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.scheme import Scheme
 
@@ -35,25 +36,6 @@ _MESSAGES = {
     Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
     Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
 }
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Objective:
-    """The number that was maximised, evaluated at the reported pose, and what is proved about it.
-
-    Args:
-        name: ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
-        value: that number, a power ratio.
-        value_db: the same in dB.
-        upper_bound: no pose exceeds this; None if nothing is proved.
-        relative_gap: ``(upper_bound - value) / value``; None if nothing is proved.
-    """
-
-    name: str
-    value: float
-    value_db: float
-    upper_bound: float | None = None
-    relative_gap: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,8 +96,13 @@ class Solution:
 
     @property
     def binding_node(self) -> str:
-        """Name of the node with the smallest SINR (the first, if several share it to the last digit)."""
-        return min(self.links, key=lambda link: link.sinr).node
+        """Name of the node that decides: least SINR, margin or rate (the first, if several share it)."""
+        return min(self.links, key=self._deciding).node
+
+    def _deciding(self, link: Link) -> float:
+        if self.objective.is_rate:
+            return link.secrecy_rate_bps_hz or 0.0
+        return link.sinr if link.margin is None else link.margin
 
     @property
     def interrupted(self) -> bool:

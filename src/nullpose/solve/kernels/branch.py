@@ -32,15 +32,14 @@ from nullpose.solve.kernels.node import (
     INDEX,
     KIND,
     LEVEL,
-    NU,
     OFF_BAND,
     WEIGHT,
     longest_side,
     off_band,
-    reaching_ball,
     split_axis,
     split_position,
 )
+from nullpose.solve.kernels.zones import in_zone
 
 __all__ = ["BETTER", "DONE", "FULL", "LIMIT", "branch"]
 
@@ -117,6 +116,8 @@ def is_pose(domain, centre):
         for i in range(3):
             d += (keep_points[q, i] - centre[i]) ** 2
         inside = inside and d >= keep_radius * keep_radius
+    for z in range(domain[6].shape[0]):
+        inside = inside and not in_zone(domain, z, centre)
     return inside
 
 
@@ -127,7 +128,7 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
     Fills the node's kind, its multipliers, and an axis if it beats the best.
     """
     side = longest_side(row)
-    kind = out_of_reach(family, domain[2], domain[3], row)
+    kind = out_of_reach(family, domain, row)
     if kind >= 0:
         row[KIND] = kind
         return _EXCLUDED, side, 0
@@ -138,7 +139,6 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
         nearest = min(nearest, min_distance(family[0], j, row[CENTRE:HALF], half))
     if not nearest > _CLOSE * radius:
         return _BY_POSITION, side, 0
-    row[BALL], row[NU] = reaching_ball(domain[2], domain[3], row), 0.0
     if axis_field[0] == 1:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
@@ -191,9 +191,7 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
     if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
-    split_axes = primal - reached > coarseness and (
-        family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band
-    )
+    split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
 

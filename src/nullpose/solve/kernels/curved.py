@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.borders import border_multipliers, borders, slope_and_rest
 from nullpose.solve.kernels.enclosure import JET, link_jet
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.node import (
@@ -24,10 +25,10 @@ from nullpose.solve.kernels.node import (
     LEVEL,
     NU,
     WEIGHT,
-    ball_multiplier,
     keep_largest,
 )
-from nullpose.solve.kernels.symmetric import eigen3
+from nullpose.solve.kernels.symmetric import copy_into, eigen3
+from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["curved_multipliers", "denominator_jet", "excludes_curved", "impact"]
 
@@ -134,7 +135,7 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
 
     Args:
         family: arrays of the family.
-        domain: (low, high, keep-out points, keep-out radius).
+        domain: box, keep-out balls, forbidden pieces and zones.
         axis_field: (1, offset, matrix).
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: (groups, JET) the jets of ``-t D_g``.
@@ -159,20 +160,34 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
     row[NU] = 0.0
     if total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
         return True
-    ball = int(row[BALL])
-    if ball < 0:
-        return False
-    row[NU] = ball_multiplier(domain[2], ball, total[1:4], row)
-    if not row[NU] > 0.0:
-        return False
-    n2 = 0.0
-    for i in range(3):
-        n = row[CENTRE + i] - domain[2][ball, i]
-        n2 += n * n
-        total[1 + i] += 2.0 * row[NU] * n
-        total[4 + i] += 2.0 * row[NU]
-    total[0] += row[NU] * (n2 - domain[3] ** 2 * (1.0 - 1e-12))
-    return box_maximum(total, row[HALF:LEVEL]) < 0.0
+    return row[BALL] >= 0.0 and excludes_allowed(domain, row, total)
+
+
+@inner_kernel
+def excludes_allowed(domain, row, total):
+    """Return whether a jet is negative wherever a border allows positions; fill its multiplier."""
+    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    alternatives = borders(domain, row, sides, counts)
+    nu, ways, bent = np.empty(2), np.empty((2, 3)), np.empty(JET)
+    values, bends, axes = np.empty(2), np.empty(2), np.empty(2, np.int64)
+    for a in range(alternatives):
+        for c in range(counts[a]):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
+        if not border_multipliers(ways, counts[a], total[1:4], nu):
+            return False
+        copy_into(total, bent)
+        for c in range(counts[a]):
+            bent[0] += nu[c] * values[c]
+            for i in range(3):
+                bent[1 + i] += nu[c] * ways[c, i]
+                if i < axes[c]:
+                    bent[4 + i] += nu[c] * bends[c]
+        if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:
+            return False
+        row[NU] = nu[0]
+    if alternatives > 0 and int(row[BALL]) >= domain[2].shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
+    return alternatives > 0
 
 
 @inner_kernel

@@ -3,8 +3,8 @@
 Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell, one for the band)
 exclude a box at a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for
 every position p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its
-first-order expansion at the eight corners plus a second-order remainder, and a margin that outweighs rounding.
-Where all axes are level, it only needs to be negative definite in the level plane.
+first-order expansion at the eight corners plus a second-order remainder, with a margin for rounding. Where
+all axes are level, it only needs to be negative definite in the level plane.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
 from nullpose.solve.kernels.dual import top_eigenvector
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value
@@ -33,9 +34,10 @@ from nullpose.solve.kernels.node import (
     NU,
     SIDE,
     WEIGHT,
-    ball_multiplier,
     cell_side,
 )
+from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["excludes", "expand_denominator", "is_level", "out_of_reach"]
 
@@ -109,9 +111,7 @@ def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
     size = d0[g]
     for e in range(dstart[g], dstart[g + 1]):
         j = dpt[e]
-        _, down = expand_point(
-            points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes
-        )
+        _, down = expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
         add_scaled(-level * dw[e], form, slopes, out, out_slopes)
         if kind == TOWARDS_POINT and j == anchor:
             across += level * dw[e] * (_ROUNDING * (form[0] + form[1]) - radius * down)
@@ -234,37 +234,52 @@ def excludes(family, domain, axis_field, view, row, below):
     level_axes = is_level(axis_field)
     if negative_at_corners(matrix, slopes, half, level_axes):
         return True
-    ball = int(row[BALL])
-    return ball >= 0 and excludes_outside(domain, ball, row, matrix, slopes, level_axes)
+    return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
 
 @inner_kernel
-def excludes_outside(domain, ball, row, matrix, slopes, level_axes):
-    """Return whether the matrix is negative where the box is outside a ball; fill the multiplier of that."""
-    keep_points, keep_radius = domain[2], domain[3]
-    v, gradient = np.empty(3), np.empty(3)
+def excludes_allowed(domain, row, matrix, slopes, level_axes):
+    """Return whether the matrix is negative wherever a border allows positions; fill its multiplier."""
+    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    alternatives = borders(domain, row, sides, counts)
+    if alternatives == 0:
+        return False
+    v, gradient, nu, ways = np.empty(3), np.empty(3), np.empty(2), np.empty((2, 3))
+    values, bends, axes = np.empty(2), np.empty(2), np.empty(2, np.int64)
+    half, row[NU] = row[HALF:LEVEL], 0.0
     if level_axes:
         matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
     top_eigenvector(matrix, v)
     for i in range(3):
         gradient[i] = form_value(slopes, i, v)
-    row[NU] = ball_multiplier(keep_points, ball, gradient, row)
-    if not row[NU] > 0.0:
-        return False
-    rest = -(keep_radius**2) * (1.0 - 1e-12)
-    for i in range(3):
-        n = row[CENTRE + i] - keep_points[ball, i]
-        rest += n * n + row[HALF + i] ** 2
-        for m in range(3):
-            slopes[i, m] += 2.0 * row[NU] * n
-    for m in range(3):
-        matrix[m] += row[NU] * rest
-    return negative_at_corners(matrix, slopes, row[HALF:LEVEL], level_axes)
+    bent, bent_slopes = np.empty(6), np.empty((3, 6))
+    for a in range(alternatives):
+        for c in range(counts[a]):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
+        if not border_multipliers(ways, counts[a], gradient, nu):
+            return False
+        copy_into(matrix, bent)
+        bent_slopes[:, :] = slopes
+        for c in range(counts[a]):
+            rest = values[c]
+            for i in range(axes[c]):
+                rest += 0.5 * bends[c] * half[i] ** 2
+            for m in range(3):
+                bent[m] += nu[c] * rest
+                for i in range(3):
+                    bent_slopes[i, m] += nu[c] * ways[c, i]
+        if not negative_at_corners(bent, bent_slopes, half, level_axes):
+            return False
+        row[NU] = nu[0]
+    if int(row[BALL]) >= domain[2].shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
+    return True
 
 
 @inner_kernel
-def out_of_reach(family, keep_points, keep_radius, row):
-    """Return the kind of a box that needs no multipliers, too far or inside a keep-out ball, or -1."""
+def out_of_reach(family, domain, row):
+    """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
+    keep_points, keep_radius = domain[2], domain[3]
     points, n0, nw, npt, den, d0 = family[:6]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     for k in range(nw.shape[0]):
@@ -279,4 +294,8 @@ def out_of_reach(family, keep_points, keep_radius, row):
         if d < keep_radius * keep_radius:
             row[ANCHOR] = q
             return KEPT_OUT
+    zone = choose_border(domain, row)
+    if zone >= 0:
+        row[ANCHOR] = zone
+        return KEPT_OUT
     return -1

@@ -68,7 +68,7 @@ def inverse_factor(a, out):
 
 @inner_kernel
 def turned_back(turn, j, x, y, z):
-    """Return ``Q_j^T r``: the direction to point j as the axis sees it that the point's turn is left out of."""
+    """Return ``Q_j^T r``: the direction to point j in the coordinates of the axis before its turn."""
     if turn.shape[0] == 0:
         return x, y, z
     q = turn[j]

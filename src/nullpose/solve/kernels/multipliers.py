@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.dual import dual_multipliers, positive_definite, top_eigenvector
 from nullpose.solve.kernels.chart import clamp_axis
+from nullpose.solve.kernels.dual import dual_multipliers, positive_definite, top_eigenvector
 from nullpose.solve.kernels.exclusion import is_level
 from nullpose.solve.kernels.forms import congruence, form_value, inverse_factor
 from nullpose.solve.kernels.jit import inner_kernel

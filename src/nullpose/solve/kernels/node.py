@@ -31,7 +31,6 @@ __all__ = [
     "SIDE",
     "SUPPORT",
     "WEIGHT",
-    "ball_multiplier",
     "cell_side",
     "keep_largest",
     "longest_side",
@@ -116,17 +115,6 @@ def reaching_ball(keep_points, keep_radius, row):
         if d < least:
             ball, least = q, d
     return ball
-
-
-@inner_kernel
-def ball_multiplier(keep_points, ball, gradient, row):
-    """Return the multiplier of ``|p - q|^2 - R^2 >= 0`` that cancels a gradient's part towards q."""
-    n2 = along = 0.0
-    for i in range(3):
-        n = row[CENTRE + i] - keep_points[ball, i]
-        n2 += n * n
-        along += n * gradient[i]
-    return -0.5 * along / n2 if n2 > 0.0 else 0.0
 
 
 @inner_kernel

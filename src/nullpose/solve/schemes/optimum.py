@@ -1,4 +1,4 @@
-"""Optimum pose (paper eq. 2.2): position and axis both free."""
+"""Optimum pose (paper eq. 2.2): position and axis both free, the latter as far as the airframe reaches."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["find"]
 
 
 def find(scenario: Scenario, effort: Effort) -> Settled:
-    """Return the best pose with the axis free.
+    """Return the best pose with any axis that the airframe reaches.
 
     Args:
         scenario: what to solve.
         effort: what it may cost.
     """
-    return settle(build_family(scenario), [AxisField.free()], effort)
+    return settle(build_family(scenario), [AxisField.within(*scenario.axis_band)], effort)

@@ -1,0 +1,120 @@
+"""What a box may use of the airspace's borders: multipliers of staying out of a ball or a zone.
+
+A constraint ``g(p) >= 0`` that holds at every allowed position of a box, or, of several alternatives, each
+in its turn, may be added with any multiplier ``nu >= 0`` to what must be negative there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.node import BALL, CENTRE, HALF, NU, reaching_ball
+from nullpose.solve.kernels.zones import (
+    FORBIDDEN,
+    MOST_ALTERNATIVES,
+    OUTSIDE,
+    UNCLEAR,
+    in_zone,
+    zone_alternatives,
+)
+
+__all__ = ["border_multipliers", "borders", "choose_border", "slope_and_rest"]
+
+
+@inner_kernel
+def choose_border(domain, row):
+    """Fill the row's ball or zone: the one to be used in its box, or -1; return a zone that forbids it all.
+
+    Zones are numbered after the balls. Without such a zone, -1 is returned.
+    """
+    keep_points, keep_radius = domain[2], domain[3]
+    balls, zones = keep_points.shape[0], domain[6].shape[0]
+    row[BALL], row[NU] = reaching_ball(keep_points, keep_radius, row), 0.0
+    if zones == 0:
+        return -1
+    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    chosen = -1
+    for z in range(zones):
+        count = zone_alternatives(domain, z, row, sides, counts)
+        if count == FORBIDDEN:
+            return balls + z
+        if count != OUTSIDE and count != UNCLEAR:
+            if in_zone(domain, z, row[CENTRE:HALF]):
+                row[BALL] = balls + z
+                return -1
+            chosen = z
+    if chosen >= 0 and row[BALL] < 0.0:
+        row[BALL] = balls + chosen
+    return -1
+
+
+@inner_kernel
+def borders(domain, row, sides, counts):
+    """Fill the alternatives of the row's ball or zone; return how many there are, 0 for none."""
+    border = int(row[BALL])
+    balls = domain[2].shape[0]
+    if border < 0:
+        return 0
+    if border < balls:
+        counts[0] = 1
+        sides[0, 0, 0] = 2.0
+        for i in range(3):
+            sides[0, 0, 1 + i] = domain[2][border, i]
+        sides[0, 0, 4] = domain[3]
+        return 1
+    return max(np.int64(0), zone_alternatives(domain, border - balls, row, sides, counts))
+
+
+@inner_kernel
+def slope_and_rest(side, row, slope):
+    """Fill a constraint's gradient at the box's centre; return its value there and how curved it is.
+
+    The second number is the second derivative along each of the first so many axes: 2 for a ball or a
+    cylinder, 0 for a plane; the third is that number of axes.
+    """
+    centre = row[CENTRE:HALF]
+    if side[0] == 0.0:
+        value, size = -side[4], abs(side[4])
+        for i in range(3):
+            slope[i] = side[1 + i]
+            value += side[1 + i] * centre[i]
+            size += abs(side[1 + i] * centre[i])
+        return value + 1e-14 * size, 0.0, np.int64(3)  # a hair on the safe side of its rounding
+    axes = np.int64(2) if side[0] == 1.0 else np.int64(3)
+    value = -(side[4] ** 2) * (1.0 - 1e-12)  # likewise
+    slope[2] = 0.0
+    for i in range(axes):
+        n = centre[i] - side[1 + i]
+        slope[i] = 2.0 * n
+        value += n * n
+    return value, 2.0, axes
+
+
+@inner_kernel
+def border_multipliers(slopes, count, gradient, nu):
+    """Fill the multipliers of one or two constraints that cancel a gradient best; return whether there are."""
+    nu[0] = nu[1] = 0.0
+    gram, pull = np.zeros(2), np.zeros(2)
+    cross = 0.0
+    for c in range(count):
+        for i in range(3):
+            gram[c] += slopes[c, i] ** 2
+            pull[c] -= slopes[c, i] * gradient[i]
+            if count == 2 and c == 0:
+                cross += slopes[0, i] * slopes[1, i]
+        if not gram[c] > 0.0:
+            return False
+    if count == 2:
+        det = gram[0] * gram[1] - cross * cross
+        if det > 1e-12 * gram[0] * gram[1]:
+            nu[0] = (pull[0] * gram[1] - pull[1] * cross) / det
+            nu[1] = (pull[1] * gram[0] - pull[0] * cross) / det
+        if nu[0] > 0.0 and nu[1] > 0.0:
+            return True
+        lead = 0 if pull[0] * pull[0] / gram[0] * (pull[0] > 0.0) >= pull[1] * pull[1] / gram[1] else 1
+        nu[0] = nu[1] = 0.0
+        nu[lead] = max(0.0, pull[lead] / gram[lead])
+        return nu[lead] > 0.0
+    nu[0] = max(0.0, pull[0] / gram[0])
+    return nu[0] > 0.0
