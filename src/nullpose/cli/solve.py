@@ -72,7 +72,7 @@ def solve(
     from nullpose.certificate import write_certificate
     from nullpose.errors import UsageError
     from nullpose.report.export import require_origin, write_geojson
-    from nullpose.solve import certificate_of, default_gap
+    from nullpose.solve import certificate_of, default_gap_of
     from nullpose.solve import solve as solve_scenario
     from nullpose.study import prepare_folder
 
@@ -81,7 +81,7 @@ def solve(
     if geojson is not None:
         require_origin(scenario)
         prepare_folder(geojson.parent)
-    target = default_gap(len(scenario.nodes)) if gap is None else gap
+    target = default_gap_of(scenario) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(
             scenario,

@@ -22,6 +22,7 @@ __all__ = [
     "certificate_of",
     "compare",
     "default_gap",
+    "default_gap_of",
     "not_applicable",
     "solve",
 ]

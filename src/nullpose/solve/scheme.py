@@ -65,6 +65,8 @@ def not_applicable(scenario: Scenario, scheme: Scheme) -> str | None:
         return "it may ask for any antenna axis, and the airframe does not reach every one"
     if scheme is Scheme.ZERO_INTERFERENCE and not scenario.jammers:
         return "zero interference needs a jammer to point its null at; the scenario has none"
+    if scheme is Scheme.MAXIMUM_GAIN_PRINTED and scenario.has_margins:
+        return "eq. 3.5 as printed knows no weights or requirements"
     if scheme is Scheme.MAXIMUM_GAIN_PRINTED and len(scenario.nodes) != 2:
         return f"eq. 3.5 as printed is for two nodes; the scenario has {len(scenario.nodes)}"
     return None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, apply_overrides
-from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap
+from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap_of
 from nullpose.solve.limits import Limits
 from nullpose.solve.scheme import require_applicable
 from nullpose.study.files import prepare_folder
@@ -110,7 +110,7 @@ def plan_sweep(
     if schemes is not None:
         for scheme in wanted:
             require_applicable(base, scheme)
-    target = default_gap(len(base.nodes)) if gap is None else gap
+    target = default_gap_of(base) if gap is None else gap
     limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
     path = varied[0].strip()
     scenarios_along(base, path, values)  # a fault shows before a folder is made

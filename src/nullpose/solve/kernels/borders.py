@@ -93,7 +93,7 @@ def slope_and_rest(side, row, slope):
 
 @inner_kernel
 def border_multipliers(slopes, count, gradient, nu):
-    """Fill the multipliers of one or two constraints that cancel a gradient best; return whether there are."""
+    """Fill the multipliers of one or two constraints that cancel a gradient best; tell whether there are."""
     nu[0] = nu[1] = 0.0
     gram, pull = np.zeros(2), np.zeros(2)
     cross = 0.0
