@@ -1,0 +1,167 @@
+"""One way in which everything that is uncertain may turn out, and what a pose gives then."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics.secrecy import node_snr
+from nullpose.physics.sinr import received_power_w
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = ["ErrorCase", "objective_under", "ratios_under", "rotation_between", "sinr_under"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ErrorCase:
+    """Where everything actually is, from where it was meant or thought to be; world frame.
+
+    Args:
+        position_offset_m: shape ``(3,)``, the drone's actual position less the commanded one, metres.
+        rotation_world: shape ``(3, 3)``, the rotation that takes the commanded antenna axis to the actual
+            one.
+        jammer_offsets_m: shape ``(n_jammers, 3)``, actual less stated positions, metres.
+        eavesdropper_offsets_m: shape ``(n_eavesdroppers, 3)``, likewise.
+    """
+
+    position_offset_m: FloatArray
+    rotation_world: FloatArray
+    jammer_offsets_m: FloatArray
+    eavesdropper_offsets_m: FloatArray
+
+    def __post_init__(self) -> None:
+        shapes = {"position_offset_m": (3,), "rotation_world": (3, 3)}
+        for field in fields(self):
+            array = np.array(getattr(self, field.name), dtype=float)
+            wanted = shapes.get(field.name, (len(array), 3))
+            if array.shape != wanted or not np.all(np.isfinite(array)):
+                raise ValueError(
+                    f"error case {field.name} must be finite, of shape {wanted}; given {array!r}"
+                )
+            array.flags.writeable = False
+            object.__setattr__(self, field.name, array)
+
+    @classmethod
+    def none(cls, scenario: Scenario) -> ErrorCase:
+        """Return the case in which everything is as stated.
+
+        Args:
+            scenario: says how many jammers and eavesdroppers there are.
+        """
+        return cls(
+            position_offset_m=np.zeros(3),
+            rotation_world=np.eye(3),
+            jammer_offsets_m=np.zeros((len(scenario.jammers), 3)),
+            eavesdropper_offsets_m=np.zeros((len(scenario.eavesdroppers), 3)),
+        )
+
+    @property
+    def rotation_rad(self) -> float:
+        """Angle of the rotation, radians: for the smallest that turns the axis so, the error of the axis."""
+        sine = 0.5 * np.linalg.norm(
+            [self.rotation_world[j, i] - self.rotation_world[i, j] for i, j in ((0, 1), (1, 2), (2, 0))]
+        )
+        return math.atan2(float(sine), 0.5 * (float(np.trace(self.rotation_world)) - 1.0))
+
+
+def rotation_between(first: ArrayLike, second: ArrayLike) -> FloatArray:
+    """Return the smallest rotation that takes one unit vector to another.
+
+    ``R = I + [v]x + [v]x^2 / (1 + c)`` with ``v = a x b`` and ``c = a.b`` (Rodrigues' formula).
+
+    Args:
+        first: ``a``, shape ``(3,)``, of unit length.
+        second: ``b``, shape ``(3,)``, of unit length and not opposite to it.
+
+    Returns:
+        Array of shape ``(3, 3)``.
+    """
+    a, b = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    x, y, z = np.cross(a, b)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + float(a @ b)))
+
+
+def sinr_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:
+    """Return every node's SINR at a pose when an error case comes true.
+
+    Paper eq. 2.1 at the actual position ``p + d`` with the actual axis ``R u`` and jammers at ``m_j + e_j``.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``.
+        case: what is actually the case.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    p, u = _actual(position_m, axis, case)
+    g0 = scenario.receiver.reference_gain
+    jammers_m = scenario.jammer_positions_m + case.jammer_offsets_m
+    signal_w = received_power_w(p, u, scenario.node_positions_m, scenario.node_powers_w, g0)
+    jamming_w = received_power_w(p, u, jammers_m, scenario.jammer_powers_w, g0)
+    noise_w = np.sum(jamming_w, axis=-1, keepdims=True) + scenario.receiver.noise_power_w
+    return np.asarray(signal_w / noise_w)
+
+
+def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:
+    """Return the ratios of which the objective takes the smallest, when an error case comes true.
+
+    Every node's margin, its SINR over its weight or requirement; or with objective "secrecy-rate" the ratio
+    ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper, whose logarithm to base 2 is their rate.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``.
+        case: what is actually the case.
+
+    Returns:
+        Array of shape ``(..., n_nodes, 1)``, or ``(..., n_nodes, n_eavesdroppers)``.
+
+    Raises:
+        ValueError: objective "secrecy-rate" without a transmitter.
+    """
+    if scenario.objective != "secrecy-rate":
+        margins = sinr_under(scenario, position_m, axis, case) / scenario.node_required_sinr
+        return np.asarray(margins[..., None])
+    p, u = _actual(position_m, axis, case)
+    wanted = node_snr(scenario, p, u)
+    assert scenario.transmitter is not None, "or the signal to noise ratio would have failed"
+    listeners_m = scenario.eavesdropper_positions_m + case.eavesdropper_offsets_m
+    powers_w = np.full(len(listeners_m), scenario.transmitter.transmit_power_w)
+    overheard = received_power_w(p, u, listeners_m, powers_w, scenario.receiver.reference_gain)
+    overheard = overheard / scenario.eavesdropper_noise_w
+    return np.asarray((1.0 + wanted[..., :, None]) / (1.0 + overheard[..., None, :]))
+
+
+def objective_under(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase
+) -> FloatArray:
+    """Return what the scenario asks to be made as large as it can be, when an error case comes true.
+
+    The smallest margin over the nodes, or the smallest secrecy rate, ``max(0, log2)`` of the smallest ratio.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``.
+        case: what is actually the case.
+
+    Returns:
+        Array of shape ``(...)``: power ratios, or bits/s/Hz.
+    """
+    smallest = np.min(ratios_under(scenario, position_m, axis, case), axis=(-2, -1))
+    return np.asarray(
+        np.log2(np.maximum(1.0, smallest)) if scenario.objective == "secrecy-rate" else smallest
+    )
+
+
+def _actual(position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> tuple[FloatArray, FloatArray]:
+    position = np.asarray(position_m, dtype=float) + case.position_offset_m
+    return position, np.asarray(np.asarray(axis, dtype=float) @ case.rotation_world.T)

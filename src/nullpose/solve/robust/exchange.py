@@ -1,0 +1,135 @@
+"""The exchange: error cases are added where they bind, until the finite family speaks for all of them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.family import AxisField, Family
+from nullpose.family.robust import BindingCase, build_robust_family
+from nullpose.physics.error_case import ErrorCase
+from nullpose.solve.found import Found
+from nullpose.solve.limits import Limits
+from nullpose.solve.multistart import SearchSettings, multistart
+from nullpose.solve.proof import Spent, prove
+from nullpose.solve.robust.inner import Inner
+
+__all__ = ["Exchange", "Visited"]
+
+FloatArray = NDArray[np.float64]
+
+_SEARCH = SearchSettings(coarse=16, polished=2, rounds=2, patience=1)
+_MOST_ROUNDS = 100
+_SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
+_SAME = 1e-9
+_LEAST_GAP = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Visited:
+    """A pose and the smallest ratio of the worst cases found there.
+
+    Args:
+        position_m: (3,) metres.
+        axis: (3,) of unit length.
+        worst: that ratio.
+    """
+
+    position_m: FloatArray
+    axis: FloatArray
+    worst: float
+
+
+class Exchange:
+    """The search for the pose that guarantees most, and the bound on what any pose guarantees.
+
+    A finite family of error cases is maximised; the worst cases at its best pose join it; again, until its
+    value exceeds what the best pose so far guarantees by a share of the gap. Fewer errors than all make every
+    pose look better, so a proof for the finite family bounds what can be guaranteed.
+
+    Args:
+        inner: the scenario, prepared.
+        axis_field: the axes that the airframe reaches.
+        seed: seed of the searches.
+        gap: relative gap between bound and guarantee that is aimed at.
+    """
+
+    def __init__(self, inner: Inner, axis_field: AxisField, seed: int, gap: float) -> None:
+        self.inner, self.axis_field, self.seed, self.gap = inner, axis_field, seed, gap
+        blank = ErrorCase.none(inner.scenario)
+        self.cases = [BindingCase(ratio, blank) for ratio in range(inner.n_ratios)]
+        self.best: Visited | None = None
+        self.found: Found | None = None
+        self.starts = self.evaluations = self.boxes = self.rounds = 0
+        self.upper_bound: float | None = None
+        self.reason = ""
+
+    @property
+    def family(self) -> Family:
+        """The finite family of the cases so far."""
+        return build_robust_family(self.inner.scenario, self.cases)
+
+    def visit(self, position_m: FloatArray, axis: FloatArray, level: float = math.inf) -> list[BindingCase]:
+        """Return the worst cases at a pose that are below a level; the pose may be the best so far.
+
+        Args:
+            position_m: (3,) the position.
+            axis: (3,) the axis, of any length.
+            level: what the finite family promises there.
+        """
+        worst = self.inner.worst(position_m, axis)
+        value = min(one.value for one in worst)
+        if self.best is None or value > self.best.worst:
+            self.best = Visited(position_m.copy(), axis / np.linalg.norm(axis), value)
+        return [one.binding for one in worst if one.value < level * (1.0 - _SAME)]
+
+    def search(self, deadline: float) -> None:
+        """Add cases until the finite family promises little more than the best pose guarantees.
+
+        Args:
+            deadline: when to stop in any case, on the clock of ``time.perf_counter``.
+        """
+        for _ in range(_MOST_ROUNDS):
+            self.rounds += 1
+            found = multistart(self.family, self.axis_field, seed=self.seed, settings=_SEARCH)
+            self.starts += found.starts
+            self.evaluations += found.evaluations
+            self.found, promised = found, math.exp(found.log_value)
+            new = self.visit(found.position_m, found.axis, promised)
+            assert self.best is not None
+            close = promised <= self.best.worst * (1.0 + _SHARE * self.gap)
+            if close or not new or time.perf_counter() > deadline:
+                return  # the family stays the one that was searched
+            self.cases += new
+
+    def prove(
+        self, level: float, limits: Limits, began: float, on_progress: Callable[[float, int], None] | None
+    ) -> bool:
+        """Bound the finite family by a level; return whether to search on, since a better pose turned up.
+
+        Args:
+            level: the ratio that no pose is to exceed.
+            limits: what all proofs together may cost.
+            began: when the clock of the limits began.
+            on_progress: called now and then with the gap proved so far and the boxes examined.
+        """
+        assert self.found is not None
+        value = math.exp(self.found.log_value)
+        spent = Spent(seconds=time.perf_counter() - began, nodes=self.boxes)
+        gap = level / value - 1.0
+        target = replace(limits, gap=gap if gap > _LEAST_GAP else self.gap)
+        proof = prove(self.family, self.axis_field, self.found, target, on_progress=on_progress, spent=spent)
+        self.boxes += proof.nodes
+        bound = proof.upper_bound
+        self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
+        self.reason = proof.reason
+        if proof.reason or not proof.found.log_value > self.found.log_value + _SAME:
+            return False
+        new = self.visit(proof.found.position_m, proof.found.axis, math.exp(proof.found.log_value))
+        self.cases += new
+        return bool(new)

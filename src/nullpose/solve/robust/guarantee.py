@@ -1,0 +1,168 @@
+"""What a pose guarantees: its smallest ratio over all errors together, proved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.errors import UsageError
+from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.scenario import Scenario
+from nullpose.solve.robust.inner import Inner, Worst
+
+__all__ = ["ACCURACY", "Guarantee", "RatioGuarantee", "guarantee", "guarantee_of"]
+
+FloatArray = NDArray[np.float64]
+
+ACCURACY = 3e-3
+"""Relative distance between a guarantee and the worst case found, unless another is asked for."""
+
+_FINEST = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RatioGuarantee:
+    """What a pose guarantees to one node.
+
+    Args:
+        node: the node's name.
+        eavesdropper: the eavesdropper's name, or empty.
+        nominal: the ratio without errors.
+        lower: no error makes it smaller than this.
+        worst: the ratio in the worst case found; between the two the smallest lies.
+        case: that case.
+    """
+
+    node: str
+    eavesdropper: str
+    nominal: float
+    lower: float
+    worst: float
+    case: ErrorCase
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Guarantee:
+    """What a pose guarantees: the smallest ratio over the nodes and over all errors together.
+
+    A ratio is a node's margin (its SINR where it states no weight and no requirement), or with objective
+    "secrecy-rate" ``(1 + SNR_k) / (1 + SNR_e)``, two to the power of the secrecy rate.
+
+    Args:
+        position_m: (3,) the commanded position.
+        axis: (3,) the commanded unit antenna axis.
+        ratios: one for every node, or for every node and eavesdropper.
+        cells: cells of errors examined.
+    """
+
+    position_m: FloatArray
+    axis: FloatArray
+    ratios: tuple[RatioGuarantee, ...]
+    cells: int
+
+    @property
+    def nominal(self) -> float:
+        """The smallest ratio without errors."""
+        return min(one.nominal for one in self.ratios)
+
+    @property
+    def lower(self) -> float:
+        """A proved lower bound on the smallest ratio over all errors."""
+        return min(one.lower for one in self.ratios)
+
+    @property
+    def worst(self) -> float:
+        """The smallest ratio in the worst cases found: an upper bound on the same number."""
+        return self.binding.worst
+
+    @property
+    def binding(self) -> RatioGuarantee:
+        """The ratio that is smallest in its worst case."""
+        return min(self.ratios, key=lambda one: one.worst)
+
+    @property
+    def case(self) -> ErrorCase:
+        """The worst error case found."""
+        return self.binding.case
+
+
+def guarantee(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, *, accuracy: float = ACCURACY
+) -> Guarantee:
+    """Return what a pose guarantees over all errors that the scenario allows, with a proof.
+
+    The errors are all of these together: an actual axis within ``attitude_error_deg`` of the commanded one,
+    an actual position within ``position_error_m`` of the commanded one, every jammer or eavesdropper anywhere
+    in its set. Branch and bound over axis and position, with closed forms for the rest; see docs/robust.md.
+
+    Args:
+        scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted.
+        position_m: (3,) the commanded position, metres.
+        axis: (3,) the commanded antenna axis, of any length but zero.
+        accuracy: relative distance of each bound from the worst case found, 1e-6 to 0.5. A bound that would
+            take too long is given lower.
+
+    Raises:
+        UsageError: a pose or an accuracy that is none, or an array in place of the dipole.
+    """
+    return guarantee_of(Inner(require_dipole(scenario)), position_m, axis, accuracy)
+
+
+def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy: float) -> Guarantee:
+    """Return what a pose guarantees, for a scenario that was prepared before.
+
+    Args:
+        inner: the scenario, prepared.
+        position_m: (3,) the commanded position, metres.
+        axis: (3,) the commanded antenna axis, of any length but zero.
+        accuracy: relative distance of each bound from the worst case found.
+
+    Raises:
+        UsageError: a pose or an accuracy that is none.
+    """
+    p, u = np.array(position_m, dtype=float), np.array(axis, dtype=float)
+    if p.shape != (3,) or not np.all(np.isfinite(p)):
+        raise UsageError(f"position_m: given {position_m!r}; allowed: three finite numbers, metres")
+    if u.shape != (3,) or not np.all(np.isfinite(u)) or not np.any(u):
+        raise UsageError(f"axis: given {axis!r}; allowed: three finite numbers, not all zero")
+    if not _FINEST <= accuracy <= 0.5:
+        raise UsageError(f"accuracy: given {accuracy!r}; allowed: {_FINEST:g} to 0.5, relative")
+    u /= np.linalg.norm(u)
+    found = inner.worst(p, u, accuracy)
+    nominal = ratios_under(inner.scenario, p, u, ErrorCase.none(inner.scenario))
+    for array in (p, u):
+        array.flags.writeable = False
+    return Guarantee(
+        position_m=p,
+        axis=u,
+        ratios=tuple(_named(inner.scenario, one, nominal) for one in found),
+        cells=sum(one.cells for one in found),
+    )
+
+
+def require_dipole(scenario: Scenario) -> Scenario:
+    """Return the scenario, whose antenna is one dipole.
+
+    Args:
+        scenario: any.
+
+    Raises:
+        UsageError: it has an array.
+    """
+    if scenario.array is not None:
+        raise UsageError("array: guarantees are for one dipole; remove [array], or solve without robust")
+    return scenario
+
+
+def _named(scenario: Scenario, one: Worst, nominal: FloatArray) -> RatioGuarantee:
+    names = scenario.eavesdropper_names
+    return RatioGuarantee(
+        node=scenario.node_names[one.node],
+        eavesdropper=names[one.eavesdropper] if names else "",
+        nominal=float(nominal[one.node, one.eavesdropper]),
+        lower=one.lower,
+        worst=one.value,
+        case=one.case,
+    )

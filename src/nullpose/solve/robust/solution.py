@@ -1,0 +1,172 @@
+"""What a robust solve returns: the pose that guarantees most, beside the nominal one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from nullpose.physics import Pose
+from nullpose.physics.error_case import ErrorCase
+from nullpose.scenario import Scenario
+from nullpose.solve.robust.guarantee import Guarantee
+from nullpose.solve.robust.wording import in_words
+from nullpose.solve.solution import Stats, Status
+
+__all__ = ["GuardedPose", "RobustSolution", "worth"]
+
+
+def worth(scenario: Scenario, ratio: float) -> float:
+    """Return the objective's value for a smallest ratio: itself, or ``max(0, log2)`` of it for secrecy rates.
+
+    Args:
+        scenario: has the objective.
+        ratio: the smallest ratio.
+    """
+    return math.log2(max(1.0, ratio)) if scenario.objective == "secrecy-rate" else ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class GuardedPose:
+    """A pose, what it gives where all is as stated, and what it guarantees.
+
+    Args:
+        scenario: what was solved.
+        pose: position and attitude.
+        guarantee: the proof of what it guarantees, ratio by ratio.
+    """
+
+    scenario: Scenario
+    pose: Pose
+    guarantee: Guarantee
+
+    @property
+    def nominal(self) -> float:
+        """The objective without errors: a power ratio, or bits/s/Hz."""
+        return worth(self.scenario, self.guarantee.nominal)
+
+    @property
+    def guaranteed(self) -> float:
+        """A proved lower bound on the objective over all errors together."""
+        return worth(self.scenario, self.guarantee.lower)
+
+    @property
+    def worst(self) -> float:
+        """The objective in the worst case found; the smallest over all errors lies between the two."""
+        return worth(self.scenario, self.guarantee.worst)
+
+    @property
+    def binding_node(self) -> str:
+        """Name of the node that is worst off in the worst case found."""
+        return self.guarantee.binding.node
+
+    @property
+    def worst_case(self) -> str:
+        """The worst error case found, in words."""
+        return in_words(self.scenario, self.guarantee.axis, self.guarantee.case)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the pose and its values as plain data for JSON."""
+        return {
+            "position_m": [float(x) for x in self.pose.position_m],
+            "roll_rad": self.pose.roll_rad,
+            "pitch_rad": self.pose.pitch_rad,
+            "yaw_rad": self.pose.yaw_rad,
+            "antenna_axis": [float(x) for x in self.pose.antenna_axis],
+            "nominal": self.nominal,
+            "guaranteed": self.guaranteed,
+            "worst_found": self.worst,
+            "binding_node": self.binding_node,
+            "worst_case": self.worst_case,
+            "worst_case_errors": _plain(self.guarantee.case),
+            "nodes": [
+                {
+                    "node": one.node,
+                    **({"eavesdropper": one.eavesdropper} if one.eavesdropper else {}),
+                    "nominal": one.nominal,
+                    "guaranteed": one.lower,
+                    "worst_found": one.worst,
+                }
+                for one in self.guarantee.ratios
+            ],
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobustSolution:
+    """The pose with the largest guaranteed objective, and how good any could be.
+
+    Args:
+        scenario: what was solved.
+        status: how the solve ended.
+        robust: the pose that guarantees most.
+        nominal: the pose that is best where all is as stated.
+        upper_bound: no pose guarantees more than this; None if nothing is proved about others.
+        reason: why the gap was not reached, or not aimed at; empty if it was.
+        cases: error cases that the bound rests on.
+        stats: time and counts.
+        provenance: versions, seed and settings that produced it.
+    """
+
+    scenario: Scenario
+    status: Status
+    robust: GuardedPose
+    nominal: GuardedPose
+    upper_bound: float | None
+    reason: str
+    cases: int
+    stats: Stats
+    provenance: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
+
+    @property
+    def relative_gap(self) -> float | None:
+        """``(upper_bound - guaranteed) / guaranteed``; infinite over nothing, None without a bound."""
+        if self.upper_bound is None:
+            return None
+        guaranteed = self.robust.guaranteed
+        return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
+
+    @property
+    def gain(self) -> float:
+        """How many times as much the robust pose guarantees as the nominal one; infinite over nothing."""
+        guaranteed = self.nominal.guaranteed
+        return self.robust.guaranteed / guaranteed if guaranteed > 0.0 else math.inf
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the solution as plain data for JSON; a number that JSON cannot hold becomes None."""
+        gap = self.relative_gap
+        return {
+            "scenario": self.scenario.to_dict(),
+            "objective": self.scenario.objective,
+            "status": self.status.value,
+            "reason": self.reason,
+            "robust": self.robust.to_dict(),
+            "nominal": self.nominal.to_dict(),
+            "upper_bound": self.upper_bound,
+            "relative_gap": gap if gap is not None and math.isfinite(gap) else None,
+            "error_cases": self.cases,
+            "stats": {
+                "wall_s": self.stats.wall_s,
+                "starts": self.stats.starts,
+                "evaluations": self.stats.evaluations,
+                "boxes": self.stats.boxes,
+            },
+            "provenance": dict(self.provenance),
+        }
+
+
+def _plain(case: ErrorCase) -> dict[str, Any]:
+    return {
+        "position_offset_m": case.position_offset_m.tolist(),
+        "rotation_world": case.rotation_world.tolist(),
+        "axis_error_deg": float(np.degrees(case.rotation_rad)),
+        "jammer_offsets_m": case.jammer_offsets_m.tolist(),
+        "eavesdropper_offsets_m": case.eavesdropper_offsets_m.tolist(),
+    }

@@ -1,0 +1,125 @@
+"""The verb: the pose that guarantees most under errors, with a bound on what any pose guarantees."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from nullpose.family import AxisField
+from nullpose.physics import Pose
+from nullpose.scenario import Scenario
+from nullpose.solve.api import solve
+from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits
+from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.provenance import provenance
+from nullpose.solve.robust.exchange import Exchange
+from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
+from nullpose.solve.robust.inner import Inner
+from nullpose.solve.robust.solution import GuardedPose, RobustSolution, worth
+from nullpose.solve.solution import Stats, Status
+from nullpose.solve.warming import ready
+
+__all__ = ["ROBUST_GAP", "solve_robust"]
+
+ROBUST_GAP = 1e-2
+"""The relative gap asked for unless another is."""
+
+_ACCURACY = 0.1  # of a guarantee, as a share of the gap
+_FINEST, _COARSEST = 1e-5, 3e-3
+
+
+def solve_robust(
+    scenario: Scenario,
+    *,
+    gap: float = ROBUST_GAP,
+    time_limit_s: float = TIME_LIMIT_S,
+    node_limit: int = NODE_LIMIT,
+    certify: bool = True,
+    seed: int = 0,
+    on_progress: Callable[[float, int], None] | None = None,
+) -> RobustSolution:
+    """Return the pose whose objective is largest when the scenario's errors do their worst.
+
+    Maximises the smallest margin or secrecy rate over all errors together: an actual axis within
+    ``attitude_error_deg`` and an actual position within ``position_error_m`` of the commanded ones, every
+    jammer or eavesdropper anywhere in its set. What the pose guarantees is proved; that no pose guarantees
+    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned.
+
+    Args:
+        scenario: with errors or without, which makes the guaranteed value the nominal one.
+        gap: relative gap between bound and guaranteed value that is aimed at.
+        time_limit_s: seconds after which the search and the proof stop.
+        node_limit: boxes after which the proof stops.
+        certify: whether to bound what any pose guarantees.
+        seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
+        on_progress: called now and then during the proof with the gap so far and the boxes examined.
+
+    Raises:
+        UsageError: an array in place of the dipole, a bad seed or limit.
+        SolveError: no pose reaches every node.
+    """
+    limits = Limits(gap=gap, time_limit_s=time_limit_s, node_limit=node_limit)
+    inner = Inner(require_dipole(scenario))
+    accuracy = min(_COARSEST, max(_FINEST, _ACCURACY * gap))
+    began = time.perf_counter()
+    nominal = solve(scenario, certify=False, seed=seed).pose
+    field = AxisField.within(*scenario.axis_band)
+    exchange = Exchange(inner, field, seed, gap)
+    exchange.cases += exchange.visit(nominal.position_m, nominal.antenna_axis)
+    if certify:
+        ready(exchange.family, field)  # compiling must not count against the time limit
+    clock = time.perf_counter()
+    try:
+        again = True
+        while again:
+            exchange.search(clock + limits.time_limit_s)
+            level = _level(scenario, _best(exchange, accuracy).guaranteed, gap)
+            again = certify and exchange.prove(level, limits, clock, on_progress)
+    except KeyboardInterrupt:
+        exchange.reason = INTERRUPT
+    robust = _best(exchange, accuracy)
+    upper_bound = None if exchange.upper_bound is None else worth(scenario, exchange.upper_bound)
+    status, reason = _status(robust.guaranteed, upper_bound, gap, exchange.reason)
+    return RobustSolution(
+        scenario=scenario,
+        status=status,
+        robust=robust,
+        nominal=_guarded(inner, nominal, accuracy),
+        upper_bound=upper_bound,
+        reason=reason,
+        cases=len(exchange.cases),
+        stats=Stats(
+            wall_s=time.perf_counter() - began,
+            starts=exchange.starts,
+            evaluations=exchange.evaluations,
+            boxes=exchange.boxes,
+        ),
+        provenance=provenance(seed) | {"gap": gap},
+    )
+
+
+def _best(exchange: Exchange, accuracy: float) -> GuardedPose:
+    assert exchange.best is not None, "the nominal pose was visited"
+    return _guarded(exchange.inner, Pose.from_axis(exchange.best.position_m, exchange.best.axis), accuracy)
+
+
+def _guarded(inner: Inner, pose: Pose, accuracy: float) -> GuardedPose:
+    proved = guarantee_of(inner, pose.position_m, np.array(pose.antenna_axis), accuracy)
+    return GuardedPose(scenario=inner.scenario, pose=pose, guarantee=proved)
+
+
+def _level(scenario: Scenario, guaranteed: float, gap: float) -> float:
+    """Return the ratio whose worth is the gap above the guaranteed value."""
+    if scenario.objective != "secrecy-rate":
+        return guaranteed * (1.0 + gap)
+    return float(2.0 ** (guaranteed * (1.0 + gap) if guaranteed > 0.0 else gap))
+
+
+def _status(guaranteed: float, bound: float | None, gap: float, reason: str) -> tuple[Status, str]:
+    if bound is None:
+        return Status.BEST_FOUND, reason
+    if bound <= guaranteed * (1.0 + gap):
+        return Status.CERTIFIED, ""
+    return Status.GAP_NOT_REACHED, reason or "error cases that the search did not settle"

@@ -1,0 +1,57 @@
+"""An error case in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.physics.error_case import ErrorCase
+from nullpose.scenario import Scenario
+
+__all__ = ["in_words"]
+
+FloatArray = NDArray[np.float64]
+
+_COMPASS = ("east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east")
+_STEEP = math.radians(67.5)
+_LEVEL = math.radians(22.5)
+_LEAST_RAD = 1e-9
+_LEAST_M = 1e-6
+
+
+def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
+    """Return an error case as a phrase: what is off by how much, and in which direction.
+
+    Args:
+        scenario: has the names of jammers and eavesdroppers.
+        axis: (3,) the commanded unit antenna axis; the phrase speaks of its end that points up.
+        case: the error case.
+    """
+    up = axis if axis[2] >= 0.0 else -axis
+    parts = []
+    if case.rotation_rad > _LEAST_RAD:
+        lean = case.rotation_world @ up - up
+        parts.append(f"axis {math.degrees(case.rotation_rad):.3g} deg off, to the {_direction(lean)}")
+    moved = [("drone", case.position_offset_m)]
+    moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
+    moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)
+    for name, offset_m in moved:
+        distance_m = float(np.linalg.norm(offset_m))
+        if distance_m > _LEAST_M:
+            parts.append(f"{name} {distance_m:.3g} m off, to the {_direction(offset_m)}")
+    return "; ".join(parts) if parts else "everything as stated"
+
+
+def _direction(vector: FloatArray) -> str:
+    """Return a direction as compass points and up or down."""
+    level = math.hypot(vector[0], vector[1])
+    climb = math.atan2(vector[2], level)
+    vertical = "top" if climb > 0.0 else "bottom"
+    if abs(climb) > _STEEP:
+        return vertical
+    compass = _COMPASS[round(math.degrees(math.atan2(vector[1], vector[0])) / 45.0) % 8]
+    if abs(climb) < _LEVEL:
+        return compass
+    return f"{compass} and {'up' if climb > 0.0 else 'down'}"
