@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nullpose import Pose, Solution, solve
+from nullpose import Pose, Solution, evaluate, solve
 from nullpose.errors import OutputError, UsageError
 from nullpose.report.export import require_origin, solution_geojson, write_geojson
 from nullpose.scenario import Scenario, load
@@ -151,6 +151,20 @@ def test_an_unbounded_airspace_has_no_outline(solution: Solution, paper: Scenari
     bare = replace(solution, scenario=paper.model_copy(update={"origin": ORIGIN}))
     kinds = {each["properties"]["kind"] for each in solution_geojson(bare)["features"]}
     assert kinds == {"pose", "node", "jammer"}
+
+
+def test_who_listens_in_is_on_the_map(solution: Solution, paper: Scenario) -> None:
+    """Eavesdroppers are points too, with how far they may be from there; nodes tell their secrecy rate."""
+    listener = {"name": "E", "position_m": [17.0, 15.0, 4.0], "uncertainty_m": [3.0, 2.0, 1.0]}
+    threat = {"objective": "secrecy-rate", "transmitter": {"power_w": 1.0}, "eavesdroppers": [listener]}
+    scenario = Scenario.from_dict(paper.to_dict() | {"origin": ORIGIN, "jammers": []} | threat)
+    secret = replace(solution, scenario=scenario, links=evaluate(scenario, solution.pose))
+    (feature,) = features(secret, "eavesdropper")
+    np.testing.assert_allclose(local_m(feature["geometry"]["coordinates"]), [17, 15, 4], rtol=0, atol=1e-3)
+    assert feature["properties"]["uncertainty_m"] == 3.0
+    rates = [each["properties"]["secrecy_rate_bps_hz"] for each in features(secret, "node")]
+    assert rates == [link.secrecy_rate_bps_hz for link in secret.links]
+    assert features(secret, "jammer") == []
 
 
 def test_without_an_origin(solution: Solution, paper: Scenario, tmp_path: Path) -> None:

@@ -196,6 +196,15 @@ def test_a_point_alone_has_no_origin() -> None:
         Node(power_w=1.0, **HERE)
 
 
+def test_a_copy_with_another_position_has_no_latitude() -> None:
+    """A point that is moved in metres forgets its place on the Earth; any other copy keeps it."""
+    scenario = Scenario.from_dict(data())
+    moved = scenario.jammers[0].model_copy(update={"position_m": (1.0, 2.0, 3.0)})
+    assert (moved.lat_deg, moved.lon_deg, moved.alt_m) == (None, None, None)
+    assert scenario.model_copy(update={"jammers": [moved]}).jammers[0].position_m == (1.0, 2.0, 3.0)
+    assert scenario.jammers[0].model_copy(update={"power_w": 9.0}).lat_deg == 50.0015
+
+
 def test_nodes_built_in_python_move_with_no_origin() -> None:
     """Nodes taken from one scenario into another with a different origin are refused, not moved silently."""
     scenario = Scenario.from_dict(data())

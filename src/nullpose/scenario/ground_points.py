@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 from pydantic import Field
 
@@ -78,6 +78,19 @@ class GroundPoint(Section):
         elif given and data.get("position_m") is None:
             # Within a scenario, its origin has given the point a position by now.
             yield (), "lat_deg, lon_deg and alt_m need the [origin] of a scenario; give position_m here"
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Returns a copy with some values replaced; a new position takes the place of a latitude too.
+
+        Args:
+            update: new values by key.
+            deep: without meaning here, since everything inside is frozen.
+
+        Raises:
+            ScenarioError: when the copy would be faulty.
+        """
+        stale = dict.fromkeys(GEODETIC_KEYS if update and "position_m" in update else ())
+        return super().model_copy(update=stale | dict(update or {}), deep=deep)
 
 
 class Emitter(GroundPoint):
