@@ -14,66 +14,115 @@ PAGE = (ROOT / "docs" / "scenario-files.md").read_text(encoding="utf-8")
 SCHEMA = nullpose.json_schema()
 
 
-def _table(name: str) -> dict[str, Any]:
-    """The schema of a table of the file; ``""`` is the top."""
-    if not name:
-        return SCHEMA
-    entry = SCHEMA["properties"][name]
-    reference = entry.get("$ref") or entry["items"]["$ref"]
-    return SCHEMA["$defs"][reference.rsplit("/", 1)[-1]]
+PLACES = "### Places: nodes, jammers and eavesdroppers"
+POINTS = ("nodes", "jammers", "eavesdroppers")
 
 
-def _section(table: str) -> str:
-    heading = {"": "### At the top", "nodes": "### `[[nodes]]`", "jammers": "### `[[jammers]]`"}.get(
-        table, f"### `[{table}]`"
-    )
+def _resolved(entry: dict[str, Any]) -> dict[str, Any] | None:
+    """The schema of the table that a key holds, or a list of; None for a value."""
+    reference = entry.get("$ref") or entry.get("items", {}).get("$ref")
+    return SCHEMA["$defs"][reference.rsplit("/", 1)[-1]] if reference else None
+
+
+def _tables() -> dict[str, dict[str, Any]]:
+    """Every table of a file with its schema, by its heading on the page; the top first."""
+    found = {"### At the top": SCHEMA}
+    pending = [("", SCHEMA)]
+    while pending:
+        path, table = pending.pop()
+        for key, entry in table["properties"].items():
+            inner = _resolved(entry)
+            if inner is not None:
+                name = f"{path}.{key}".removeprefix(".")
+                brackets = ("[[", "]]") if "items" in entry else ("[", "]")
+                found[f"### `{name.join(brackets)}`"] = inner
+                pending.append((name, inner))
+    return found
+
+
+TABLES = _tables()
+SHARED = set.intersection(*(set(TABLES[f"### `[[{name}]]`"]["properties"]) for name in POINTS))
+
+
+def _section(heading: str) -> str:
     return re.split(r"\n##+ ", PAGE.split(heading)[1])[0]
+
+
+def _rows(heading: str) -> dict[str, str]:
+    rows = re.findall(r"^\| `\w+` \|.*$", _section(heading), flags=re.MULTILINE)
+    return {row.split("`")[1]: row for row in rows}
+
+
+def _keys(heading: str) -> dict[str, dict[str, Any]]:
+    """The keys that hold a value, less those that points share, with their schemas."""
+    shared = SHARED if any(f"[[{name}]]" in heading for name in POINTS) else set()
+    return {
+        key: entry
+        for key, entry in TABLES[heading]["properties"].items()
+        if key not in shared and _resolved(entry) is None
+    }
 
 
 def _numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?!\w)", text)]
 
 
-@pytest.mark.parametrize("table", ["", "airspace", "receiver", "nodes"])
-def test_every_key_has_a_row(table: str) -> None:
+def _limits(entry: dict[str, Any]) -> list[float] | None:
+    """The least and the greatest number that a key takes, in however many lists; None for a text."""
+    while "minimum" not in entry and "items" in entry:
+        entry = entry["items"]
+    return [entry["minimum"], entry["maximum"]] if "minimum" in entry else None
+
+
+@pytest.mark.parametrize("heading", TABLES)
+def test_every_key_has_a_row(heading: str) -> None:
     """Each key that holds a value has a row in its table's section, and no row is about anything else."""
-    keys = {
-        key
-        for key in _table(table)["properties"]
-        if table or key not in ("airspace", "receiver", "nodes", "jammers")
-    }
-    assert set(re.findall(r"^\| `(\w+)` \|", _section(table), flags=re.MULTILINE)) == keys
+    assert _rows(heading).keys() == _keys(heading).keys()
 
 
-def test_jammers_have_the_keys_of_nodes() -> None:
-    """The page describes jammers by reference to nodes, so their keys must be the same."""
-    assert _table("jammers")["properties"].keys() == _table("nodes")["properties"].keys()
+def test_points_share_their_places() -> None:
+    """What nodes, jammers and eavesdroppers have in common is described once, and means the same in each."""
+    assert _rows(PLACES).keys() == SHARED
+    for key in SHARED:
+        entries = [TABLES[f"### `[[{name}]]`"]["properties"][key] for name in POINTS]
+        assert entries[0] == entries[1] == entries[2]
+
+
+@pytest.mark.parametrize("heading", [*TABLES, PLACES])
+def test_limits_are_those_of_the_program(heading: str) -> None:
+    """The numbers in a row's last column are the limits of the schema; "as above" means the row before."""
+    entries = TABLES["### `[[nodes]]`"]["properties"] if heading == PLACES else _keys(heading)
+    rows = list(_rows(heading).values())
+    for index, row in enumerate(rows):
+        limits = _limits(entries[row.split("`")[1]])
+        while row.rstrip("| ").endswith("as above"):
+            index -= 1
+            row = rows[index]
+        if limits is not None:
+            assert _numbers(row.rstrip("| ").rsplit("|", 1)[1])[-2:] == limits
+
+
+def test_words_are_those_of_the_program() -> None:
+    """Where a key takes one word of a few, the row names all of them and no other."""
+    for heading in TABLES:
+        for key, entry in _keys(heading).items():
+            if "enum" in entry:
+                allowed = _rows(heading)[key].rstrip("| ").rsplit("|", 1)[1]
+                assert re.findall(r'"([^"]+)"', allowed) == entry["enum"]
 
 
 @pytest.mark.parametrize(
-    ("table", "key"),
+    ("heading", "key"),
     [
-        (table, key)
-        for table in ("airspace", "receiver", "nodes")
-        for key, value in _table(table)["properties"].items()
-        if value.get("type") in ("number", "array")
+        ("### `[airspace]`", "keep_out_m"),
+        ("### `[airframe]`", "mount_deg"),
+        ("### `[receiver]`", "attitude_error_deg"),
+        ("### `[receiver]`", "position_error_m"),
     ],
 )
-def test_limits_are_those_of_the_program(table: str, key: str) -> None:
-    """The numbers in a row's last column are the limits of the schema; "as above" means the row before."""
-    rows = re.findall(r"^\| `\w+` \|.*$", _section(table), flags=re.MULTILINE)
-    row = next(row for row in rows if row.startswith(f"| `{key}` |"))
-    while row.rstrip("| ").endswith("as above"):
-        row = rows[rows.index(row) - 1]
-    entry = _table(table)["properties"][key]
-    entry = entry.get("items", entry)
-    assert _numbers(row.rstrip("| ").rsplit("|", 1)[1])[-2:] == [entry["minimum"], entry["maximum"]]
-
-
-def test_defaults_are_those_of_the_program() -> None:
-    """The default that the page states for the keep-out radius is the one in force."""
-    row = next(line for line in PAGE.splitlines() if line.startswith("| `keep_out_m` |"))
-    assert f"| {_table('airspace')['properties']['keep_out_m']['default']} |" in row
+def test_defaults_are_those_of_the_program(heading: str, key: str) -> None:
+    """The default that the page states for a number is the one in force."""
+    assert f"| {TABLES[heading]['properties'][key]['default']} |" in _rows(heading)[key]
 
 
 def test_snippets_are_toml_that_loads() -> None:
