@@ -80,8 +80,7 @@ def disturber_offsets_m(scenario: Scenario, case: ErrorCase) -> FloatArray:
         case: the error case.
     """
     secret = scenario.objective == "secrecy-rate"
-    offsets_m = case.eavesdropper_offsets_m if secret else case.jammer_offsets_m
-    return np.vstack([np.zeros((len(scenario.nodes), 3)), offsets_m])
+    return _of_points(scenario, case.eavesdropper_offsets_m if secret else case.jammer_offsets_m)
 
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
@@ -91,5 +90,15 @@ def point_uncertainty_m(scenario: Scenario) -> FloatArray:
         scenario: nodes, which are known, and jammers or eavesdroppers.
     """
     secret = scenario.objective == "secrecy-rate"
-    sets_m = scenario.eavesdropper_uncertainty_m if secret else scenario.jammer_uncertainty_m
-    return np.concatenate([np.zeros((len(scenario.nodes), 3, 3)), sets_m])
+    return _of_points(
+        scenario, scenario.eavesdropper_uncertainty_m if secret else scenario.jammer_uncertainty_m
+    )
+
+
+def _of_points(scenario: Scenario, of_disturbers: FloatArray) -> FloatArray:
+    """Return what belongs to the points in the denominators, with zeros for nodes and for all others."""
+    first = len(scenario.nodes)
+    others = len(scenario.jammers) if scenario.objective == "secrecy-rate" else 0
+    everyone = np.zeros((first + len(of_disturbers) + others, *of_disturbers.shape[1:]))
+    everyone[first : first + len(of_disturbers)] = of_disturbers
+    return everyone

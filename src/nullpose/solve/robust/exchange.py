@@ -56,11 +56,11 @@ class Exchange:
         inner: the scenario, prepared.
         axis_field: the axes that the airframe reaches.
         seed: seed of the searches.
-        gap: relative gap between bound and guarantee that is aimed at.
+        limits: the gap between bound and guarantee that is aimed at, and what all proofs may cost.
     """
 
-    def __init__(self, inner: Inner, axis_field: AxisField, seed: int, gap: float) -> None:
-        self.inner, self.axis_field, self.seed, self.gap = inner, axis_field, seed, gap
+    def __init__(self, inner: Inner, axis_field: AxisField, seed: int, limits: Limits) -> None:
+        self.inner, self.axis_field, self.seed, self.limits = inner, axis_field, seed, limits
         blank = ErrorCase.none(inner.scenario)
         self.cases = [BindingCase(ratio, blank) for ratio in range(inner.n_ratios)]
         self.best: Visited | None = None
@@ -68,6 +68,17 @@ class Exchange:
         self.starts = self.evaluations = self.boxes = self.rounds = 0
         self.upper_bound: float | None = None
         self.reason = ""
+
+    def level(self, ratio: float, share: float = 1.0) -> float:
+        """Return the ratio that is a share of the gap above one, which counts as 1 for a rate of zero.
+
+        Args:
+            ratio: what is guaranteed.
+            share: of the gap.
+        """
+        if self.limits.of_rate:
+            ratio = max(1.0, ratio)
+        return ratio * (1.0 + replace(self.limits, gap=share * self.limits.gap).ratio_gap(ratio))
 
     @property
     def family(self) -> Family:
@@ -96,39 +107,39 @@ class Exchange:
         """
         for _ in range(_MOST_ROUNDS):
             self.rounds += 1
-            found = multistart(self.family, self.axis_field, seed=self.seed, settings=_SEARCH)
+            with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
+                found = multistart(self.family, self.axis_field, seed=self.seed, settings=_SEARCH)
             self.starts += found.starts
             self.evaluations += found.evaluations
             self.found, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             assert self.best is not None
-            close = promised <= self.best.worst * (1.0 + _SHARE * self.gap)
+            close = promised <= self.level(self.best.worst, _SHARE)
             if close or not new or time.perf_counter() > deadline:
                 return  # the family stays the one that was searched
             self.cases += new
 
-    def prove(
-        self, level: float, limits: Limits, began: float, on_progress: Callable[[float, int], None] | None
-    ) -> bool:
+    def prove(self, level: float, began: float, on_progress: Callable[[float, int], None] | None) -> bool:
         """Bound the finite family by a level; return whether to search on, since a better pose turned up.
 
         Args:
             level: the ratio that no pose is to exceed.
-            limits: what all proofs together may cost.
             began: when the clock of the limits began.
             on_progress: called now and then with the gap proved so far and the boxes examined.
         """
         assert self.found is not None
-        value = math.exp(self.found.log_value)
+        start = self.found
+        if self.limits.of_rate:  # a rate is never below zero
+            start = replace(start, log_value=max(0.0, start.log_value))
         spent = Spent(seconds=time.perf_counter() - began, nodes=self.boxes)
-        gap = level / value - 1.0
-        target = replace(limits, gap=gap if gap > _LEAST_GAP else self.gap)
-        proof = prove(self.family, self.axis_field, self.found, target, on_progress=on_progress, spent=spent)
+        gap = level / math.exp(start.log_value) - 1.0
+        target = replace(self.limits, of_rate=False, gap=gap if gap > _LEAST_GAP else self.limits.gap)
+        proof = prove(self.family, self.axis_field, start, target, on_progress=on_progress, spent=spent)
         self.boxes += proof.nodes
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
         self.reason = proof.reason
-        if proof.reason or not proof.found.log_value > self.found.log_value + _SAME:
+        if proof.reason or not proof.found.log_value > start.log_value + _SAME:
             return False
         new = self.visit(proof.found.position_m, proof.found.axis, math.exp(proof.found.log_value))
         self.cases += new

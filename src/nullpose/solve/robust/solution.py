@@ -13,6 +13,7 @@ import numpy as np
 from nullpose.physics import Pose
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
+from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
 from nullpose.solve.solution import Stats, Status
@@ -127,10 +128,15 @@ class RobustSolution:
 
     @property
     def relative_gap(self) -> float | None:
-        """``(upper_bound - guaranteed) / guaranteed``; infinite over nothing, None without a bound."""
+        """``(upper_bound - guaranteed) / guaranteed``, a rate below 1e-3 bits/s/Hz counting as so much.
+
+        Infinite where no power ratio is guaranteed; None without a bound.
+        """
         if self.upper_bound is None:
             return None
         guaranteed = self.robust.guaranteed
+        if self.scenario.objective == "secrecy-rate":
+            return (self.upper_bound - guaranteed) / max(guaranteed, LEAST_RATE_BPS_HZ)
         return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
 
     @property

@@ -60,13 +60,18 @@ def solve_robust(
         UsageError: an array in place of the dipole, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
-    limits = Limits(gap=gap, time_limit_s=time_limit_s, node_limit=node_limit)
+    limits = Limits(
+        gap=gap,
+        time_limit_s=time_limit_s,
+        node_limit=node_limit,
+        of_rate=scenario.objective == "secrecy-rate",
+    )
     inner = Inner(require_dipole(scenario))
     accuracy = min(_COARSEST, max(_FINEST, _ACCURACY * gap))
     began = time.perf_counter()
     nominal = solve(scenario, certify=False, seed=seed).pose
     field = AxisField.within(*scenario.axis_band)
-    exchange = Exchange(inner, field, seed, gap)
+    exchange = Exchange(inner, field, seed, limits)
     exchange.cases += exchange.visit(nominal.position_m, nominal.antenna_axis)
     if certify:
         ready(exchange.family, field)  # compiling must not count against the time limit
@@ -75,13 +80,13 @@ def solve_robust(
         again = True
         while again:
             exchange.search(clock + limits.time_limit_s)
-            level = _level(scenario, _best(exchange, accuracy).guaranteed, gap)
-            again = certify and exchange.prove(level, limits, clock, on_progress)
+            level = exchange.level(_best(exchange, accuracy).guarantee.lower)
+            again = certify and exchange.prove(level, clock, on_progress)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
     robust = _best(exchange, accuracy)
     upper_bound = None if exchange.upper_bound is None else worth(scenario, exchange.upper_bound)
-    status, reason = _status(robust.guaranteed, upper_bound, gap, exchange.reason)
+    status, reason = _status(exchange, robust.guarantee.lower)
     return RobustSolution(
         scenario=scenario,
         status=status,
@@ -102,7 +107,8 @@ def solve_robust(
 
 def _best(exchange: Exchange, accuracy: float) -> GuardedPose:
     assert exchange.best is not None, "the nominal pose was visited"
-    return _guarded(exchange.inner, Pose.from_axis(exchange.best.position_m, exchange.best.axis), accuracy)
+    pose = Pose.of_airframe(exchange.inner.scenario, exchange.best.position_m, exchange.best.axis)
+    return _guarded(exchange.inner, pose, accuracy)
 
 
 def _guarded(inner: Inner, pose: Pose, accuracy: float) -> GuardedPose:
@@ -110,16 +116,9 @@ def _guarded(inner: Inner, pose: Pose, accuracy: float) -> GuardedPose:
     return GuardedPose(scenario=inner.scenario, pose=pose, guarantee=proved)
 
 
-def _level(scenario: Scenario, guaranteed: float, gap: float) -> float:
-    """Return the ratio whose worth is the gap above the guaranteed value."""
-    if scenario.objective != "secrecy-rate":
-        return guaranteed * (1.0 + gap)
-    return float(2.0 ** (guaranteed * (1.0 + gap) if guaranteed > 0.0 else gap))
-
-
-def _status(guaranteed: float, bound: float | None, gap: float, reason: str) -> tuple[Status, str]:
-    if bound is None:
-        return Status.BEST_FOUND, reason
-    if bound <= guaranteed * (1.0 + gap):
+def _status(exchange: Exchange, guaranteed: float) -> tuple[Status, str]:
+    if exchange.upper_bound is None:
+        return Status.BEST_FOUND, exchange.reason
+    if exchange.upper_bound <= exchange.level(guaranteed):
         return Status.CERTIFIED, ""
-    return Status.GAP_NOT_REACHED, reason or "error cases that the search did not settle"
+    return Status.GAP_NOT_REACHED, exchange.reason or "error cases that the search did not settle"
