@@ -77,6 +77,13 @@ def test_depth_in_an_l() -> None:
     np.testing.assert_allclose(depth_m(points, np.array(L_SHAPE)), [0.5, -1.0, 0.0, 0.2, -5.0], atol=1e-15)
 
 
+def test_an_edge_that_rises_by_next_to_nothing() -> None:
+    """An edge whose ends differ by the least number there is overflows nothing."""
+    vertices = np.array([[0.0, 0.0], [4.0, 5e-324], [4.0, 4.0], [0.0, 4.0]])
+    points = np.array([[1.0, 1.0], [9.0, 0.0], [-9.0, 5e-324], [1.0, 1e7]])
+    np.testing.assert_allclose(depth_m(points, vertices), [1.0, -5.0, -9.0, -(1e7 - 4.0)])
+
+
 @pytest.mark.parametrize(("vertices", "area"), [(SQUARE, 16.0), (L_SHAPE, 7.0), (SQUARE[::-1], -16.0)])
 def test_area(vertices: list[list[float]], area: float) -> None:
     """The area is signed, and keeps its digits far from the origin."""

@@ -130,7 +130,9 @@ def test_direct_construction_raises_every_fault() -> None:
     assert caught.value.__suppress_context__
 
 
-@pytest.mark.parametrize("data", [None, 3, [], "scenario", [("name", "x")], {1: 2, "name": "x"}])
+@pytest.mark.parametrize(
+    "data", [None, 3, [], "scenario", [("name", "x")], {1: 2, "name": "x"}, {"nodes": [{1: 2}]}]
+)
 def test_from_dict_refuses_what_is_no_table(data: object) -> None:
     """Anything that is no mapping with texts for keys is refused by ScenarioError."""
     with pytest.raises(ScenarioError):

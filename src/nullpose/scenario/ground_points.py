@@ -71,7 +71,7 @@ class GroundPoint(Section):
         yield from super().cross_faults(data)
         given = [key for key in GEODETIC_KEYS if data.get(key) is not None]
         absent = [key for key in GEODETIC_KEYS if key not in given]
-        if any(nearest(key, absent) for key in data if key not in cls.model_fields):
+        if any(nearest(str(key), absent) for key in data if key not in cls.model_fields):
             return  # a misspelt key is told already
         if given and absent:
             yield (), f"{' and '.join(given)} without {' and '.join(absent)}; give all three, or position_m"

@@ -49,8 +49,9 @@ def depth_m(points_m: Array, vertices_m: Array) -> Array:
     distance = _distance_m(points, start, end).min(axis=-1)
     # Even-odd rule: edges that cross the ray from the point towards +x.
     spans = (start[:, 1] > points[..., 1]) != (end[:, 1] > points[..., 1])
-    rise = np.where(start[:, 1] == end[:, 1], 1.0, end[:, 1] - start[:, 1])
-    crossing = start[:, 0] + (points[..., 1] - start[:, 1]) / rise * (end[:, 0] - start[:, 0])
+    above, rise = points[..., 1] - start[:, 1], end[:, 1] - start[:, 1]
+    share = np.divide(above, rise, out=np.zeros_like(above), where=spans)
+    crossing = start[:, 0] + share * (end[:, 0] - start[:, 0])
     inside = np.count_nonzero(spans & (points[..., 0] < crossing), axis=-1) % 2 == 1
     return np.asarray(np.where(inside, distance, -distance))
 
