@@ -1,0 +1,259 @@
+"""What an array of vertical dipoles receives: steering, digital combining and one shared analogue beam.
+
+The vehicle hovers level, so the dipoles stand upright and only the yaw is free. The model is the
+narrow-band far field: plane waves, and every dipole with the gain of eq. 1.2, whatever stands beside it (no
+mutual coupling). One wavelength serves for every node's channel.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.physics.sinr import received_power_w
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+__all__ = [
+    "analogue_sinr",
+    "analogue_weights",
+    "array_channels",
+    "beam_sinr",
+    "digital_sinr",
+    "digital_weights",
+    "element_positions",
+    "steering_vectors",
+]
+
+ComplexArray = NDArray[np.complex128]
+
+_VERTICAL = np.array([0.0, 0.0, 1.0])
+
+
+def element_positions(
+    elements: int, layout: str, spacing_wavelengths: float, yaw_rad: ArrayLike = 0.0
+) -> FloatArray:
+    """Return where the elements are, seen from the array's centre, in wavelengths and world axes.
+
+    ``d_n = R_z(yaw) b_n``, in the body's horizontal plane. Linear: ``b_n = (n - (K - 1) / 2) s e_x`` along
+    the body's x axis. Circular: ``b_n = rho (cos(2 pi n / K), sin(2 pi n / K), 0)`` with
+    ``rho = s / (2 sin(pi / K))``, so that neighbours are the spacing ``s`` apart; one element is at the
+    centre.
+
+    Source: H. L. Van Trees, "Optimum Array Processing" (Wiley, 2002), sections 2.3 and 4.2.
+
+    Args:
+        elements: their number ``K``, at least 1.
+        layout: ``"linear"`` or ``"circular"``.
+        spacing_wavelengths: distance ``s`` between neighbours, in wavelengths.
+        yaw_rad: the vehicle's yaw, shape ``(...)``, radians, counter-clockwise from above.
+
+    Returns:
+        Array of shape ``(..., K, 3)``, the centre of each dipole.
+
+    Raises:
+        ValueError: another layout, or no element.
+    """
+    if layout not in ("linear", "circular") or elements < 1:
+        raise ValueError(
+            f"an array takes one element or more, linear or circular; given {elements!r}, {layout!r}"
+        )
+    n = np.arange(elements)
+    if layout == "linear" or elements == 1:
+        along, across = spacing_wavelengths * (n - 0.5 * (elements - 1)), np.zeros(elements)
+    else:
+        radius = 0.5 * spacing_wavelengths / np.sin(np.pi / elements)
+        along, across = (
+            radius * np.cos(2.0 * np.pi * n / elements),
+            radius * np.sin(2.0 * np.pi * n / elements),
+        )
+    cosine, sine = (turn(np.asarray(yaw_rad, dtype=float))[..., None] for turn in (np.cos, np.sin))
+    east, north = cosine * along - sine * across, sine * along + cosine * across
+    return np.stack([east, north, np.zeros_like(east)], axis=-1)
+
+
+def steering_vectors(
+    position_m: ArrayLike, elements_wavelengths: ArrayLike, points_m: ArrayLike
+) -> ComplexArray:
+    """Return the phases with which a plane wave from each point arrives at the elements.
+
+    ``a_n = exp(j 2 pi <d_n, e>)`` with ``e = (q - p) / |q - p|``: an element nearer to the point hears the
+    wave earlier.
+
+    Source: Van Trees, eq. 2.28, with the direction pointing to the source.
+
+    Args:
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: from :func:`element_positions`, shape ``(..., K, 3)``.
+        points_m: ground points, shape ``(m, 3)``, metres, none of them at the centre.
+
+    Returns:
+        Array of shape ``(..., m, K)``, all of modulus 1. Far field: valid where the distance is many times
+        the square of the array's length over the wavelength.
+    """
+    to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    directions = to_points / np.linalg.norm(to_points, axis=-1, keepdims=True)
+    turns = directions @ np.swapaxes(np.asarray(elements_wavelengths, dtype=float), -1, -2)
+    return np.asarray(np.exp(2j * np.pi * turns))
+
+
+def array_channels(
+    position_m: ArrayLike,
+    elements_wavelengths: ArrayLike,
+    points_m: ArrayLike,
+    powers_w: ArrayLike,
+    reference_gain: float,
+) -> ComplexArray:
+    """Return the channel of every ground transmitter to the elements.
+
+    ``h_i = sqrt(g0 P_i sin^2(gamma_i)) / |r_i| a_i``, ``gamma_i`` being the angle between the vertical and
+    the direction to the transmitter: the amplitude is that of the numerator of eq. 2.1 for a vertical
+    dipole, the phases are those of :func:`steering_vectors`.
+
+    Source: paper eqs. 1.2 and 2.1 for the amplitude.
+
+    Args:
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: shape ``(..., K, 3)``.
+        points_m: transmitters, shape ``(m, 3)``, metres.
+        powers_w: their powers, shape ``(m,)``, watts.
+        reference_gain: path gain at 1 m, a power ratio.
+
+    Returns:
+        Array of shape ``(..., m, K)``, in the square root of a watt.
+    """
+    power_w = received_power_w(position_m, _VERTICAL, points_m, powers_w, reference_gain)
+    return np.asarray(
+        np.sqrt(power_w)[..., None] * steering_vectors(position_m, elements_wavelengths, points_m)
+    )
+
+
+def digital_sinr(scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike) -> FloatArray:
+    """Return every node's SINR with its own best combining of the elements.
+
+    ``Gamma_k = h_k^H R^-1 h_k`` with ``R = sigma^2 I + sum_j h_j h_j^H`` over the jammers: the largest
+    eigenvalue of ``(h_k h_k^H, R)``. The nodes have channels of their own in frequency and do not disturb
+    each other. Evaluated along the jammers' principal directions, the left singular vectors ``u_i`` of their
+    channels, as ``sum_i |u_i^H h_k|^2 / (sigma^2 + s_i^2)``: a sum of positive terms, which keeps its digits
+    where ``R`` is close to singular.
+
+    Source: Van Trees, section 6.2 (minimum variance distortionless response, maximum SINR).
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: shape ``(..., K, 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    _, powers_w, parts = _principal(scenario, position_m, elements_wavelengths)
+    return np.asarray(np.sum(np.abs(parts) ** 2 / powers_w[..., None, :], axis=-1))
+
+
+def digital_weights(
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
+) -> ComplexArray:
+    """Return every node's best combining weights ``w_k``, of unit length, which turn ``w_k^H x`` into SINR.
+
+    ``w_k`` is ``R^-1 h_k`` scaled to length 1; where a node is not heard at all, its weights are zero.
+
+    Source: Van Trees, section 6.2.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: shape ``(..., K, 3)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes, K)``.
+    """
+    directions, powers_w, parts = _principal(scenario, position_m, elements_wavelengths)
+    weights = (parts / powers_w[..., None, :]) @ np.swapaxes(directions, -1, -2)
+    length = np.linalg.norm(weights, axis=-1, keepdims=True)
+    return np.asarray(weights / np.where(length > 0.0, length, 1.0))
+
+
+def analogue_weights(phases_rad: ArrayLike) -> ComplexArray:
+    """Return the weights of phase shifters: ``w_n = exp(j phi_n) / sqrt(K)``.
+
+    Args:
+        phases_rad: shape ``(..., K)``, radians.
+    """
+    phases = np.asarray(phases_rad, dtype=float)
+    return np.asarray(np.exp(1j * phases) / np.sqrt(phases.shape[-1]))
+
+
+def analogue_sinr(
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, phases_rad: ArrayLike
+) -> FloatArray:
+    """Return every node's SINR with one beam of phase shifters for all of them.
+
+    :func:`beam_sinr` with the weights of :func:`analogue_weights`, the same for every node.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: shape ``(..., K, 3)``.
+        phases_rad: shape ``(..., K)``, radians.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    weights = analogue_weights(phases_rad)
+    return beam_sinr(scenario, position_m, elements_wavelengths, weights[..., None, :])
+
+
+def beam_sinr(
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, weights: ArrayLike
+) -> FloatArray:
+    """Return every node's SINR with given weights.
+
+    ``Gamma_k = |w_k^H h_k|^2 / (sigma^2 |w_k|^2 + sum_j |w_k^H h_j|^2)``
+
+    Source: Van Trees, section 6.2.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the array's centre, shape ``(..., 3)``, metres.
+        elements_wavelengths: shape ``(..., K, 3)``.
+        weights: shape ``(..., n_nodes, K)``, or ``(..., 1, K)`` for one beam, of any length but zero.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths)
+    conjugate = np.conj(np.asarray(weights, dtype=complex))
+    signal_w = np.abs(np.sum(conjugate * nodes, axis=-1)) ** 2
+    jamming_w = np.sum(np.abs(conjugate @ np.swapaxes(jammers, -1, -2)) ** 2, axis=-1)
+    noise_w = scenario.receiver.noise_power_w * np.sum(np.abs(conjugate) ** 2, axis=-1)
+    return np.asarray(signal_w / (jamming_w + noise_w))
+
+
+def _both_channels(
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the channels of the nodes and of the jammers."""
+    g0 = scenario.receiver.reference_gain
+    nodes, jammers = (
+        array_channels(position_m, elements_wavelengths, points_m, powers_w, g0)
+        for points_m, powers_w in (
+            (scenario.node_positions_m, scenario.node_powers_w),
+            (scenario.jammer_positions_m, scenario.jammer_powers_w),
+        )
+    )
+    return nodes, jammers
+
+
+def _principal(
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
+) -> tuple[ComplexArray, FloatArray, ComplexArray]:
+    """Return the principal directions of noise and jamming, the power and the nodes' parts along each.
+
+    Shapes ``(..., K, K)``, one direction a column; ``(..., K)``, watts; ``(..., n_nodes, K)``.
+    """
+    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths)
+    directions, strengths, _ = np.linalg.svd(np.swapaxes(jammers, -1, -2), full_matrices=True)
+    powers_w = np.full(directions.shape[:-1], scenario.receiver.noise_power_w)
+    powers_w[..., : strengths.shape[-1]] += strengths**2
+    return directions, powers_w, nodes @ np.conj(directions)
