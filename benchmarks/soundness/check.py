@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
-from nullpose.physics import evaluate
+from nullpose.physics.objective import objective_value
 from nullpose.solve import solve
 
 __all__ = ["Outcome", "check_scene"]
@@ -22,7 +22,7 @@ class Outcome:
     Args:
         scene: which.
         status: how the solve ended.
-        value: the reported smallest SINR.
+        value: the reported number.
         upper_bound: the stated bound.
         searched: the best that the independent search found.
         seconds: time of the solve.
@@ -56,7 +56,7 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     faults = []
     if searched > objective.upper_bound * (1.0 + _ROUNDING):
         faults.append(f"a pose reaches {searched!r}, above the bound {objective.upper_bound!r}")
-    again = min(link.sinr for link in evaluate(scene.scenario, pose))
+    again = float(objective_value(scene.scenario, pose.position_m, pose.antenna_axis))
     if again != objective.value:
         faults.append(f"the pose gives {again!r}, not {objective.value!r}")
     if objective.value > objective.upper_bound * (1.0 + _ROUNDING):
@@ -67,6 +67,9 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     )
     if not feasible(grown, pose.position_m[None])[0]:
         faults.append("the pose is outside the airspace")
+    airframe = scene.scenario.airframe
+    if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad:
+        faults.append(f"the pose tilts by {pose.tilt_rad!r} rad, more than {airframe.tilt_max_rad!r}")
     return Outcome(
         scene=scene,
         status=solution.status.value,

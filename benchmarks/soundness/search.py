@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.physics import sinr
+from nullpose.physics.objective import objective_value
 from nullpose.scenario import Scenario
 
 __all__ = ["best_value", "feasible"]
@@ -27,22 +27,36 @@ def axes_of(scenario: Scenario, scheme: str) -> list[Callable[[FloatArray, Float
     if scheme == "maximum-gain" and len(scenario.nodes) == 2:
         first, second = scenario.node_positions_m
         return [lambda p, u: np.cross(first - p, second - p)]
-    return [lambda p, u: u]
+    band = scenario.axis_band
+    return [(lambda p, u: u) if band == (0.0, 1.0) else (lambda p, u: nearest_in_band(u, *band))]
+
+
+def nearest_in_band(axes: FloatArray, least: float, greatest: float) -> FloatArray:
+    """Return unit axes, (n, 3), brought to the nearest elevation with ``least <= u_z^2 <= greatest``."""
+    unit = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+    height = np.sqrt(np.clip(unit[:, 2] ** 2, least, greatest))
+    across = unit[:, :2] / np.maximum(np.linalg.norm(unit[:, :2], axis=1, keepdims=True), 1e-300)
+    level = np.sqrt(1.0 - height**2)[:, None] * across
+    return np.column_stack([level, np.copysign(height, unit[:, 2])])
+
+
+def ground_of(scenario: Scenario) -> FloatArray:
+    """Return the places of all nodes, jammers and eavesdroppers, (n, 3), metres."""
+    others = (scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
+    return np.vstack([scenario.node_positions_m, *(points.reshape(-1, 3) for points in others)])
 
 
 def feasible(scenario: Scenario, positions_m: FloatArray) -> NDArray[np.bool_]:
     """Return which positions, (n, 3), the airspace allows."""
-    ground = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)])
-    distance = np.linalg.norm(positions_m[:, None, :] - ground, axis=-1).min(axis=1)
+    distance = np.linalg.norm(positions_m[:, None, :] - ground_of(scenario), axis=-1).min(axis=1)
     airspace = scenario.airspace
-    inside = np.all((positions_m >= airspace.lower_m) & (positions_m <= airspace.upper_m), axis=1)
-    return np.asarray(inside & (distance >= airspace.keep_out_m))
+    return np.asarray(airspace.allows(positions_m) & (distance >= airspace.keep_out_m))
 
 
 def best_value(
     scenario: Scenario, scheme: str, *, starts: int, seed: int, near: tuple[FloatArray, FloatArray]
 ) -> float:
-    """Return the best smallest SINR over many random walks.
+    """Return the best that many random walks make of what the scenario asks for.
 
     Half of the walks begin anywhere, half near a given pose: a bound that is too low by little would be
     exceeded there first. Each walk tries a random change and keeps it if it is better; changes shrink.
@@ -55,7 +69,7 @@ def best_value(
         near: position, metres, and axis to begin half of them around.
     """
     rng = np.random.default_rng(seed)
-    ground = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)])
+    ground = ground_of(scenario)
     low = np.maximum(scenario.airspace.lower_m, ground.min(axis=0) - _FAR_M)
     high = np.minimum(scenario.airspace.upper_m, ground.max(axis=0) + _FAR_M)
     return max(
@@ -78,7 +92,7 @@ def _walks(
         out = np.full(len(p), -np.inf)
         if np.any(allowed):
             unit = directions[allowed] / length[allowed]
-            out[allowed] = np.min(sinr(scenario, p[allowed], unit), axis=-1)
+            out[allowed] = objective_value(scenario, p[allowed], unit)
         return out
 
     p = rng.uniform(room_m[0], room_m[1], size=(starts, 3))
