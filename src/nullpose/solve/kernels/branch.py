@@ -186,7 +186,7 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
         if value > best * (1.0 + _BEATS):
             return _BETTER, 1
     if primal == math.inf:  # no axis was met that is inside both cell and band
-        wide = row[CELL + 1] - row[CELL] > coarseness
+        wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
     if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 1

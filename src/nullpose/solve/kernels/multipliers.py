@@ -185,7 +185,7 @@ def cell_start(axis_field, basis, back, row, start):
             u[(face + 1 + side) % 3] = low + (0.1 if turn else 0.9) * (high - low)
             add_start(basis, back, u, start)
         start[2] += 0.1
-        count = 2
+        count = 3
     elif axis_field[0] >= 2:
         for swap in range(2 if face == 2 else 1):
             count += add_band_axes(basis, back, row, least, greatest, swap, start)
