@@ -8,12 +8,15 @@ from hypothesis import strategies as st
 
 from nullpose import Pose
 from nullpose.report.certainty import Certainty, at_least, at_most, certainty_lines, short
+from nullpose.solve import Objective
 from nullpose.study import SweepRow, SweepTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
-SEARCHED = SweepRow(1.0, "optimum", "best-found", 1.0, 0.0, POSE, ())
-PROVED = replace(SEARCHED, status="certified", upper_bound=1.0 + 9e-7, relative_gap=9e-7)
-OPEN = replace(SEARCHED, status="gap-not-reached", upper_bound=1.25, relative_gap=0.25, reason="a limit")
+VALUE = Objective(name="min_sinr", value=1.0, value_db=0.0)
+SEARCHED = SweepRow(1.0, "optimum", "best-found", VALUE, POSE, ())
+NEAR, FAR = (replace(VALUE, upper_bound=1.0 + gap, relative_gap=gap) for gap in (9e-7, 0.25))
+PROVED = replace(SEARCHED, status="certified", objective=NEAR)
+OPEN = replace(SEARCHED, status="gap-not-reached", objective=FAR, reason="a limit")
 
 
 def test_statuses_are_counted() -> None:

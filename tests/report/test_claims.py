@@ -14,6 +14,7 @@ from nullpose.report.claims.equidistant import best_equidistant
 from nullpose.report.claims.limits import weak_jamming
 from nullpose.report.paper import with_jamming
 from nullpose.report.reproduce import Reproduction
+from nullpose.solve import Objective
 from nullpose.study import SweepRow, SweepTable
 
 VERDICTS = {
@@ -149,8 +150,7 @@ def test_a_claim_that_the_data_refute_fails(reproduction: Reproduction, paper: S
             row.value,
             row.scheme,
             row.status,
-            row.min_sinr / 10**0.02,
-            row.min_sinr_db - 0.2,
+            Objective(name="min_sinr", value=row.min_sinr / 10**0.02, value_db=row.min_sinr_db - 0.2),
             row.pose,
             row.links,
         )

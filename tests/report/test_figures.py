@@ -17,7 +17,7 @@ from nullpose.report.figures import draw_figure2, draw_poses, draw_sweep
 from nullpose.report.figures.poses import pattern_surface_m
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.reproduce import Reproduction
-from nullpose.solve import Scheme
+from nullpose.solve import Objective, Scheme
 from nullpose.study import SweepTable, sweep
 
 
@@ -112,7 +112,8 @@ def test_any_sweep_can_be_drawn(paper: Scenario, log: bool) -> None:
 def test_a_node_in_the_null_leaves_a_gap(reproduction: Reproduction) -> None:
     """A value of minus infinity is drawn as a gap and does not spoil the axis."""
     row = reproduction.table.rows[0]
-    silent = type(row)(2.0, row.scheme, row.status, 0.0, -np.inf, row.pose, row.links)
+    nothing = Objective(name="min_sinr", value=0.0, value_db=-np.inf)
+    silent = type(row)(2.0, row.scheme, row.status, nothing, row.pose, row.links)
     figure = draw_sweep(SweepTable("jammers.M.power_w", (row, silent)))
     assert np.all(np.isfinite(figure.axes[0].get_ylim()))
 
@@ -153,7 +154,10 @@ def test_visible_bounds_are_drawn(paper: Scenario) -> None:
 def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
     """A bound tens of decibels above does not squeeze the curves into a line at the bottom."""
     table = sweep(paper, "jammers.M.power_w", [0.01, 1.0, 100.0], schemes=["vertical"])
-    rows = [replace(row, status="gap-not-reached", upper_bound=1e6, relative_gap=1e6) for row in table.rows]
+    rows = [
+        replace(row, objective=replace(row.objective, upper_bound=1e6, relative_gap=1e6))
+        for row in table.rows
+    ]
     low, high = draw_sweep(SweepTable(table.path, tuple(rows))).axes[0].get_ylim()
     values = [row.min_sinr_db for row in rows]
     assert low < min(values)

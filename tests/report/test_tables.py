@@ -9,7 +9,9 @@ from rich.console import Console, RenderableType
 
 from nullpose import Scenario, Solution, solve
 from nullpose.report.comparison import compare_all
-from nullpose.report.tables import binding_nodes, bound_words, comparison_view, solution_view, status_words
+from nullpose.report.comparison_tables import comparison_view
+from nullpose.report.quantity import bound_words
+from nullpose.report.tables import binding_nodes, solution_view, status_words
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:

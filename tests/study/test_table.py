@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from nullpose import Link, Pose
+from nullpose.solve import Objective
 from nullpose.study import SweepRow, SweepTable
 
 
@@ -16,13 +17,15 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRo
     """Returns a row with an easy pose."""
     ratio = 10.0 ** (db / 10.0)
     pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
-    return SweepRow(value, scheme, "best-found", ratio, db, pose, (Link(node, ratio, db),), "a, note")
+    objective = Objective(name="min_sinr", value=ratio, value_db=db)
+    return SweepRow(value, scheme, "best-found", objective, pose, (Link(node, ratio, db),), "a, note")
 
 
 def proved(row: SweepRow, relative_gap: float) -> SweepRow:
     """Returns the row with a bound."""
     bound = row.min_sinr * (1.0 + relative_gap)
-    return replace(row, status="certified", upper_bound=bound, relative_gap=relative_gap)
+    objective = replace(row.objective, upper_bound=bound, relative_gap=relative_gap)
+    return replace(row, status="certified", objective=objective)
 
 
 TABLE = SweepTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))

@@ -40,7 +40,7 @@ def compare(
     if json_output:
         show_json(comparison.to_dict())
     else:
-        from nullpose.report.tables import comparison_view
+        from nullpose.report.comparison_tables import comparison_view
 
         show(comparison_view(comparison))
     if any(solution.interrupted for solution in comparison.solutions):

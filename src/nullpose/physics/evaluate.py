@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -37,6 +38,12 @@ class Link:
     margin: float | None = None
     margin_db: float | None = None
     secrecy_rate_bps_hz: float | None = None
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the link as plain data for JSON: without what it has not, minus infinity as None."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        stated = {key: value for key, value in values.items() if value is not None}
+        return {key: None if value == -math.inf else value for key, value in stated.items()}
 
 
 def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]:

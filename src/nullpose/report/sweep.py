@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, write_figure
-from nullpose.report.figures.sweep import draw_sweep
+from nullpose.report.figures.sweep import draw_sweep, quantity_of
+from nullpose.report.quantity import Quantity, bound_text
 from nullpose.solve import Scheme, Status
 from nullpose.study import SweepRow, SweepTable
 
@@ -37,7 +37,7 @@ def write_sweep(table: SweepTable, folder: Path, *, log: bool = False) -> tuple[
 
 
 def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
-    """Return a sweep as a table of the smallest SINR in dB, one column per scheme, and what is proved of it.
+    """Return a sweep as a table of the objective, one column per scheme, and what is proved of it.
 
     Args:
         table: what the sweep found.
@@ -49,7 +49,9 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
     from rich.table import Table
     from rich.text import Text
 
-    view = Table(title="Smallest SINR over the nodes (dB)", box=box.SIMPLE_HEAD, pad_edge=False)
+    quantity = quantity_of(table)
+    title = f"S{quantity.smallest[1:]} over the nodes ({quantity.unit})"
+    view = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False)
     view.title_justify, view.title_style = "left", "bold"
     view.add_column(escape(table.path), justify="right", overflow="fold")
     for scheme in table.schemes:
@@ -68,10 +70,10 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
 
 
 def _cell(row: SweepRow) -> str:
-    value = f"{row.min_sinr_db:.4f}"
-    if row.status != Status.GAP_NOT_REACHED or row.upper_bound_db is None:
+    value = f"{Quantity.named(row.objective.name).in_unit(row.objective.value):.4f}"
+    if row.status != Status.GAP_NOT_REACHED or row.upper_bound is None:
         return value
-    return f"{value}\nat most {math.ceil(1e2 * row.upper_bound_db) / 1e2:.2f}"
+    return f"{value}\nat most {bound_text(row.objective, 2)}"
 
 
 def _reasons(table: SweepTable) -> list[str]:

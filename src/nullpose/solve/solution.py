@@ -129,13 +129,13 @@ class Solution:
                 "roll_rad": pose.roll_rad,
                 "pitch_rad": pose.pitch_rad,
                 "yaw_rad": pose.yaw_rad,
+                "tilt_rad": pose.tilt_rad,
+                "mount_rad": pose.mount_rad,
                 "antenna_axis": [float(x) for x in pose.antenna_axis],
                 "frames": pose_frames(self.scenario, pose).to_dict(),
             },
-            "links": [
-                {"node": link.node, "sinr": link.sinr, "sinr_db": _finite(link.sinr_db)}
-                for link in self.links
-            ],
+            "links": [link.to_dict() for link in self.links],
+            "binding_node": self.binding_node,
             "stats": {
                 "wall_s": self.stats.wall_s,
                 "starts": self.stats.starts,

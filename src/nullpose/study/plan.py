@@ -107,11 +107,12 @@ def plan_sweep(
     values = spaced(start, stop, points, log=log)
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
     wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
-    if schemes is not None:
-        for scheme in wanted:
-            require_applicable(base, scheme)
     target = default_gap_of(base) if gap is None else gap
     limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
     path = varied[0].strip()
-    scenarios_along(base, path, values)  # a fault shows before a folder is made
+    scenarios = scenarios_along(base, path, values)  # a fault shows before a folder is made
+    if schemes is not None:
+        for scheme in wanted:
+            for _, at_value in scenarios:
+                require_applicable(at_value, scheme)
     return SweepPlan(base, path, values, wanted, prepare_folder(out), seed, limits if certify else None)

@@ -36,7 +36,7 @@ def sweep(
 ) -> SweepTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
-    Schemes that the scenario does not admit are left out, with the reason in the table. Every value is
+    Schemes that have no meaning at some value are left out, with the reason in the table. Every value is
     checked before the first solve. An interrupt ends the sweep, during a proof as anywhere else.
 
     Args:
@@ -58,9 +58,9 @@ def sweep(
     """
     scenarios = scenarios_along(scenario, path, values)
     wanted = [Scheme(scheme) for scheme in schemes]
-    reasons = {scheme: not_applicable(scenario, scheme) for scheme in wanted}
-    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason is not None}
-    solved = [scheme for scheme in wanted if reasons[scheme] is None]
+    reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in wanted}
+    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
+    solved = [scheme for scheme in wanted if not reasons[scheme]]
     if not solved:
         raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
     rows: list[SweepRow] = []
@@ -110,6 +110,16 @@ def scenarios_along(
     return tuple(varied)
 
 
+def _not_applicable_along(scenarios: Sequence[tuple[float, Scenario]], scheme: Scheme) -> str:
+    """Return why a scheme has no meaning at some value, and at which; empty if it has at all of them."""
+    reasons = [(value, not_applicable(varied, scheme)) for value, varied in scenarios]
+    found = [(value, reason) for value, reason in reasons if reason is not None]
+    if not found:
+        return ""
+    value, reason = found[0]
+    return reason if len(found) == len(reasons) else f"{reason} (at {value:g})"
+
+
 def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
     """Return one fault for all the values that have it, so that a long sweep gives a short message."""
     value, fault = found[0]
@@ -123,12 +133,9 @@ def _row(value: float, solution: Solution) -> SweepRow:
         value=value,
         scheme=solution.scheme.value,
         status=solution.status.value,
-        min_sinr=solution.objective.value,
-        min_sinr_db=solution.objective.value_db,
+        objective=solution.objective,
         pose=solution.pose,
         links=solution.links,
         note=solution.note,
-        upper_bound=solution.objective.upper_bound,
-        relative_gap=solution.objective.relative_gap,
         reason=solution.reason,
     )

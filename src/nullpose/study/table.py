@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
 from nullpose.physics import Link, Pose, to_db
+from nullpose.solve import Objective
 from nullpose.study.files import replacing
 
 __all__ = ["SweepRow", "SweepTable"]
@@ -23,40 +24,64 @@ class SweepRow:
         value: the swept setting, in the unit of its name.
         scheme: the scheme's name, as in ``maximum-gain``.
         status: how sure the solver is, as in ``certified``.
-        min_sinr: the smallest SINR over the nodes, a power ratio.
-        min_sinr_db: the same, dB.
+        objective: what was made as large as it can be, at the pose, and what is proved about it.
         pose: where the drone is and how it is turned.
-        links: every node's SINR, in the scenario's order.
+        links: every node's link, in the scenario's order.
         note: one sentence that the reader needs beside the numbers, or nothing.
-        upper_bound: no pose's smallest SINR exceeds this, a power ratio; None if nothing is proved.
-        relative_gap: ``(upper_bound - min_sinr) / min_sinr``; None if nothing is proved.
         reason: what kept the row from being certified; empty if nothing did.
     """
 
     value: float
     scheme: str
     status: str
-    min_sinr: float
-    min_sinr_db: float
+    objective: Objective
     pose: Pose
     links: tuple[Link, ...]
     note: str = ""
-    upper_bound: float | None = None
-    relative_gap: float | None = None
     reason: str = ""
 
     @property
+    def min_sinr(self) -> float:
+        """The smallest SINR over the nodes, a power ratio; a node's SNR where the drone transmits."""
+        if self.objective.name == "min_sinr":
+            return self.objective.value
+        return min(link.sinr for link in self.links)
+
+    @property
+    def min_sinr_db(self) -> float:
+        """The same, dB."""
+        if self.objective.name == "min_sinr":
+            return self.objective.value_db
+        return min(link.sinr_db for link in self.links)
+
+    @property
+    def upper_bound(self) -> float | None:
+        """No pose exceeds this: a power ratio, or bits/s/Hz for a rate; None if nothing is proved."""
+        return self.objective.upper_bound
+
+    @property
     def upper_bound_db(self) -> float | None:
-        """The upper bound, dB; None if nothing is proved."""
-        return None if self.upper_bound is None else float(to_db(self.upper_bound))
+        """The same, dB; None for a rate, or if nothing is proved."""
+        if self.upper_bound is None or self.objective.is_rate:
+            return None
+        return float(to_db(self.upper_bound))
+
+    @property
+    def relative_gap(self) -> float | None:
+        """How far the bound lies above the value, relative; None if nothing is proved."""
+        return self.objective.relative_gap
 
     def to_dict(self) -> dict[str, object]:
         """Return the row as plain data, angles in radians."""
+        objective = self.objective
+        own = {} if objective.name == "min_sinr" else {objective.name: objective.value}
         return {
             "value": self.value,
             "scheme": self.scheme,
             "status": self.status,
             "reason": self.reason,
+            "objective": objective.name,
+            **own,
             "min_sinr": self.min_sinr,
             "min_sinr_db": self.min_sinr_db,
             "upper_bound": self.upper_bound,
@@ -69,7 +94,7 @@ class SweepRow:
                 "yaw_rad": self.pose.yaw_rad,
                 "antenna_axis": [float(x) for x in self.pose.antenna_axis],
             },
-            "links": [{"node": link.node, "sinr": link.sinr, "sinr_db": link.sinr_db} for link in self.links],
+            "links": [link.to_dict() for link in self.links],
             "note": self.note,
         }
 
@@ -144,38 +169,47 @@ class SweepTable:
         Raises:
             OutputError: the file cannot be written.
         """
+        taken = {**_NUMBERS, **self._own_numbers()}
         nodes = [link.node for link in self.rows[0].links] if self.rows else []
+        links = [f"sinr_{node}_db" for node in nodes]
         with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([self.path, *_COLUMNS, *(f"sinr_{node}_db" for node in nodes), "note", "reason"])
-            writer.writerows(_csv_row(row) for row in self.rows)
+            writer.writerow([self.path, "scheme", "status", *taken, *links, "note", "reason"])
+            for row in self.rows:
+                numbers = [take(row) for take in taken.values()] + [link.sinr_db for link in row.links]
+                texts = ["" if number is None else repr(float(number)) for number in numbers]
+                words = (repr(float(row.value)), row.scheme, row.status)
+                writer.writerow([*words, *texts, row.note, row.reason])
         return path
 
-
-_COLUMNS = (
-    "scheme",
-    "status",
-    "min_sinr",
-    "min_sinr_db",
-    "upper_bound_db",
-    "relative_gap",
-    "x_m",
-    "y_m",
-    "z_m",
-    "roll_deg",
-    "pitch_deg",
-    "yaw_deg",
-    "axis_x",
-    "axis_y",
-    "axis_z",
-)
+    def _own_numbers(self) -> dict[str, _Number]:
+        """Return the columns of an objective other than the smallest SINR."""
+        names = {row.objective.name for row in self.rows}
+        if "min_secrecy_rate" in names:
+            return {
+                "min_secrecy_rate_bps_hz": lambda row: row.objective.value,
+                "upper_bound_bps_hz": lambda row: row.upper_bound,
+            }
+        if "min_margin" in names:
+            return {"min_margin_db": lambda row: row.objective.value_db}
+        return {}
 
 
-def _csv_row(row: SweepRow) -> list[object]:
-    pose = row.pose
-    angles_deg = [math.degrees(angle) for angle in (pose.roll_rad, pose.pitch_rad, pose.yaw_rad)]
-    proved = (row.upper_bound_db, row.relative_gap)
-    numbers = [row.min_sinr, row.min_sinr_db, *proved, *pose.position_m, *angles_deg, *pose.antenna_axis]
-    links_db = [link.sinr_db for link in row.links]
-    texts = ["" if number is None else repr(float(number)) for number in (*numbers, *links_db)]
-    return [repr(float(row.value)), row.scheme, row.status, *texts, row.note, row.reason]
+_Number = Callable[[SweepRow], float | None]
+
+_NUMBERS: dict[str, _Number] = {
+    "min_sinr": lambda row: row.min_sinr,
+    "min_sinr_db": lambda row: row.min_sinr_db,
+    "upper_bound_db": lambda row: row.upper_bound_db,
+    "relative_gap": lambda row: row.relative_gap,
+    "x_m": lambda row: row.pose.position_m[0],
+    "y_m": lambda row: row.pose.position_m[1],
+    "z_m": lambda row: row.pose.position_m[2],
+    "roll_deg": lambda row: math.degrees(row.pose.roll_rad),
+    "pitch_deg": lambda row: math.degrees(row.pose.pitch_rad),
+    "yaw_deg": lambda row: math.degrees(row.pose.yaw_rad),
+    "axis_x": lambda row: row.pose.antenna_axis[0],
+    "axis_y": lambda row: row.pose.antenna_axis[1],
+    "axis_z": lambda row: row.pose.antenna_axis[2],
+}
+"""The columns of numbers that every table has."""
