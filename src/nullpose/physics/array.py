@@ -40,7 +40,7 @@ def element_positions(
     ``rho = s / (2 sin(pi / K))``, so that neighbours are the spacing ``s`` apart; one element is at the
     centre.
 
-    Source: H. L. Van Trees, "Optimum Array Processing" (Wiley, 2002), sections 2.3 and 4.2.
+    Source: H. L. Van Trees, "Optimum Array Processing" (Wiley, 2002), chapters 2 and 4.
 
     Args:
         elements: their number ``K``, at least 1.
@@ -80,7 +80,7 @@ def steering_vectors(
     ``a_n = exp(j 2 pi <d_n, e>)`` with ``e = (q - p) / |q - p|``: an element nearer to the point hears the
     wave earlier.
 
-    Source: Van Trees, eq. 2.28, with the direction pointing to the source.
+    Source: Van Trees, chapter 2, with the direction pointing to the source.
 
     Args:
         position_m: the array's centre, shape ``(..., 3)``, metres.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +26,9 @@ from nullpose.solve.array_search import search_array
 from nullpose.solve.array_solution import ArraySolution, ArrayStats, Combining
 from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.multistart import landmarks, multistart
+from nullpose.solve.objective import Objective, objective_of
 from nullpose.solve.provenance import provenance
-from nullpose.solve.solution import Objective, Status
+from nullpose.solve.solution import Status
 
 __all__ = ["COMBININGS", "solve_array"]
 
@@ -88,8 +90,9 @@ def solve_array(
     state, counts = _search(task, bound, seed)
     pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
     weights, links = _evaluated(scenario, array, kind, pose, state[4:])
-    required = scenario.node_required_sinr
-    value = float(np.min([link.sinr for link in links] / required))
+    objective = objective_of(scenario, links, bound.value)
+    if objective.value > bound.value:  # by rounding
+        objective = replace(objective, upper_bound=objective.value, relative_gap=0.0)
     return ArraySolution(
         scenario=scenario,
         combining=kind,
@@ -97,19 +100,13 @@ def solve_array(
         layout=array.layout,
         spacing_wavelengths=array.spacing_wavelengths,
         status=Status.BEST_FOUND,
-        objective=Objective(
-            name="min_margin" if scenario.has_margins else "min_sinr",
-            value=value,
-            value_db=float(to_db(value)),
-            upper_bound=max(bound.value, value),
-            relative_gap=max(bound.value / value - 1.0, 0.0),
-        ),
+        objective=objective,
         pose=pose,
         weights=weights,
         links=links,
         stats=ArrayStats(wall_s=time.perf_counter() - began, boxes=bound.nodes, **counts),
         provenance=provenance(seed),
-        note=_note(array.elements, bound.value / value - 1.0),
+        note=_note(array.elements, objective),
     )
 
 
@@ -193,11 +190,12 @@ def _evaluated(
     )
 
 
-def _note(elements: int, gap: float) -> str:
+def _note(elements: int, objective: Objective) -> str:
     """Return a sentence on what the bound is and how far it lies above the value."""
+    above = f"it lies {100.0 * (objective.relative_gap or 0.0):.2g} % above the value"
     if elements == 1:
-        return f"one element is the vertical case; its certified bound is {max(gap, 0.0):.2g} above the value"
+        return f"one element is the vertical case, and the bound is that case's: {above}"
     return (
-        f"no array exceeds the bound, {elements} times what one vertical dipole can hear with the jammers "
-        f"silent; it lies {100.0 * max(gap, 0.0):.3g} % above the value, which is not proved to be the best"
+        f"the bound is {elements} times what one vertical dipole can receive with the jammers silent; "
+        f"{above}, of which nothing else is proved"
     )

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.physics import Link, Pose
+from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
-from nullpose.solve.solution import Objective, Stats, Status
+from nullpose.solve.objective import Objective
+from nullpose.solve.solution import Stats, Status
 
 __all__ = ["ArraySolution", "ArrayStats", "Combining"]
 
@@ -75,6 +76,10 @@ class ArraySolution:
         object.__setattr__(self, "weights", weights)
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
 
+    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], ArraySolution], tuple[dict[str, Any]]]:
+        state = {one.name: getattr(self, one.name) for one in fields(self)}
+        return _rebuilt, (state | {"provenance": dict(self.provenance)},)
+
     @property
     def scheme(self) -> str:
         """The name of the case: ``"array-digital"`` or ``"array-analogue"``."""
@@ -103,9 +108,7 @@ class ArraySolution:
     @property
     def binding_node(self) -> str:
         """Name of the node with the smallest margin (the first, if several share it)."""
-        required = self.scenario.node_required_sinr
-        worst = int(np.argmin([link.sinr for link in self.links] / required))
-        return self.links[worst].node
+        return min(self.links, key=lambda link: link.sinr if link.margin is None else link.margin).node
 
     def to_dict(self) -> dict[str, Any]:
         """Return the solution as plain data for JSON; a weight is [real part, imaginary part]."""
@@ -123,7 +126,7 @@ class ArraySolution:
             "objective": {
                 "name": self.objective.name,
                 "value": self.objective.value,
-                "value_db": self.objective.value_db,
+                "value_db": _finite(self.objective.value_db),
                 "upper_bound": self.objective.upper_bound,
                 "relative_gap": self.objective.relative_gap,
             },
@@ -132,22 +135,24 @@ class ArraySolution:
                 "roll_rad": self.pose.roll_rad,
                 "pitch_rad": self.pose.pitch_rad,
                 "yaw_rad": self.pose.yaw_rad,
+                "frames": pose_frames(self.scenario, self.pose).to_dict(),
             },
             "links": [_link_dict(link) for link in self.links],
-            "stats": {
-                "wall_s": self.stats.wall_s,
-                "starts": self.stats.starts,
-                "evaluations": self.stats.evaluations,
-                "boxes": self.stats.boxes,
-                "searches": self.stats.searches,
-                "agreeing": self.stats.agreeing,
-            },
+            "stats": asdict(self.stats),
             "provenance": dict(self.provenance),
             "note": self.note,
         }
 
 
+def _rebuilt(state: dict[str, Any]) -> ArraySolution:
+    return ArraySolution(**state)
+
+
 def _link_dict(link: Link) -> dict[str, Any]:
-    """Return a link as plain data, what does not apply left out and what JSON cannot hold as None."""
+    """Return a link as plain data, without what does not apply."""
     stated = {key: value for key, value in asdict(link).items() if value is not None}
-    return {key: None if value == -math.inf else value for key, value in stated.items()}
+    return {key: _finite(value) if isinstance(value, float) else value for key, value in stated.items()}
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,20 +43,19 @@ class ArrayTask:
         """Return the task of an array in a scenario.
 
         Args:
-            scenario: nodes, jammers, receiver and airspace.
+            scenario: nodes, jammers, receiver and airspace, with objective min-sinr.
             array: elements, layout and spacing.
             shared: whether one beam serves all nodes.
         """
-        scale = scenario.receiver.reference_gain / scenario.receiver.noise_power_w
-        strengths = scale * np.concatenate(
-            [scenario.node_powers_w / scenario.node_required_sinr, scenario.jammer_powers_w]
-        )
-        points_m = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m])
+        family = build_family(scenario)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
-        family = replace(build_family(scenario), numerator_weight=strengths[: len(scenario.nodes)])
         return cls(
             family=family,
-            scene=(points_m, strengths, len(scenario.nodes)),
+            scene=(
+                family.points_m,
+                np.concatenate([family.numerator_weight, family.denominator_weight]),
+                len(scenario.nodes),
+            ),
             base=np.ascontiguousarray(places[:, :2]),
             shared=shared,
         )

@@ -1,0 +1,330 @@
+"""Arrays of vertical dipoles: steering, digital combining, one shared beam."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import eigh
+
+from nullpose.physics import sinr
+from nullpose.physics.array import (
+    analogue_sinr,
+    analogue_weights,
+    array_channels,
+    beam_sinr,
+    digital_sinr,
+    digital_weights,
+    element_positions,
+    steering_vectors,
+)
+from nullpose.scenario import Scenario
+
+VERTICAL = np.array([0.0, 0.0, 1.0])
+SEEDS = st.integers(0, 2**32 - 1)
+NODES = st.integers(1, 4)
+JAMMERS = st.integers(0, 3)
+ELEMENTS = st.integers(1, 9)
+LAYOUTS = st.sampled_from(["linear", "circular"])
+
+Exact = tuple[Fraction, Fraction]
+
+
+def _channels(scene: Scenario, position_m: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The channels of nodes and of jammers, one a row."""
+    g0 = scene.receiver.reference_gain
+    return (
+        array_channels(position_m, elements, scene.node_positions_m, scene.node_powers_w, g0),
+        array_channels(position_m, elements, scene.jammer_positions_m, scene.jammer_powers_w, g0),
+    )
+
+
+def _covariance(scene: Scenario, jammers: np.ndarray) -> np.ndarray:
+    return scene.receiver.noise_power_w * np.eye(jammers.shape[1]) + jammers.T @ jammers.conj()
+
+
+def _place(rng: np.random.Generator) -> np.ndarray:
+    return rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0])
+
+
+def _times(a: Exact, b: Exact) -> Exact:
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
+
+
+def _exact_sinr(channel: np.ndarray, jammers: np.ndarray, noise_w: float) -> float:
+    """``h^H R^-1 h`` by Gaussian elimination in rational numbers, free of rounding."""
+
+    def exact(z: complex) -> Exact:
+        return Fraction(float(z.real)), Fraction(float(z.imag))
+
+    size = len(channel)
+    rows = [[exact(noise_w * (i == j)) for j in range(size)] for i in range(size)]
+    for jammer in jammers:
+        g = [exact(z) for z in jammer]
+        for i in range(size):
+            for j in range(size):
+                real, imaginary = _times(g[i], (g[j][0], -g[j][1]))
+                rows[i][j] = (rows[i][j][0] + real, rows[i][j][1] + imaginary)
+    h = [exact(z) for z in channel]
+    right = list(h)
+    total = Fraction(0)
+    for i in range(size):  # R = L D L^H, so that h^H R^-1 h is the sum of |L^-1 h|^2 / D
+        pivot = rows[i][i][0]
+        total += (right[i][0] ** 2 + right[i][1] ** 2) / pivot
+        for row in range(i + 1, size):
+            share = (rows[row][i][0] / pivot, rows[row][i][1] / pivot)
+            for column in range(i + 1, size):
+                real, imaginary = _times(share, rows[i][column])
+                rows[row][column] = (rows[row][column][0] - real, rows[row][column][1] - imaginary)
+            real, imaginary = _times(share, right[i])
+            right[row] = (right[row][0] - real, right[row][1] - imaginary)
+    return float(total)
+
+
+@given(elements=st.integers(2, 16), layout=LAYOUTS, spacing=st.floats(0.05, 3.0), yaw=st.floats(-4.0, 4.0))
+def test_neighbours_are_the_spacing_apart(elements: int, layout: str, spacing: float, yaw: float) -> None:
+    """Neighbours stand the spacing apart, level, about the centre; yaw turns them as it turns the body."""
+    places = element_positions(elements, layout, spacing, yaw)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(places, axis=0), axis=1), spacing, rtol=1e-12)
+    if layout == "circular":
+        assert np.linalg.norm(places[0] - places[-1]) == pytest.approx(spacing, rel=1e-12)
+    np.testing.assert_allclose(places.mean(axis=0), 0.0, atol=1e-12)
+    assert np.all(places[:, 2] == 0.0)
+    turned = element_positions(elements, layout, spacing) @ np.array(
+        [[math.cos(yaw), math.sin(yaw), 0.0], [-math.sin(yaw), math.cos(yaw), 0.0], [0.0, 0.0, 1.0]]
+    )
+    np.testing.assert_allclose(places, turned, atol=1e-12)
+
+
+@pytest.mark.parametrize(("elements", "layout"), [(0, "linear"), (4, "square")])
+def test_other_arrays_are_refused(elements: int, layout: str) -> None:
+    """No element, or a layout that there is not, is an error that says so."""
+    with pytest.raises(ValueError, match="linear or circular"):
+        element_positions(elements, layout, 0.5)
+
+
+@given(seed=SEEDS, layout=LAYOUTS)
+def test_phases_are_those_of_the_distances(seed: int, layout: str) -> None:
+    """Far off, the phases are those of the distances from each element, counted in wavelengths."""
+    rng = np.random.default_rng(seed)
+    position, points = _place(rng), rng.uniform(0.0, 5.0, (3, 3))
+    elements = element_positions(5, layout, 0.5, rng.uniform(0.0, 6.0))
+    wavelength_m = 1e-5
+    distances = np.linalg.norm(points[:, None] - (position + wavelength_m * elements), axis=-1)
+    nearer = (np.linalg.norm(points - position, axis=-1)[:, None] - distances) / wavelength_m
+    np.testing.assert_allclose(
+        steering_vectors(position, elements, points), np.exp(2j * np.pi * nearer), atol=1e-4
+    )
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, layout=LAYOUTS)
+def test_one_element_is_the_vertical_case(
+    seed: int, nodes: int, jammers: int, layout: str, random_scene: Callable
+) -> None:
+    """One dipole, combined in either way, gives eq. 2.1 with the axis vertical."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, nodes, jammers), _place(rng)
+    alone = element_positions(1, layout, rng.uniform(0.1, 2.0), rng.uniform(0.0, 6.0))
+    expected = sinr(scene, position, VERTICAL)
+    np.testing.assert_allclose(digital_sinr(scene, position, alone), expected, rtol=1e-12)
+    phases = rng.uniform(0.0, 6.0, 1)
+    np.testing.assert_allclose(analogue_sinr(scene, position, alone, phases), expected, rtol=1e-12)
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=ELEMENTS, layout=LAYOUTS)
+def test_digital_combining_is_the_largest_eigenvalue(
+    seed: int, nodes: int, jammers: int, elements: int, layout: str, random_scene: Callable
+) -> None:
+    """The digital SINR is the largest generalised eigenvalue of (h h^H, R), by a general solver."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, nodes, jammers), _place(rng)
+    places = element_positions(elements, layout, rng.uniform(0.1, 1.5), rng.uniform(0.0, 6.0))
+    heard, jamming = _channels(scene, position, places)
+    covariance = _covariance(scene, jamming)
+    expected = [eigh(np.outer(h, h.conj()), covariance, eigvals_only=True)[-1] for h in heard]
+    np.testing.assert_allclose(digital_sinr(scene, position, places), expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize("case", ["apart", "two jammers as one", "a jammer at a node"])
+@pytest.mark.parametrize("jamming_w", [1.0, 1e3, 1e5, 1e7, 1e9])
+def test_digital_combining_keeps_its_digits(
+    case: str, jamming_w: float, scene: Callable, random_scene: Callable
+) -> None:
+    """Close to singular it agrees with rational arithmetic, and with an eigenvalue solver while that can.
+
+    The eigenvalue solver factorises R, and loses the digits that the strength of the jamming takes there; so
+    it is compared to 1e-10 as far as it keeps them.
+    """
+    rng = np.random.default_rng(int(jamming_w) % 1009)
+    for _ in range(8):
+        nodes_m, jammers_m = rng.uniform(0.0, [60.0, 60.0, 4.0], (2, 3)), rng.uniform(0.0, 60.0, (3, 3))
+        jammers_m[:, 2] /= 15.0
+        if case == "two jammers as one":
+            jammers_m[1] = jammers_m[0] + 1e-6
+        elif case == "a jammer at a node":
+            jammers_m[0] = nodes_m[0] + 1e-5
+        field = scene(nodes_m, [1.0, 1.0], jammers_m, [jamming_w] * 3)
+        position = rng.uniform([0.0, 0.0, 10.0], [60.0, 60.0, 30.0])
+        places = element_positions(int(rng.integers(2, 5)), "circular", 0.5, rng.uniform(0.0, 6.0))
+        heard, jamming = _channels(field, position, places)
+        values = digital_sinr(field, position, places)
+        expected = [_exact_sinr(h, jamming, field.receiver.noise_power_w) for h in heard]
+        np.testing.assert_allclose(values, expected, rtol=1e-11)
+        reached = beam_sinr(field, position, places, digital_weights(field, position, places))
+        np.testing.assert_allclose(reached, expected, rtol=1e-11)
+        if jamming_w <= 1e3:
+            covariance = _covariance(field, jamming)
+            largest = [eigh(np.outer(h, h.conj()), covariance, eigvals_only=True)[-1] for h in heard]
+            np.testing.assert_allclose(values, largest, rtol=1e-10)
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=ELEMENTS, layout=LAYOUTS)
+def test_no_weights_beat_the_best(
+    seed: int, nodes: int, jammers: int, elements: int, layout: str, random_scene: Callable
+) -> None:
+    """The digital weights have length 1 and reach the digital SINR, which no other weights exceed."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, nodes, jammers), _place(rng)
+    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
+    best = digital_sinr(scene, position, places)
+    weights = digital_weights(scene, position, places)
+    np.testing.assert_allclose(np.linalg.norm(weights, axis=-1), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(beam_sinr(scene, position, places, weights), best, rtol=1e-9)
+    others = rng.normal(size=(50, nodes, elements)) + 1j * rng.normal(size=(50, nodes, elements))
+    near = weights + 0.01 * others
+    for tried in (others, near):
+        assert np.all(beam_sinr(scene, position, places, tried) <= best * (1.0 + 1e-9))
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=ELEMENTS)
+def test_a_shared_beam_is_one_choice_of_weights(
+    seed: int, nodes: int, jammers: int, elements: int, random_scene: Callable
+) -> None:
+    """Phase shifters have weights of modulus 1/sqrt(K), and never beat weights of each node's own."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, nodes, jammers), _place(rng)
+    places = element_positions(elements, "linear", 0.5, rng.uniform(0.0, 6.0))
+    phases = rng.uniform(-9.0, 9.0, elements)
+    weights = analogue_weights(phases)
+    np.testing.assert_allclose(np.abs(weights), 1.0 / math.sqrt(elements), rtol=1e-12)
+    heard, jamming = _channels(scene, position, places)
+    signal_w = np.array([abs(weights.conj() @ h) ** 2 for h in heard])
+    jammed_w = sum(abs(weights.conj() @ h) ** 2 for h in jamming)
+    expected = signal_w / (scene.receiver.noise_power_w + jammed_w)
+    values = analogue_sinr(scene, position, places, phases)
+    np.testing.assert_allclose(values, expected, rtol=1e-10)
+    np.testing.assert_allclose(analogue_sinr(scene, position, places, phases + 1.7), values, rtol=1e-9)
+    assert np.all(values <= digital_sinr(scene, position, places) * (1.0 + 1e-9))
+
+
+@given(seed=SEEDS, nodes=NODES, elements=ELEMENTS, layout=LAYOUTS)
+def test_without_jammers_the_elements_add_up(
+    seed: int, nodes: int, elements: int, layout: str, random_scene: Callable
+) -> None:
+    """K elements and no jammer give K times what one vertical dipole receives, and with one never more."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, nodes, 2), _place(rng)
+    silent = scene.model_copy(update={"jammers": ()})
+    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
+    most = elements * sinr(silent, position, VERTICAL)
+    np.testing.assert_allclose(digital_sinr(silent, position, places), most, rtol=1e-12)
+    assert np.all(digital_sinr(scene, position, places) <= most * (1.0 + 1e-12))
+
+
+@given(seed=SEEDS, elements=st.integers(2, 9), layout=LAYOUTS)
+def test_one_jammer_takes_the_share_that_points_at_it(
+    seed: int, elements: int, layout: str, random_scene: Callable
+) -> None:
+    """With one jammer ``Gamma = |h|^2 / sigma^2 (1 - rho^2 x / (1 + x))``, x its strength over the noise."""
+    rng = np.random.default_rng(seed)
+    scene, position = random_scene(rng, 3, 1), _place(rng)
+    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
+    heard, (jammer,) = _channels(scene, position, places)
+    noise_w = scene.receiver.noise_power_w
+    alone = np.linalg.norm(heard, axis=1) ** 2 / noise_w
+    overlap = np.abs(heard.conj() @ jammer) ** 2 / (
+        np.linalg.norm(heard, axis=1) ** 2 * np.linalg.norm(jammer) ** 2
+    )
+    strength = np.linalg.norm(jammer) ** 2 / noise_w
+    np.testing.assert_allclose(
+        digital_sinr(scene, position, places),
+        alone * (1.0 - overlap * strength / (1.0 + strength)),
+        rtol=1e-9,
+    )
+
+
+@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=st.integers(2, 9), layout=LAYOUTS)
+def test_an_element_less_or_a_jammer_more_never_helps(
+    seed: int, nodes: int, jammers: int, elements: int, layout: str, random_scene: Callable
+) -> None:
+    """Digital combining is not better with an element switched off, nor with one more jammer."""
+    rng = np.random.default_rng(seed)
+    jammed = random_scene(rng, nodes, jammers + 1)
+    calmer = jammed.model_copy(update={"jammers": jammed.jammers[:-1]})
+    position = _place(rng)
+    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
+    values = digital_sinr(calmer, position, places)
+    assert np.all(digital_sinr(calmer, position, places[:-1]) <= values * (1.0 + 1e-9))
+    assert np.all(digital_sinr(jammed, position, places) <= values * (1.0 + 1e-9))
+
+
+@given(seed=SEEDS, layout=LAYOUTS)
+def test_turning_the_scene_and_the_vehicle_changes_nothing(
+    seed: int, layout: str, scene: Callable, random_scene: Callable
+) -> None:
+    """Turning nodes, jammers and position about the vertical, with the yaw, leaves every SINR unchanged."""
+    rng = np.random.default_rng(seed)
+    before, position, yaw, turn = random_scene(rng, 3, 2), _place(rng), *rng.uniform(0.0, 6.0, 2)
+    cosine, sine = math.cos(turn), math.sin(turn)
+    rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    after = scene(
+        before.node_positions_m @ rotation.T,
+        before.node_powers_w,
+        before.jammer_positions_m @ rotation.T,
+        before.jammer_powers_w,
+    )
+    phases = rng.uniform(0.0, 6.0, 4)
+    old = element_positions(4, layout, 0.5, yaw)
+    new = element_positions(4, layout, 0.5, yaw + turn)
+    np.testing.assert_allclose(
+        digital_sinr(after, rotation @ position, new), digital_sinr(before, position, old), rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        analogue_sinr(after, rotation @ position, new, phases),
+        analogue_sinr(before, position, old, phases),
+        rtol=1e-7,
+    )
+
+
+@given(seed=SEEDS, jammers=JAMMERS)
+def test_many_poses_at_once(seed: int, jammers: int, random_scene: Callable) -> None:
+    """Positions, yaws and phases of any leading shape give what each gives alone."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, 3, jammers)
+    positions = rng.uniform([0.0, 0.0, 10.0], [90.0, 90.0, 40.0], (2, 5, 3))
+    places = element_positions(4, "circular", 0.5, rng.uniform(0.0, 6.0, (2, 5)))
+    phases = rng.uniform(0.0, 6.0, (2, 5, 4))
+    digital, analogue = (
+        digital_sinr(scene, positions, places),
+        analogue_sinr(scene, positions, places, phases),
+    )
+    weights = digital_weights(scene, positions, places)
+    assert (digital.shape, analogue.shape, weights.shape) == ((2, 5, 3), (2, 5, 3), (2, 5, 3, 4))
+    for at in np.ndindex(2, 5):
+        one = (scene, positions[at], places[at])
+        np.testing.assert_allclose(digital[at], digital_sinr(*one), rtol=1e-12)
+        np.testing.assert_allclose(analogue[at], analogue_sinr(*one, phases[at]), rtol=1e-12)
+        np.testing.assert_allclose(weights[at], digital_weights(*one), rtol=1e-9, atol=1e-12)
+
+
+def test_a_node_that_is_not_heard_has_no_weights(scene: Callable) -> None:
+    """Straight below the vehicle, in every dipole's null, a node has SINR 0 and weights 0."""
+    below = scene([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0]], [1.0, 1.0], [[5.0, 5.0, 0.0]], [1.0])
+    places = element_positions(3, "linear", 0.5)
+    assert digital_sinr(below, [0.0, 0.0, 10.0], places)[0] == 0.0
+    weights = digital_weights(below, [0.0, 0.0, 10.0], places)
+    assert np.all(weights[0] == 0.0)
+    assert np.linalg.norm(weights[1]) == pytest.approx(1.0)
