@@ -27,49 +27,87 @@ class BindingCase:
     ratio: int
     case: ErrorCase
 
+    def is_same(self, other: BindingCase) -> bool:
+        """Return whether another is the same case of the same ratio, to the last bit.
+
+        Args:
+            other: the other.
+        """
+        return self.ratio == other.ratio and self.case.is_same(other.case)
+
 
 def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Family:
     """Return the family with one ratio for each case: the nominal ratio when the case comes true.
 
     Moving the drone by d moves all points by -d, and turning its axis by R is the turn that the points see,
-    so ratio s is that of ``points - d_s + offsets_s`` with the turn ``R_s`` and a denominator of its own. Any
-    pose's smallest ratio here is at least its guaranteed one; keep-outs and airspace are the nominal ones.
+    so ratio s is that of ``points - d_s + offsets_s`` with the turn ``R_s``. Ratios share a denominator if
+    they do in the nominal family and their errors are the same. Any pose's smallest ratio here is at least
+    its guaranteed one; keep-outs and airspace are the nominal ones.
 
     Args:
         scenario: nodes, jammers or eavesdroppers, receiver and airspace.
         cases: one or more.
     """
     nominal = build_family(scenario)
-    points: list[FloatArray] = []
-    turns: list[FloatArray] = []
+    copies = _Copies()
+    groups: dict[tuple[int, bytes], int] = {}
+    numerator_point, denominator_of, of_group = [], [], []
     entries: list[int] = []
     weights: list[FloatArray] = []
     start = [0]
     for each in cases:
-        group = nominal.denominator_of[each.ratio]
+        moved_m = nominal.points_m - each.case.position_offset_m + disturber_offsets_m(scenario, each.case)
+        rotation = each.case.rotation_world
+        numerator_point.append(copies.add(moved_m[nominal.numerator_point[each.ratio]], rotation))
+        group = int(nominal.denominator_of[each.ratio])
         bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
-        offsets_m = disturber_offsets_m(scenario, each.case)
-        old = [nominal.numerator_point[each.ratio], *nominal.denominator_point[bounds]]
-        turns += [each.case.rotation_world] * len(old)
-        entries += range(len(points) + 1, len(points) + len(old))
-        points += [nominal.points_m[j] - each.case.position_offset_m + offsets_m[j] for j in old]
-        weights.append(nominal.denominator_weight[bounds])
-        start.append(len(entries))
+        disturbers_m = moved_m[nominal.denominator_point[bounds]]
+        key = (group, disturbers_m.tobytes() + rotation.tobytes())
+        if key not in groups:
+            groups[key] = len(groups)
+            of_group.append(group)
+            entries += [copies.add(point_m, rotation) for point_m in disturbers_m]
+            weights.append(nominal.denominator_weight[bounds])
+            start.append(len(entries))
+        denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
-    lengths = 1 + np.diff(start)
     return replace(
         nominal,
-        points_m=np.array(points),
-        turn=np.array(turns),
+        points_m=np.array(copies.points_m),
+        turn=copies.turn,
         numerator_isotropic=nominal.numerator_isotropic[ratios],
         numerator_weight=nominal.numerator_weight[ratios],
-        numerator_point=np.cumsum(lengths, dtype=np.int64) - lengths,
-        denominator_of=np.arange(len(cases), dtype=np.int64),
-        denominator_isotropic=nominal.denominator_isotropic[nominal.denominator_of[ratios]],
+        numerator_point=np.array(numerator_point, dtype=np.int64),
+        denominator_of=np.array(denominator_of, dtype=np.int64),
+        denominator_isotropic=nominal.denominator_isotropic[of_group],
         denominator_start=np.array(start, dtype=np.int64),
         denominator_point=np.array(entries, dtype=np.int64),
         denominator_weight=np.concatenate(weights),
     )
+
+
+class _Copies:
+    """The points of a robust family, each moved point with its turn once."""
+
+    def __init__(self) -> None:
+        self.points_m: list[FloatArray] = []
+        self.rotations: list[FloatArray] = []
+        self._index: dict[bytes, int] = {}
+
+    def add(self, point_m: FloatArray, rotation: FloatArray) -> int:
+        """Return the index of a copy, new or not."""
+        key = point_m.tobytes() + rotation.tobytes()
+        if key not in self._index:
+            self._index[key] = len(self.points_m)
+            self.points_m.append(point_m)
+            self.rotations.append(rotation)
+        return self._index[key]
+
+    @property
+    def turn(self) -> FloatArray:
+        """The turns as a family has them: none at all if no point has one."""
+        turn = np.array(self.rotations)
+        return turn if np.any(turn != np.eye(3)) else np.zeros((0, 3, 3))
 
 
 def disturber_offsets_m(scenario: Scenario, case: ErrorCase) -> FloatArray:

@@ -59,6 +59,16 @@ class ErrorCase:
             eavesdropper_offsets_m=np.zeros((len(scenario.eavesdroppers), 3)),
         )
 
+    def is_same(self, other: ErrorCase) -> bool:
+        """Return whether another case is the same to the last bit.
+
+        Args:
+            other: a case of the same scenario.
+        """
+        return all(
+            np.array_equal(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
+        )
+
     @property
     def rotation_rad(self) -> float:
         """Angle of the rotation, radians: for the smallest that turns the axis so, the error of the axis."""

@@ -162,6 +162,10 @@ def null_within_reach(ratio, errors, y, offset):
     for i in range(3):
         offset[i] = node[i] - along * y[i]
         side += offset[i] * offset[i]
+    spare = 0.5 * math.sqrt(max(0.0, reach * reach - side))
+    if abs(along) < spare:  # not onto the node itself
+        for i in range(3):
+            offset[i] += (along - spare) * y[i]
     return side <= reach * reach or side <= 1e-28 * square
 
 

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 __all__ = ["ROUND", "across", "clearance", "loudest", "loudest_ball", "loudest_ellipsoid"]
 
@@ -247,9 +247,13 @@ def loudest_ellipsoid(y, q, axes, semi, tolerance, point):
         start[a + 1], width[a + 1], low[a + 1], high[a + 1] = start[a] + half, half, between, high[a]
         width[a], high[a] = half, between
         top += 2
-    for i in range(3):
-        for m in range(3):
-            point[i] += axes[i, m] * (centre[m] + semi[m] * most[m])
+    square = 0.0
+    for m in range(3):
+        w[m] = centre[m] + semi[m] * most[m]
+        square += w[m] * w[m]
+        for i in range(3):
+            point[i] += axes[i, m] * w[m]
+    best = across(turned, w) / square
     # w is across y up to rounding only, and no point inverted is longer than 1 over the least distance
     return best, upper * (1.0 + 1e-13) + ROUND / least_distance(centre, semi)
 
@@ -267,7 +271,7 @@ def least_distance(q, semi):
     return 0.999 * max(math.sqrt(size) - outer, (form - math.sqrt(form)) / math.sqrt(normal))
 
 
-@inner_kernel
+@kernel
 def clearance(radius, axes, semi, j, q):
     """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
     if axes is not None:  # noqa: SIM102 - alone, so that the branch is left out of the types without axes
@@ -279,7 +283,7 @@ def clearance(radius, axes, semi, j, q):
     return math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) - radius
 
 
-@inner_kernel
+@kernel
 def loudest(radius, axes, semi, j, y, q, tolerance, point):
     """Return (attained, upper bound) of the square root of the strongest link of set j about q.
 

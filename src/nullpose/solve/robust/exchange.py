@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,12 +62,23 @@ class Exchange:
     def __init__(self, inner: Inner, axis_field: AxisField, seed: int, limits: Limits) -> None:
         self.inner, self.axis_field, self.seed, self.limits = inner, axis_field, seed, limits
         blank = ErrorCase.none(inner.scenario)
-        self.cases = [BindingCase(ratio, blank) for ratio in range(inner.n_ratios)]
+        self.cases: list[BindingCase] = []
+        self.add([BindingCase(ratio, blank) for ratio in range(inner.n_ratios)])
         self.best: Visited | None = None
         self.found: Found | None = None
         self.starts = self.evaluations = self.boxes = self.rounds = 0
         self.upper_bound: float | None = None
         self.reason = ""
+
+    def add(self, cases: Sequence[BindingCase]) -> bool:
+        """Add cases to the finite family; return whether any was not in it.
+
+        Args:
+            cases: the cases, those already there among them.
+        """
+        new = [each for each in cases if not any(each.is_same(other) for other in self.cases)]
+        self.cases += new
+        return bool(new)
 
     def level(self, ratio: float, share: float = 1.0) -> float:
         """Return the ratio that is a share of the gap above one, which counts as 1 for a rate of zero.
@@ -93,10 +104,11 @@ class Exchange:
             axis: (3,) the axis, of any length.
             level: what the finite family promises there.
         """
-        worst = self.inner.worst(position_m, axis)
+        unit = axis / np.linalg.norm(axis)
+        worst = self.inner.worst(position_m, unit)
         value = min(one.value for one in worst)
         if self.best is None or value > self.best.worst:
-            self.best = Visited(position_m.copy(), axis / np.linalg.norm(axis), value)
+            self.best = Visited(position_m.copy(), unit, value)
         return [one.binding for one in worst if one.value < level * (1.0 - _SAME)]
 
     def search(self, deadline: float) -> None:
@@ -115,9 +127,9 @@ class Exchange:
             new = self.visit(found.position_m, found.axis, promised)
             assert self.best is not None
             close = promised <= self.level(self.best.worst, _SHARE)
-            if close or not new or time.perf_counter() > deadline:
-                return  # the family stays the one that was searched
-            self.cases += new
+            # the family stays the one that was searched
+            if close or time.perf_counter() > deadline or not self.add(new):
+                return
 
     def prove(self, level: float, began: float, on_progress: Callable[[float, int], None] | None) -> bool:
         """Bound the finite family by a level; return whether to search on, since a better pose turned up.
@@ -141,6 +153,5 @@ class Exchange:
         self.reason = proof.reason
         if proof.reason or not proof.found.log_value > start.log_value + _SAME:
             return False
-        new = self.visit(proof.found.position_m, proof.found.axis, math.exp(proof.found.log_value))
-        self.cases += new
-        return bool(new)
+        value = math.exp(proof.found.log_value)
+        return self.add(self.visit(proof.found.position_m, proof.found.axis, value))

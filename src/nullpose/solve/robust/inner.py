@@ -33,7 +33,7 @@ class Worst:
         node: index of its node.
         eavesdropper: index of its eavesdropper; 0 where there are none.
         lower: no error makes the ratio smaller than this; 0 if that was not asked for.
-        value: the ratio in the case, by the plain physics.
+        value: the ratio in the case, by the plain physics; 0 if the null is on the node.
         case: the worst error case found.
         cells: cells of errors examined.
     """
@@ -71,11 +71,10 @@ class Inner:
 
         Args:
             position_m: (3,) the commanded position.
-            axis: (3,) the commanded antenna axis, of any length.
+            axis: (3,) the commanded antenna axis, of unit length.
             accuracy: relative distance of the bound from the worst found; 1 asks for no bound.
         """
-        u = axis / np.linalg.norm(axis)
-        return tuple(self._worst(ratio, position_m, u, accuracy) for ratio in range(self.n_ratios))
+        return tuple(self._worst(ratio, position_m, axis, accuracy) for ratio in range(self.n_ratios))
 
     @property
     def n_ratios(self) -> int:
@@ -104,11 +103,12 @@ class Inner:
         if round_sets and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
-        lower, _, cells = worst_case(numbers, errors, accuracy, _MOST_CELLS, y, offset, places)
+        lower, worst, cells = worst_case(numbers, errors, accuracy, _MOST_CELLS, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers[4] - offset))
         node = int(family.numerator_point[ratio])
         eavesdropper = int(points[0]) - n_nodes if self.scenario.objective == "secrecy-rate" else 0
-        value = float(ratios_under(self.scenario, p, u, case)[node, eavesdropper])
+        # a null on the node is exact in the case, not in its rounded evaluation
+        value = float(ratios_under(self.scenario, p, u, case)[node, eavesdropper]) if worst > 0.0 else 0.0
         return Worst(
             ratio=ratio,
             node=node,
@@ -127,9 +127,10 @@ class Inner:
         offsets_m = np.array(blank.eavesdropper_offsets_m if secret else blank.jammer_offsets_m)
         known = self.radii[points] == 0.0
         offsets_m[points - len(self.scenario.nodes)] = np.where(known[:, None], 0.0, moved)
-        return ErrorCase(
-            position_offset_m=offset,
-            rotation_world=rotation_between(u, y if float(u @ y) >= 0.0 else -y),
+        rotation = rotation_between(u, y if float(u @ y) >= 0.0 else -y)
+        return ErrorCase(  # what cannot err has no rounding error either
+            position_offset_m=offset if self.reach_m > 0.0 else np.zeros(3),
+            rotation_world=rotation if self.angle_rad > 0.0 else np.eye(3),
             jammer_offsets_m=blank.jammer_offsets_m if secret else offsets_m,
             eavesdropper_offsets_m=offsets_m if secret else blank.eavesdropper_offsets_m,
         )

@@ -72,7 +72,7 @@ def solve_robust(
     nominal = solve(scenario, certify=False, seed=seed).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, seed, limits)
-    exchange.cases += exchange.visit(nominal.position_m, nominal.antenna_axis)
+    exchange.add(exchange.visit(nominal.position_m, nominal.antenna_axis))
     if certify:
         ready(exchange.family, field)  # compiling must not count against the time limit
     clock = time.perf_counter()

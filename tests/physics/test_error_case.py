@@ -1,0 +1,153 @@
+"""Error cases: what a pose gives when not everything is where it was thought to be."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics import objective_value, sinr
+from nullpose.physics.error_case import (
+    ErrorCase,
+    objective_under,
+    ratios_under,
+    rotation_between,
+    sinr_under,
+)
+from nullpose.scenario import Eavesdropper, Scenario, Transmitter
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def some_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
+    """Returns a case in which all is off by about a metre or a tenth of a radian."""
+    return ErrorCase(
+        position_offset_m=rng.normal(size=3),
+        rotation_world=Rotation.from_rotvec(0.1 * rng.normal(size=3)).as_matrix(),
+        jammer_offsets_m=rng.normal(size=(len(scene.jammers), 3)),
+        eavesdropper_offsets_m=rng.normal(size=(len(scene.eavesdroppers), 3)),
+    )
+
+
+def secrecy_scene(plain: Scenario) -> Scenario:
+    """Returns the scene with objective secrecy-rate, an eavesdropper in the place of each jammer."""
+    ears = tuple(Eavesdropper(name=f"E{i}", position_m=j.position_m) for i, j in enumerate(plain.jammers))
+    return Scenario(
+        objective="secrecy-rate",
+        airspace=plain.airspace,
+        receiver=plain.receiver,
+        transmitter=Transmitter(power_w=2.0),
+        nodes=plain.nodes,
+        eavesdroppers=ears,
+    )
+
+
+@given(seed=SEEDS)
+def test_no_error_is_the_nominal_value(seed: int, random_scene: Callable, random_poses: Callable) -> None:
+    """In the case without errors, SINR and objective are the nominal ones to the last bit."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, 3, 2)
+    at = random_poses(rng, 4)
+    none = ErrorCase.none(scene)
+    np.testing.assert_array_equal(sinr_under(scene, *at, none), sinr(scene, *at))
+    np.testing.assert_array_equal(objective_under(scene, *at, none), objective_value(scene, *at))
+
+
+@given(seed=SEEDS)
+def test_an_error_case_is_another_scene(
+    seed: int, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """What an error case gives is what the moved jammers give at the moved and turned pose."""
+    rng = np.random.default_rng(seed)
+    before = random_scene(rng, 3, 2)
+    position, axis = random_poses(rng)
+    case = some_case(rng, before)
+    after = scene(
+        before.node_positions_m,
+        before.node_powers_w,
+        before.jammer_positions_m + case.jammer_offsets_m,
+        before.jammer_powers_w,
+    )
+    np.testing.assert_allclose(
+        sinr_under(before, position, axis, case),
+        sinr(after, position + case.position_offset_m, case.rotation_world @ axis),
+        rtol=1e-13,
+    )
+
+
+@given(seed=SEEDS)
+def test_secrecy_under_an_error_case(seed: int, random_scene: Callable, random_poses: Callable) -> None:
+    """Ratios of secrecy are two to the power of the rates of a scene whose eavesdroppers have moved."""
+    rng = np.random.default_rng(seed)
+    scene = secrecy_scene(random_scene(rng, 3, 2))
+    position, axis = random_poses(rng)
+    case = some_case(rng, scene)
+    moved = tuple(
+        Eavesdropper(name=ear.name, position_m=tuple(map(float, ear.position_m + offset)))
+        for ear, offset in zip(scene.eavesdroppers, case.eavesdropper_offsets_m, strict=True)
+    )
+    after = Scenario(
+        objective="secrecy-rate",
+        airspace=scene.airspace,
+        receiver=scene.receiver,
+        transmitter=scene.transmitter,
+        nodes=scene.nodes,
+        eavesdroppers=moved,
+    )
+    actual = (position + case.position_offset_m, case.rotation_world @ axis)
+    assert ratios_under(scene, position, axis, case).shape == (3, 2)
+    assert objective_under(scene, position, axis, case) == pytest.approx(
+        float(objective_value(after, *actual)), rel=1e-9, abs=1e-12
+    )
+
+
+@given(seed=SEEDS)
+def test_the_smallest_rotation_between_axes(seed: int) -> None:
+    """The rotation is one, takes the first axis to the second, and turns by the angle between them."""
+    rng = np.random.default_rng(seed)
+    first = rng.normal(size=3)
+    second = first + rng.choice([1e-6, 0.1, 1.0]) * rng.normal(size=3)
+    first, second = first / np.linalg.norm(first), second / np.linalg.norm(second)
+    rotation = rotation_between(first, second)
+    np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
+    np.testing.assert_allclose(rotation @ first, second, atol=1e-14)
+    angle = math.atan2(float(np.linalg.norm(np.cross(first, second))), float(first @ second))
+    assert Rotation.from_matrix(rotation).magnitude() == pytest.approx(angle, abs=1e-9)
+
+
+@given(seed=SEEDS, angle_rad=st.floats(0.0, 3.0))
+def test_angle_of_a_rotation(seed: int, angle_rad: float) -> None:
+    """The angle of a case's rotation is that of the rotation vector it was made from."""
+    way = np.random.default_rng(seed).normal(size=3)
+    turn = Rotation.from_rotvec(angle_rad * way / np.linalg.norm(way)).as_matrix()
+    case = ErrorCase(
+        position_offset_m=np.zeros(3),
+        rotation_world=turn,
+        jammer_offsets_m=np.zeros((0, 3)),
+        eavesdropper_offsets_m=np.zeros((0, 3)),
+    )
+    assert case.rotation_rad == pytest.approx(angle_rad, abs=1e-12)
+
+
+def test_cases_are_compared_to_the_last_bit(paper: Scenario) -> None:
+    """A case is the same as a copy of itself, and not as one that differs in one number."""
+    rng = np.random.default_rng(3)
+    case = some_case(rng, paper)
+    parts = {name: np.array(getattr(case, name)) for name in ErrorCase.__slots__}
+    assert case.is_same(ErrorCase(**parts))
+    for name in ("position_offset_m", "rotation_world", "jammer_offsets_m"):
+        other = parts | {name: np.nextafter(parts[name], np.inf)}
+        assert not case.is_same(ErrorCase(**other))
+
+
+@pytest.mark.parametrize("name", ["position_offset_m", "rotation_world", "jammer_offsets_m"])
+def test_a_case_takes_numbers_only(name: str, paper: Scenario) -> None:
+    """Numbers that are not finite, or too few of them, are refused by name."""
+    none = ErrorCase.none(paper)
+    parts = {one: np.array(getattr(none, one)) for one in ErrorCase.__slots__}
+    for bad in (np.full_like(parts[name], np.nan), parts[name][..., :2]):
+        with pytest.raises(ValueError, match=name):
+            ErrorCase(**(parts | {name: bad}))

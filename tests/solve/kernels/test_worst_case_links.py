@@ -1,0 +1,118 @@
+"""The strongest link over a ball or an ellipsoid."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from nullpose.solve.kernels.worst_case_links import clearance, loudest
+
+SEEDS = st.integers(0, 2**32 - 1)
+ROUND = (None, None)
+
+
+def unit(rng: np.random.Generator, *shape: int) -> np.ndarray:
+    """Returns unit vectors."""
+    vectors = rng.normal(size=(*shape, 3))
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def root_link(y: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Returns the square root of a link, ``|y x q| / |q|^2``."""
+    return np.asarray(np.linalg.norm(np.cross(y, q), axis=-1) / np.sum(q**2, axis=-1))
+
+
+def an_ellipsoid(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Returns axes, half lengths and a centre such that the origin is well outside."""
+    semi = 10.0 ** rng.uniform(-2.0, 1.0, 3)
+    axes = Rotation.from_quat(rng.normal(size=4)).as_matrix()
+    way = unit(rng)
+    reach = float(np.linalg.norm(semi * (axes.T @ way)))
+    return axes, semi, (reach + 10.0 ** rng.uniform(-0.5, 1.5)) * way
+
+
+@given(seed=SEEDS)
+def test_ball_in_closed_form(seed: int) -> None:
+    """No point of the ball is louder than the closed form, and the place it names is that loud."""
+    rng = np.random.default_rng(seed)
+    q, y = 20.0 * rng.normal(size=3), unit(rng)
+    if seed % 3 == 0:  # the null points into the ball
+        y = unit(rng) * 1e-3 + q / np.linalg.norm(q)
+        y /= np.linalg.norm(y)
+    radius = float(rng.uniform(0.0, 0.9)) * float(np.linalg.norm(q))
+    place = np.empty(3)
+    value, upper = loudest(radius, *ROUND, 0, y, q, 1e-3, place)
+    assert value == upper
+    assert float(np.linalg.norm(place - q)) <= radius * (1.0 + 1e-9) + 1e-12
+    assert root_link(y, place) == pytest.approx(value, rel=1e-9)
+    inside = q + radius * unit(rng, 2000) * rng.choice([1.0, 0.9, 0.5], (2000, 1))
+    assert np.all(root_link(y, inside) <= value * (1.0 + 1e-12))
+
+
+def test_axis_through_the_middle_of_the_ball() -> None:
+    """With the null on the centre every way off it is as bad: the distance of the inverted sphere."""
+    place = np.empty(3)
+    value, _ = loudest(3.0, *ROUND, 0, np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -20.0]), 1e-3, place)
+    assert value == pytest.approx(3.0 / (400.0 - 9.0), rel=1e-14)
+    assert root_link(np.array([0.0, 0.0, 1.0]), place) == pytest.approx(value, rel=1e-12)
+
+
+def test_a_ball_around_the_drone_has_no_bound() -> None:
+    """Where the jammer may be at the drone itself its link is infinite."""
+    q, y = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    assert loudest(1.0, *ROUND, 0, y, q, 1e-3, np.empty(3))[1] == math.inf
+    assert clearance(1.0, *ROUND, 0, q) <= 0.0
+    axes, semi = np.eye(3)[None], np.array([[2.0, 1.0, 1.0]])
+    assert loudest(-1.0, axes, semi, 0, y, q, 1e-3, np.empty(3))[1] == math.inf
+    assert clearance(-1.0, axes, semi, 0, q) <= 0.0
+
+
+@settings(max_examples=60)
+@given(seed=SEEDS, tolerance=st.sampled_from([1e-2, 1e-3, 1e-5]))
+def test_ellipsoid_between_its_two_values(seed: int, tolerance: float) -> None:
+    """The place named is inside and as loud as told; no point of the ellipsoid is above the upper bound."""
+    rng = np.random.default_rng(seed)
+    axes, semi, q = an_ellipsoid(rng)
+    y = unit(rng) if seed % 2 else q / np.linalg.norm(q)
+    place = np.empty(3)
+    value, upper = loudest(-1.0, axes[None], semi[None], 0, y, q, tolerance, place)
+    assert value <= upper <= value * (1.0 + 1.1 * tolerance) + 1e-12
+    assert root_link(y, place) == pytest.approx(value, rel=1e-9)
+    assert float(np.linalg.norm((axes.T @ (place - q)) / semi)) <= 1.0 + 1e-9
+    x = unit(rng, 4000)
+    points = q + (x * semi) @ axes.T
+    assert np.all(root_link(y, points) <= upper)
+    best = x[np.argmax(root_link(y, points))]
+    climbed = minimize(
+        lambda x: -float(root_link(y, q + axes @ (semi * x / np.linalg.norm(x)))), best, method="Nelder-Mead"
+    )
+    assert -climbed.fun <= upper
+
+
+@given(seed=SEEDS)
+def test_a_round_ellipsoid_is_a_ball(seed: int) -> None:
+    """Three equal half lengths give what the ball's closed form does, to the tolerance."""
+    rng = np.random.default_rng(seed)
+    q, y = 30.0 * unit(rng), unit(rng)
+    radius = float(rng.uniform(0.1, 20.0))
+    ball, _ = loudest(radius, *ROUND, 0, y, q, 1e-6, np.empty(3))
+    axes = Rotation.from_quat(rng.normal(size=4)).as_matrix()[None]
+    value, upper = loudest(-1.0, axes, np.full((1, 3), radius), 0, y, q, 1e-6, np.empty(3))
+    assert value == pytest.approx(ball, rel=2e-6)
+    assert ball * (1.0 - 1e-12) <= upper <= ball * (1.0 + 2e-6)
+
+
+@given(seed=SEEDS)
+def test_clearance_is_a_lower_bound(seed: int) -> None:
+    """No point of the set is nearer to the drone than its clearance, which is positive outside."""
+    rng = np.random.default_rng(seed)
+    axes, semi, q = an_ellipsoid(rng)
+    points = q + (unit(rng, 2000) * semi) @ axes.T
+    least = clearance(-1.0, axes[None], semi[None], 0, q)
+    assert 0.0 < least <= float(np.min(np.linalg.norm(points, axis=1)))
+    radius = 0.5 * float(np.linalg.norm(q))
+    assert clearance(radius, *ROUND, 0, q) == pytest.approx(radius, rel=1e-14)
