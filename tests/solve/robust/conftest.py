@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Scenario
+from nullpose.solve.robust import RobustSolution, solve_robust
 
 Draw = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -96,3 +97,15 @@ def ratios_at() -> Callable[..., np.ndarray]:
         return np.asarray(signal / noise / scene.node_required_sinr)
 
     return ratios
+
+
+@pytest.fixture(scope="session")
+def strong(paper: Callable[..., Scenario], erring: Callable[..., Scenario]) -> Scenario:
+    """Returns the paper's scene at a power ratio of 100, with errors of 2 degrees and of 3 m for the jammer."""
+    return erring(paper(100.0), attitude_deg=2.0, extent_m=3.0)
+
+
+@pytest.fixture(scope="session")
+def solved(strong: Scenario) -> RobustSolution:
+    """Returns its robust solution."""
+    return solve_robust(strong)
