@@ -4,6 +4,13 @@ Every number that nullpose reports is evaluated here from the reported pose.
 """
 
 from nullpose.physics.decibel import from_db, to_db
+from nullpose.physics.error_case import (
+    ErrorCase,
+    objective_under,
+    ratios_under,
+    rotation_between,
+    sinr_under,
+)
 from nullpose.physics.evaluate import Link, evaluate, min_margin, min_secrecy_rate, min_sinr
 from nullpose.physics.frames import (
     FramePose,
@@ -27,6 +34,7 @@ from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
 __all__ = [
+    "ErrorCase",
     "FramePose",
     "Geodetic",
     "Link",
@@ -49,12 +57,16 @@ __all__ = [
     "min_secrecy_rate",
     "min_sinr",
     "node_snr",
+    "objective_under",
     "objective_value",
     "pose_frames",
+    "ratios_under",
     "received_power_w",
+    "rotation_between",
     "rotation_world_from_body",
     "secrecy_rate",
     "sinr",
+    "sinr_under",
     "to_db",
     "zero_interference_axis",
     "zero_interference_sinr",

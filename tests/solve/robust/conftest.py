@@ -101,7 +101,7 @@ def ratios_at() -> Callable[..., np.ndarray]:
 
 @pytest.fixture(scope="session")
 def strong(paper: Callable[..., Scenario], erring: Callable[..., Scenario]) -> Scenario:
-    """Returns the paper's scene at a power ratio of 100, with errors of 2 degrees and of 3 m for the jammer."""
+    """Returns the paper's scene at a power ratio of 100, errors of 2 degrees and 3 m of the jammer."""
     return erring(paper(100.0), attitude_deg=2.0, extent_m=3.0)
 
 
