@@ -2,19 +2,26 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from nullpose.certificate import Certificate, Leaves, verify
+from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.family import Family
+from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
+from nullpose.family import Family, build_family
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solve import certificate_of, solve
+from nullpose.solve.effort import Effort
+from nullpose.solve.evidence import leaves_of
+from nullpose.solve.limits import Limits
+from nullpose.solve.settle import settle
 
 Place = tuple[float, float, float]
 
-_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "ball", "ball_multiplier")
+_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "band", "ball", "ball_multiplier")
 _ENOUGH_S = 600.0  # the kernels may have to be compiled first
 
 
@@ -88,6 +95,39 @@ def certified() -> Callable[..., Certificate]:
 
 
 @pytest.fixture(scope="session")
+def put_together() -> Callable[..., Certificate]:
+    """Returns a function: the certificate of a scenario's settled family, its pose from axis and mount."""
+
+    def make(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3) -> Certificate:
+        family, fields = build_family(scenario), claimed_axes(scenario, scheme, None)
+        assert fields is not None
+        effort = Effort(limits=Limits(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9))
+        settled = settle(family, list(fields.values()), effort)
+        mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
+        east, north, up = settled.found.axis * np.sign(settled.found.axis[2] or 1.0)
+        # the body leans in the plane of vertical and dipole, by the least angle that brings it there
+        lean = float(np.arctan2(np.hypot(east, north), up)) - mount_rad
+        attitude = (0.0, lean, float(np.arctan2(north, east)))
+        position = [Fraction(float(x)) for x in settled.found.position_m]
+        value = float(smallest_ratio(family, position, antenna_axis(attitude, mount_rad)))
+        trees = zip(fields, settled.proofs, strict=True)
+        return Certificate(
+            scenario=scenario,
+            scheme=scheme,
+            null_jammer=None,
+            value=value,
+            upper_bound=max(value, settled.upper_bound or 0.0),
+            position_m=settled.found.position_m,
+            roll_rad=attitude[0],
+            pitch_rad=attitude[1],
+            yaw_rad=attitude[2],
+            trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p)) for axis, p in trees),
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
 def cut_into_cells() -> Callable[[Certificate], Certificate]:
     """Returns a function: a certificate some of whose leaves are cut into cells of axes, with multipliers.
 
@@ -133,20 +173,23 @@ def walled(paper: Callable[..., Scenario], certified: Callable[..., Certificate]
 
 @pytest.fixture(scope="session")
 def random_family() -> Callable[..., Family]:
-    """Returns a builder: so many ratios over one denominator of so many points, with keep-out balls."""
+    """Returns a builder: so many ratios over denominators of so many points each, with keep-out balls."""
 
-    def build(rng: np.random.Generator, ratios: int, others: int, keep_out_m: float = 1.0) -> Family:
-        points_m = rng.uniform([0.0, 0.0, 0.0], [60.0, 60.0, 5.0], (ratios + others, 3))
+    def build(
+        rng: np.random.Generator, ratios: int, others: int, keep_out_m: float = 1.0, groups: int = 1
+    ) -> Family:
+        entries = groups * others
+        points_m = rng.uniform([0.0, 0.0, 0.0], [60.0, 60.0, 5.0], (ratios + entries, 3))
         return Family(
             points_m=points_m,
             numerator_isotropic=rng.uniform(0.0, 0.2, ratios),
             numerator_weight=10.0 ** rng.uniform(2.0, 4.0, ratios),
             numerator_point=np.arange(ratios),
-            denominator_of=np.zeros(ratios, dtype=np.int64),
-            denominator_isotropic=rng.uniform(0.5, 2.0, 1),
-            denominator_start=np.array([0, others]),
-            denominator_point=ratios + np.arange(others),
-            denominator_weight=10.0 ** rng.uniform(1.0, 4.0, others),
+            denominator_of=np.arange(ratios) % groups,
+            denominator_isotropic=rng.uniform(0.5, 2.0, groups),
+            denominator_start=others * np.arange(groups + 1),
+            denominator_point=ratios + np.arange(entries),
+            denominator_weight=10.0 ** rng.uniform(1.0, 4.0, entries),
             low_m=np.array([-np.inf, -np.inf, 8.0]),
             high_m=np.array([np.inf, np.inf, 30.0]),
             keep_out_points_m=points_m,
@@ -170,6 +213,7 @@ def make_leaves() -> Callable[..., Leaves]:
             "mix": np.zeros(count, dtype=np.int64),
             "mixes": ({0: 1.0},),
             "sides": np.zeros((count, 2)),
+            "band": np.zeros(count),
             "ball": np.full(count, -1),
             "ball_multiplier": np.zeros(count),
         }
@@ -196,7 +240,9 @@ def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..
     def ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
         u = axis / np.linalg.norm(axis)
         gains = np.array([u @ link_matrix(point - position_m) @ u for point in family.points_m])
-        below = family.denominator_isotropic[0] + family.denominator_weight @ gains[family.denominator_point]
+        entries = family.denominator_weight * gains[family.denominator_point]
+        sums = [entries[a:b].sum() for a, b in pairwise(family.denominator_start)]
+        below = (family.denominator_isotropic + sums)[family.denominator_of]
         return (family.numerator_isotropic + family.numerator_weight * gains[family.numerator_point]) / below
 
     return ratios

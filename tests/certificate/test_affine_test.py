@@ -174,17 +174,23 @@ def test_negative_quadratics_are_negative() -> None:
     assert missed < passed
 
 
+@pytest.mark.parametrize("groups", [1, 3])
 @pytest.mark.parametrize("field", FIELDS[:3])
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(seed=seeds)
 def test_no_position_of_an_excluded_box_reaches_the_level(
-    field: AxisField, seed: int, random_family: Callable, make_leaves: Callable, dense_ratios: Callable
+    field: AxisField,
+    groups: int,
+    seed: int,
+    random_family: Callable,
+    make_leaves: Callable,
+    dense_ratios: Callable,
 ) -> None:
     """Whatever mix or ball: allowed positions of excluded boxes stay below the level."""
     rng = np.random.default_rng(seed)
     count, ratios = 60, int(rng.integers(1, 4))
     keep_out_m = float(rng.choice([1.0, 20.0]))
-    family = random_family(rng, ratios, 2, keep_out_m=keep_out_m)
+    family = random_family(rng, ratios, 2, keep_out_m=keep_out_m, groups=groups)
 
     def axis(p: np.ndarray) -> np.ndarray:
         return field.offset + field.matrix @ p

@@ -40,14 +40,15 @@ def test_far_is_far(
 ) -> None:
     """No allowed pose of a box that is out of reach gives its node the level; just out of reach is told."""
     rng = np.random.default_rng(seed)
-    family = random_family(rng, 3, 1, keep_out_m=float(rng.choice([1.0, 12.0])))
+    groups = int(rng.integers(1, 4))
+    family = random_family(rng, 3, 1, keep_out_m=float(rng.choice([1.0, 12.0])), groups=groups)
     boxes = some_boxes(rng, 30)
     nodes = rng.integers(3, size=30)
     level = 10.0 ** rng.uniform(-1.0, 2.0, 30)
     distances = [nearest_m(boxes, b, family.points_m[nodes[b]]) for b in range(30)]
     reach = np.maximum(distances, family.keep_out_m)
     top = family.numerator_isotropic[nodes] + family.numerator_weight[nodes] / reach**2
-    exact = top / family.denominator_isotropic[0]
+    exact = top / family.denominator_isotropic[family.denominator_of[nodes]]
     level[::2] = exact[::2] * (1.0 + 1e-9 * np.sign(rng.normal(size=15)))
     holds = far_holds(family, make_leaves(30, point=nodes, level=level), boxes)
     assert np.array_equal(holds, exact < level)
@@ -80,9 +81,9 @@ def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_le
 def test_nothing_beyond_the_root_beats_the_bound(seed: int, random_family: Callable) -> None:
     """A root passes exactly if beyond each face one node, at its best, stays within the bound."""
     rng = np.random.default_rng(seed)
-    family = random_family(rng, 3, 1)
+    family = random_family(rng, 3, 1, groups=int(rng.integers(1, 4)))
     bound = float(10.0 ** rng.uniform(0.0, 1.5))
-    lack = bound * family.denominator_isotropic[0] - family.numerator_isotropic
+    lack = bound * family.denominator_isotropic[family.denominator_of] - family.numerator_isotropic
     radius = np.sqrt(family.numerator_weight / np.maximum(lack, 1e-300))
     points = family.points_m[:3]
     low = np.max(points - radius[:, None], axis=0)

@@ -181,7 +181,7 @@ def test_wrong_types_are_named(data: Data) -> None:
     [
         (("version",), 1.0),
         (("version",), True),
-        (("version",), 2),
+        (("version",), 3),
         (("version",), "1"),
         (("format",), "nullpose"),
         (("value",), True),

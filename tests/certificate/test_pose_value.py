@@ -10,9 +10,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nullpose.certificate.pose_value import antenna_axis, field_offset, sine_cosine, smallest_ratio
+from nullpose.certificate.pose_value import (
+    antenna_axis,
+    band_excess,
+    body_axes,
+    field_offset,
+    sine_cosine,
+    smallest_ratio,
+    square_root,
+)
 from nullpose.family import AxisField, build_family
-from nullpose.physics import Pose, maximum_gain_axis, min_sinr, zero_interference_axis
+from nullpose.physics import (
+    Pose,
+    maximum_gain_axis,
+    min_sinr,
+    rotation_world_from_body,
+    zero_interference_axis,
+)
 from nullpose.physics import antenna_axis as physics_axis
 
 seeds = st.integers(0, 2**32 - 1)
@@ -46,9 +60,43 @@ def test_sums_of_angles(x: float, y: float) -> None:
 @given(roll=angles, pitch=angles, yaw=angles)
 def test_the_axis_is_the_physics_one(roll: float, pitch: float, yaw: float) -> None:
     """Roll, pitch and yaw give the axis of paper eq. 1.1."""
-    attitude = SimpleNamespace(roll_rad=roll, pitch_rad=pitch, yaw_rad=yaw)
-    axis = [float(x) for x in antenna_axis(attitude)]
+    axis = [float(x) for x in antenna_axis((roll, pitch, yaw))]
     np.testing.assert_allclose(axis, physics_axis(roll, pitch, yaw), atol=1e-15)
+
+
+@given(roll=angles, pitch=angles, yaw=angles, mount=st.floats(0.0, math.pi / 2))
+def test_a_mounted_dipole_turns_with_the_body(roll: float, pitch: float, yaw: float, mount: float) -> None:
+    """Its axis is the rotation of the one on the body, whose own axes are the rotation's columns."""
+    rotation = rotation_world_from_body(roll, pitch, yaw)
+    axis = [float(x) for x in antenna_axis((roll, pitch, yaw), mount)]
+    on_body = np.array([math.sin(mount), 0.0, math.cos(mount)])
+    np.testing.assert_allclose(axis, rotation @ on_body, atol=1e-15)
+    forward, up = body_axes((roll, pitch, yaw))
+    np.testing.assert_allclose([float(x) for x in forward], rotation[:, 0], atol=1e-15)
+    np.testing.assert_allclose([float(x) for x in up], rotation[:, 2], atol=1e-15)
+
+
+@given(x=st.floats(0.0, 1.0))
+def test_square_roots(x: float) -> None:
+    """Their squares are right to thirty digits, from below."""
+    root = square_root(Fraction(x))
+    assert 0 <= Fraction(x) - root**2 < Fraction(1, 10**40)
+
+
+@given(
+    angle=st.floats(0.0, math.pi / 2),
+    turn=angles,
+    ends=st.tuples(st.floats(0.0, math.pi / 2), st.floats(0.0, math.pi / 2)).map(sorted),
+    length=st.floats(0.1, 10.0),
+)
+def test_axes_miss_a_band_by_an_angle(angle: float, turn: float, ends: list, length: float) -> None:
+    """An axis within the band misses it by nothing; another by the sine of the angle to its nearer end."""
+    axis = np.array([math.sin(angle) * math.cos(turn), math.sin(angle) * math.sin(turn), math.cos(angle)])
+    band = (math.cos(ends[1]) ** 2, math.cos(ends[0]) ** 2)
+    for sign in (1.0, -1.0):
+        excess = float(band_excess(band, exact(sign * length * axis)))
+        # an end near the vertical is a square near one: its angle is known to half the digits only
+        assert excess == pytest.approx(math.sin(max(angle - ends[1], ends[0] - angle)), abs=3e-8)
 
 
 @given(seed=seeds, roll=angles, pitch=angles, yaw=angles)
@@ -60,7 +108,7 @@ def test_the_smallest_ratio_is_the_smallest_sinr(
     scenario = random_scene(seed, int(rng.integers(1, 9)), int(rng.integers(0, 4)))
     pose = Pose(rng.uniform([-20.0, -20.0, 8.0], [120.0, 120.0, 30.0]), roll, pitch, yaw)
     expected = min_sinr(scenario, pose)
-    axis = antenna_axis(SimpleNamespace(roll_rad=roll, pitch_rad=pitch, yaw_rad=yaw))
+    axis = antenna_axis((roll, pitch, yaw))
     value = float(smallest_ratio(build_family(scenario), exact(pose.position_m), axis))
     # a node near the null has a gain that is the difference of nearly equal numbers in the physics
     assert value == pytest.approx(expected, rel=1e-13, abs=1e-12)

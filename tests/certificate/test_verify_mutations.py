@@ -467,7 +467,7 @@ def test_leaves_are_needed_one_and_all(sound: dict[str, Certificate]) -> None:
         rng = np.random.default_rng(5)
         for row in rng.choice(len(tree.leaves), size=15, replace=False):
             kept = np.delete(np.arange(len(tree.leaves)), row)
-            columns = {name: getattr(tree.leaves, name)[kept] for name in COLUMNS[:-1]}
+            columns = {name: getattr(tree.leaves, name)[kept] for name in Leaves.__slots__ if name != "mixes"}
             leaves = Leaves(mixes=tree.leaves.mixes, **columns)
             verdict = verify(replace(one, trees=(replace(tree, leaves=leaves), *one.trees[1:])))
             assert not verdict.proved

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.certificate.boxes import Boxes, mix_slots
-from nullpose.certificate.certificate import FloatArray, Leaves
+from nullpose.certificate.allowed import Weighted, negative_where_allowed
+from nullpose.certificate.boxes import Boxes, group_shares, mix_slots
+from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval, dot, stack
 from nullpose.family import AxisField, Family
 
@@ -133,57 +134,48 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     """Return which boxes their leaf's multipliers exclude under the axis field.
 
     Args:
-        family: the ratios, one shared denominator.
+        family: the ratios.
         field: the axis field.
         leaves: with multipliers and level.
         boxes: to be tested.
     """
     ratio, weight = mix_slots(leaves, boxes)
-    total = value = Interval(np.zeros(len(boxes)))
+    value = Interval(np.zeros(len(boxes)))
     slopes, hessian = [value] * 3, [value] * 6
+    terms = []
+    certain = np.zeros(len(boxes), dtype=bool)
     for k, w in zip(ratio, weight, strict=True):
-        total = total + w
         value = value + Interval(w) * family.numerator_isotropic[k]
-    level = total * leaves.level[boxes.leaf]
-    value = value - level * family.denominator_isotropic[0]
+        terms.append((family.numerator_point[k], Interval(w) * family.numerator_weight[k]))
+        certain |= w > 0.0
+    for g, share in enumerate(group_shares(family, ratio, weight)):
+        if not np.any(share.high > 0.0):
+            continue
+        level = share * leaves.level[boxes.leaf]
+        value = value - level * family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            point = np.full(len(boxes), family.denominator_point[e])
+            terms.append((point, -(level * family.denominator_weight[e])))
     ranged = value
-    terms = [
-        (family.numerator_point[k], Interval(w) * family.numerator_weight[k])
-        for k, w in zip(ratio, weight, strict=True)
-    ]
-    terms += [
-        (np.full(len(boxes), j), -(level * family.denominator_weight[e]))
-        for e, j in enumerate(family.denominator_point)
-    ]
     for point, scale in terms:
         jet = link_jet(field, boxes, family.points_m[point])
         value = value + scale * jet[0]
         slopes = [x + scale * y for x, y in zip(slopes, jet[1], strict=True)]
         hessian = [x + scale * y for x, y in zip(hessian, jet[2], strict=True)]
         ranged = ranged + scale * jet[3]
-    value = _add_ball(family, leaves, boxes, value, slopes, hessian)
-    certain = (ranged.high < 0.0) & (total.low > 0.0)
-    return np.asarray(certain | (_quadratic_negative(boxes, value, slopes, hessian) & (total.low > 0.0)))
 
+    def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
+        here = value[rows]
+        steep, bent = [x[rows] for x in slopes], [x[rows] for x in hessian]
+        for nu, bound in constraints:
+            here = here + bound.value * nu
+            for i in range(3):
+                steep[i] = steep[i] + bound.slopes[:, i] * nu
+                bent[i] = bent[i] + 2.0 * nu * bound.bend[:, i]
+        return _quadratic_negative(boxes.chosen(rows), here, steep, bent)
 
-def _add_ball(
-    family: Family,
-    leaves: Leaves,
-    boxes: Boxes,
-    value: Interval,
-    slopes: list[Interval],
-    hessian: list[Interval],
-) -> Interval:
-    """Add ``nu (|p - q|^2 - R^2)``, which is not negative outside a keep-out ball."""
-    ball = leaves.ball[boxes.leaf]
-    nu = np.where(ball >= 0, leaves.ball_multiplier[boxes.leaf], 0.0)
-    if not np.any(nu > 0.0):
-        return value
-    n = Interval(boxes.centre) - family.keep_out_points_m[np.maximum(ball, 0)]
-    for i in range(3):
-        slopes[i] = slopes[i] + n[:, i] * (2.0 * nu)
-        hessian[i] = hessian[i] + 2.0 * nu
-    return value + (dot(n, n) - Interval(family.keep_out_m).squared()) * nu
+    holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test)
+    return np.asarray(certain & holds)
 
 
 def _quadratic_negative(

@@ -8,8 +8,9 @@ import numpy as np
 
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval
+from nullpose.family import Family
 
-__all__ = ["Boxes", "boxes_of", "mix_slots", "parts"]
+__all__ = ["Boxes", "boxes_of", "group_shares", "mix_slots", "parts"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -104,3 +105,21 @@ def mix_slots(leaves: Leaves, boxes: Boxes) -> tuple[IntArray, FloatArray]:
         weight[row, : len(mix)] = list(mix.values())
     chosen = leaves.mix[boxes.leaf]  # -1, without a mix, is the last row: all zero
     return ratio[chosen].T, weight[chosen].T
+
+
+def group_shares(family: Family, ratio: IntArray, weight: FloatArray) -> list[Interval]:
+    """Return the sum of the weights of each denominator's ratios, (b,) each; exactly zero without any.
+
+    Args:
+        family: with the denominator of each ratio.
+        ratio: (slots, b) as :func:`mix_slots` returns them.
+        weight: (slots, b).
+    """
+    shares = []
+    for g in range(len(family.denominator_isotropic)):
+        share = Interval(np.zeros(weight.shape[1]))
+        for k, w in zip(ratio, weight, strict=True):
+            more, mine = share + w, (family.denominator_of[k] == g) & (w > 0.0)
+            share = Interval(np.where(mine, more.low, share.low), np.where(mine, more.high, share.high))
+        shares.append(share)
+    return shares

@@ -12,7 +12,18 @@ from numpy.typing import NDArray
 from nullpose.family import AxisField
 from nullpose.scenario import Scenario
 
-__all__ = ["AFFINE", "FAR", "KEPT_OUT", "TOWARDS", "WORLD", "Certificate", "Leaves", "Tree", "claimed_axes"]
+__all__ = [
+    "AFFINE",
+    "FAR",
+    "KEPT_OUT",
+    "OFF_BAND",
+    "TOWARDS",
+    "WORLD",
+    "Certificate",
+    "Leaves",
+    "Tree",
+    "claimed_axes",
+]
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
@@ -21,7 +32,8 @@ WORLD = 0  # any axis, in the world frame
 TOWARDS = 1  # any axis, in a frame that turns towards a point
 AFFINE = 2  # the axis that the position gives
 FAR = 3  # a node out of reach
-KEPT_OUT = 4  # inside a keep-out ball
+KEPT_OUT = 4  # inside a keep-out ball or a forbidden zone
+OFF_BAND = 5  # a cell of axes that the airframe does not reach
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,15 +45,16 @@ class Leaves:
     Args:
         box: (l, 6) depth and index along x, y and z.
         cell: (l, 5) face of the cube of axes, -1 for every axis, then depth and index along its two sides.
-        test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR`` or ``KEPT_OUT``.
-        point: (l,) the point that the frame turns towards, the node that is out of reach, or the keep-out
-            ball; -1 where there is none.
-        level: (l,) the smallest SINR that no pose of the leaf reaches.
+        test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR``, ``KEPT_OUT`` or ``OFF_BAND``.
+        point: (l,) the point that the frame turns towards, the ratio that is out of reach, or the keep-out
+            ball or zone; -1 where there is none.
+        level: (l,) the smallest ratio that no pose of the leaf reaches.
         mix: (l,) index into ``mixes``; -1 where none is needed.
         mixes: multipliers of ratios, each a mapping from ratio to weight.
         sides: (l, 2) multipliers of the cell's two sides.
-        ball: (l,) the keep-out ball that counts in the box, or -1.
-        ball_multiplier: (l,) its multiplier, 1/m^2.
+        band: (l,) multiplier of the band's upper end, or, if negative, minus that of its lower end.
+        ball: (l,) the keep-out ball that counts in the box, or, counted on from the balls, the zone; or -1.
+        ball_multiplier: (l,) the ball's multiplier, 1/m^2; a zone's are found anew.
     """
 
     box: IntArray
@@ -52,6 +65,7 @@ class Leaves:
     mix: IntArray
     mixes: tuple[Mapping[int, float], ...]
     sides: FloatArray
+    band: FloatArray
     ball: IntArray
     ball_multiplier: FloatArray
 
@@ -64,7 +78,7 @@ class Tree:
     """The proof for one axis field.
 
     Args:
-        axis: ``"free"``, ``"vertical"``, ``"broadside"`` or ``"null NAME"`` with a jammer's name.
+        axis: ``"free"``, ``"band"``, ``"vertical"``, ``"broadside"`` or ``"null NAME"`` with a jammer's name.
         root_m: (2, 3) lowest and highest corner of the root box, metres.
         leaves: they cover the root.
     """
@@ -82,8 +96,9 @@ class Certificate:
         scenario: what the claim is about.
         scheme: the case: which axes are allowed.
         null_jammer: zero interference only: the one jammer that was to be nulled, or None for any of them.
-        value: the smallest SINR at the pose.
-        upper_bound: no allowed pose has its smallest SINR above it.
+        value: the smallest ratio at the pose: an SINR, a margin where nodes state weights or requirements,
+            or, for the secrecy rate, two to the power of it.
+        upper_bound: no allowed pose has its smallest ratio above it.
         position_m: (3,) the pose's position, metres, ENU.
         roll_rad: its roll.
         pitch_rad: its pitch.
@@ -108,16 +123,23 @@ class Certificate:
 def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField] | None:
     """Return the axis fields of a scheme by the names they have in a certificate; None if there are none.
 
+    There are none where positions are uncertain, the pose is held with errors, or dipoles form an array.
+
     Args:
-        scenario: nodes and jammers.
+        scenario: nodes, jammers and airframe.
         scheme: the case.
         null_jammer: zero interference only: the jammer to be nulled, or None for any.
     """
+    if scenario.is_uncertain or scenario.array is not None:
+        return None
     if null_jammer is not None and scheme != "zero-interference":
         return None
     jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
     if scheme == "optimum":
-        return {"free": AxisField.free()}
+        field = AxisField.within(*scenario.axis_band)
+        if not field.is_free:
+            return {"vertical": field}
+        return {"free" if field.band == (0.0, 1.0) else "band": field}
     if scheme == "vertical":
         return {"vertical": AxisField.vertical()}
     if scheme == "maximum-gain" and len(scenario.nodes) == 2:

@@ -19,14 +19,15 @@ def far_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
 
     Args:
         family: the ratios.
-        leaves: with level and node.
+        leaves: with level and ratio.
         boxes: to be tested.
     """
     k = leaves.point[boxes.leaf]
+    below = family.denominator_isotropic[family.denominator_of[k]]
     level = leaves.level[boxes.leaf]
     nearest2 = boxes.nearest2(family.points_m[family.numerator_point[k]])
     a2 = np.maximum(nearest2, Interval(family.keep_out_m).squared().low)
-    lack = Interval(family.numerator_isotropic[k]) - Interval(level) * family.denominator_isotropic[0]
+    lack = Interval(family.numerator_isotropic[k]) - Interval(level) * below
     return np.asarray((lack.high < 0.0) & ((lack * a2 + family.numerator_weight[k]).high < 0.0))
 
 
@@ -56,7 +57,8 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
         upper_bound: t.
     """
     points = family.points_m[family.numerator_point]
-    lack = Interval(upper_bound) * family.denominator_isotropic[0] - family.numerator_isotropic
+    below = family.denominator_isotropic[family.denominator_of]
+    lack = Interval(upper_bound) * below - family.numerator_isotropic
     for i, name in enumerate("xyz"):
         for side, domain_end in ((0, family.low_m[i]), (1, family.high_m[i])):
             face = root_m[side, i]

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.certificate.certificate import Certificate, Leaves, Tree
+from nullpose.certificate.certificate import OFF_BAND, Certificate, Leaves, Tree
 from nullpose.errors import CertificateError, OutputError, ScenarioError
 from nullpose.scenario import Scenario
 
 __all__ = [
     "FORMAT",
-    "VERSION",
+    "VERSIONS",
     "certificate_text",
     "parse_certificate",
     "read_certificate",
@@ -28,11 +28,12 @@ __all__ = [
 ]
 
 FORMAT = "nullpose-certificate"
-VERSION = 1
+VERSIONS = (1, 2)
 
 _GZIP_MAGIC = b"\x1f\x8b"
 _MOST_BYTES = 2**31
-_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "ball", "ball_multiplier")
+_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "band", "ball", "ball_multiplier")
+_LATER = {"band": 2}  # columns by the version that they came with
 _SHAPES = {"box": 6, "cell": 5, "sides": 2}
 _KINDS: dict[type[Any], str] = {dict: "a table", list: "a list", str: "a text"}
 _WHOLE = {"box", "cell", "test", "point", "mix", "ball"}
@@ -91,15 +92,16 @@ def scenario_digest(data: Mapping[str, Any]) -> str:
 
 
 def certificate_text(certificate: Certificate) -> str:
-    """Return a certificate as JSON, one line for each column.
+    """Return a certificate as JSON, one line for each column, in the earliest version that can hold it.
 
     Args:
         certificate: what to write down.
     """
     scenario = certificate.scenario.to_dict()
+    version = _version(certificate)
     data: dict[str, Any] = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": version,
         "scenario": scenario,
         "scenario_sha256": scenario_digest(scenario),
         "scheme": certificate.scheme,
@@ -112,10 +114,28 @@ def certificate_text(certificate: Certificate) -> str:
             "pitch_rad": certificate.pitch_rad,
             "yaw_rad": certificate.yaw_rad,
         },
-        "trees": [_tree_data(tree) for tree in certificate.trees],
+        "trees": [_tree_data(tree, version) for tree in certificate.trees],
         "provenance": dict(certificate.provenance),
     }
     return _lines(data, 0) + "\n"
+
+
+def _version(certificate: Certificate) -> int:
+    """Return the version of the format that a certificate needs."""
+    scenario, leaves = certificate.scenario, [tree.leaves for tree in certificate.trees]
+    needs_second = (
+        scenario.objective != "min-sinr"
+        or scenario.has_margins
+        or scenario.airframe is not None
+        or scenario.airspace.geofence_m is not None
+        or bool(scenario.airspace.no_fly)
+        or any(np.any(each.band != 0.0) or np.any(each.test == OFF_BAND) for each in leaves)
+    )
+    return 2 if needs_second else 1
+
+
+def _columns(version: int) -> list[str]:
+    return [name for name in _COLUMNS if _LATER.get(name, 1) <= version]
 
 
 def _lines(value: Any, depth: int) -> str:
@@ -134,9 +154,9 @@ def _nested(value: Any) -> bool:
     return any(isinstance(item, dict) for item in items) or (isinstance(value, dict) and "box" in value)
 
 
-def _tree_data(tree: Tree) -> dict[str, Any]:
+def _tree_data(tree: Tree, version: int) -> dict[str, Any]:
     leaves = tree.leaves
-    columns: dict[str, Any] = {name: getattr(leaves, name).tolist() for name in _COLUMNS}
+    columns: dict[str, Any] = {name: getattr(leaves, name).tolist() for name in _columns(version)}
     columns["mixes"] = [[[k, w] for k, w in mix.items()] for mix in leaves.mixes]
     return {"axis": tree.axis, "root_m": tree.root_m.tolist(), "leaves": columns}
 
@@ -171,7 +191,9 @@ def parse_certificate(text: str) -> Certificate:
         roll_rad=_number(pose, "roll_rad", "pose."),
         pitch_rad=_number(pose, "pitch_rad", "pose."),
         yaw_rad=_number(pose, "yaw_rad", "pose."),
-        trees=tuple(_tree(tree, f"trees[{i}].") for i, tree in enumerate(_get(data, "trees", list))),
+        trees=tuple(
+            _tree(tree, f"trees[{i}].", data["version"]) for i, tree in enumerate(_get(data, "trees", list))
+        ),
         provenance=_get(data, "provenance", dict),
     )
 
@@ -186,8 +208,9 @@ def _plain(text: str) -> dict[str, Any]:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
     version = data.get("version")
-    if type(version) is not int or version != VERSION:
-        raise CertificateError(f"version: this nullpose reads version {VERSION}, and no other")
+    if type(version) is not int or version not in VERSIONS:
+        known = " and ".join(map(str, VERSIONS))
+        raise CertificateError(f"version: this nullpose reads versions {known}, and no other")
     return data
 
 
@@ -202,7 +225,7 @@ def _finite(digits: str) -> float:
     return number
 
 
-def _tree(data: Any, path: str) -> Tree:
+def _tree(data: Any, path: str, version: int) -> Tree:
     if not isinstance(data, dict):
         raise CertificateError(f"{path[:-1]}: must be a table")
     inside = path + "leaves."
@@ -212,8 +235,9 @@ def _tree(data: Any, path: str) -> Tree:
         name: _array(
             columns, name, inside, (count, _SHAPES[name]) if name in _SHAPES else (count,), name in _WHOLE
         )
-        for name in _COLUMNS
+        for name in _columns(version)
     }
+    arrays |= {name: np.zeros(count) for name in _LATER if name not in arrays}
     mixes = tuple(
         _mix(mix, f"{inside}mixes[{i}]") for i, mix in enumerate(_get(columns, "mixes", list, inside))
     )

@@ -3,29 +3,60 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import factorial
+from math import factorial, isqrt
+from typing import TypeAlias
 
-from nullpose.certificate.certificate import Certificate
 from nullpose.family import AxisField, Family
 
-__all__ = ["antenna_axis", "field_offset", "smallest_ratio"]
+__all__ = ["antenna_axis", "band_excess", "body_axes", "field_offset", "sine_cosine", "smallest_ratio"]
+
+Vector: TypeAlias = list[Fraction]
 
 _TERMS = 24  # of the series: for |x| <= 4 the rest is below 4^48/48! < 1e-32
 _BITS = 160
 
 
-def antenna_axis(certificate: Certificate) -> list[Fraction]:
-    """Return the antenna's axis from roll, pitch and yaw (paper eq. 1.1), right to thirty digits.
+def antenna_axis(attitude_rad: tuple[float, float, float], mount_rad: float = 0.0) -> Vector:
+    """Return the antenna's axis ``R (sin m, 0, cos m)``, right to thirty digits; m = 0 is paper eq. 1.1.
 
     Args:
-        certificate: its attitude, radians, each within four.
+        attitude_rad: roll, pitch and yaw, radians, each within four.
+        mount_rad: ``m``, the angle between the dipole and the body's vertical, likewise.
     """
-    (sr, cr), (sp, cp), (sy, cy) = (
-        sine_cosine(Fraction(angle))
-        for angle in (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
-    )
-    # the third column of Rz(yaw) Ry(pitch) Rx(roll)
-    return [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
+    sine, cosine = sine_cosine(Fraction(mount_rad))
+    forward, up = body_axes(attitude_rad)
+    return [x * sine + z * cosine for x, z in zip(forward, up, strict=True)]
+
+
+def body_axes(attitude_rad: tuple[float, float, float]) -> tuple[Vector, Vector]:
+    """Return the body's x and z axes in the world: columns of ``Rz(yaw) Ry(pitch) Rx(roll)``.
+
+    Args:
+        attitude_rad: roll, pitch and yaw, radians, each within four.
+    """
+    (sr, cr), (sp, cp), (sy, cy) = (sine_cosine(Fraction(angle)) for angle in attitude_rad)
+    return [cy * cp, sy * cp, -sp], [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
+
+
+def band_excess(band: tuple[float, float], axis: Vector) -> Fraction:
+    """Return the sine of the angle by which an axis misses a band, at most zero within it.
+
+    Right to thirty digits.
+
+    Args:
+        band: least and greatest ``u_z^2`` of a unit axis.
+        axis: of any length but zero.
+    """
+    upright2 = Fraction(axis[2] ** 2) / sum(x * x for x in axis)
+    cosine, sine = square_root(upright2), square_root(1 - upright2)
+    most, least = ((square_root(Fraction(end)), square_root(1 - Fraction(end))) for end in (band[1], band[0]))
+    # angles from the vertical: nearer than the upper end allows, or farther than the lower one
+    return max(cosine * most[1] - sine * most[0], sine * least[0] - cosine * least[1])
+
+
+def square_root(x: Fraction) -> Fraction:
+    """Return the square root of a number from zero to one, to more than thirty digits."""
+    return Fraction(isqrt(x.numerator * 4**_BITS // x.denominator), 2**_BITS)
 
 
 def sine_cosine(x: Fraction) -> tuple[Fraction, Fraction]:
@@ -40,7 +71,7 @@ def rounded(x: Fraction) -> Fraction:
     return Fraction(round(x * 2**_BITS), 2**_BITS)
 
 
-def link(point: list[Fraction], position: list[Fraction], axis: list[Fraction]) -> Fraction:
+def link(point: Vector, position: Vector, axis: Vector) -> Fraction:
     """Return ``sin^2(gamma) / |r|^2`` of a link (paper eqs. 1.2 to 1.4), exactly."""
     r = [q - p for q, p in zip(point, position, strict=True)]
     cross = [r[(i + 1) % 3] * axis[(i + 2) % 3] - r[(i + 2) % 3] * axis[(i + 1) % 3] for i in range(3)]
@@ -48,8 +79,8 @@ def link(point: list[Fraction], position: list[Fraction], axis: list[Fraction]) 
     return Fraction(sum(x * x for x in cross)) / (u2 * r2 * r2)
 
 
-def smallest_ratio(family: Family, position: list[Fraction], axis: list[Fraction]) -> Fraction:
-    """Return the smallest ratio at a pose (paper eq. 2.1), exactly for the numbers given.
+def smallest_ratio(family: Family, position: Vector, axis: Vector) -> Fraction:
+    """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
 
     Args:
         family: the ratios.
@@ -76,7 +107,7 @@ def smallest_ratio(family: Family, position: list[Fraction], axis: list[Fraction
     return min(ratios)
 
 
-def field_offset(axis_field: AxisField, position: list[Fraction], axis: list[Fraction]) -> Fraction:
+def field_offset(axis_field: AxisField, position: Vector, axis: Vector) -> Fraction:
     """Return the squared sine of the angle between an axis and the one that a field has at a position.
 
     Where the field vanishes, in line with both nodes, every axis across that line is a limit of its own.

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
-from fractions import Fraction
 
 import numpy as np
 
 from nullpose.certificate.affine_test import affine_holds
+from nullpose.certificate.axis_cells import off_band_holds
 from nullpose.certificate.boxes import Boxes, boxes_of, parts
 from nullpose.certificate.certificate import (
     AFFINE,
     FAR,
     KEPT_OUT,
+    OFF_BAND,
     TOWARDS,
     WORLD,
     Certificate,
@@ -24,20 +23,15 @@ from nullpose.certificate.certificate import (
     Tree,
     claimed_axes,
 )
+from nullpose.certificate.claim import claim_fault, pose_fault
 from nullpose.certificate.coverage import uncovered
 from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
 from nullpose.certificate.free_test import free_holds
-from nullpose.certificate.pose_value import antenna_axis, field_offset, smallest_ratio
+from nullpose.certificate.sentence import sentence
 from nullpose.family import AxisField, Family, build_family
 
 __all__ = ["Verdict", "verify"]
 
-VALUE_RTOL = 1e-10
-"""The stated value may differ from the pose's by so much: it was rounded."""
-
-_EDGE_M = 1e-9  # a position on a face or a ball may be off by rounding
-_AXIS_RAD = 1e-6
-_MOST_RAD = 4.0
 _CHUNK = 4096
 _ROUNDS = 3  # boxes whose test fails by a hair are cut into eight, so many times
 
@@ -47,6 +41,7 @@ _NAMES = {
     AFFINE: "given axis",
     FAR: "distance",
     KEPT_OUT: "keep-out",
+    OFF_BAND: "axes out of reach",
 }
 
 
@@ -80,7 +75,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
     total = sum(len(tree.leaves) for tree in certificate.trees)
     family = build_family(certificate.scenario)
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
-    reason = _claim_fault(certificate, fields) or _pose_fault(certificate, family, fields or {})
+    reason = claim_fault(certificate, family, fields) or pose_fault(certificate, family, fields or {})
     done = 0
     for tree in certificate.trees:
         if reason:
@@ -91,72 +86,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
         done += len(tree.leaves)
     if reason:
         return Verdict(proved=False, message=f"rejected: {reason}", leaves=done)
-    return Verdict(proved=True, message=_sentence(certificate, total), leaves=total)
-
-
-def _sentence(certificate: Certificate, leaves: int) -> str:
-    axes = {
-        "optimum": "no antenna axis",
-        "vertical": "a vertical antenna",
-        "zero-interference": "an antenna whose null is on a jammer",
-        "maximum-gain": "an antenna broadside to both nodes",
-    }[certificate.scheme]
-    if certificate.null_jammer is not None:
-        axes = f"an antenna whose null is on jammer {certificate.null_jammer}"
-    who = f"with {axes}" if axes.startswith("a") else f"and {axes}"
-    bound, value = certificate.upper_bound, certificate.value
-    most, least = _rounded(bound, ROUND_CEILING), _rounded(value * (1.0 - VALUE_RTOL), ROUND_FLOOR)
-    most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
-    least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
-    return (
-        f"proved: in this scenario no position {who} gives every node an SINR above {most} ({most_db} dB), "
-        f"and the stated pose gives every node {least} ({least_db} dB) or more, which is within "
-        f"{bound / value - 1.0:.2e} of it; {leaves} leaves checked"
-    )
-
-
-def _rounded(number: float, direction: str, digits: int = 9) -> str:
-    """Return a number with so many decimals that claims no more than it does; in full if it is small."""
-    if 0.0 < number < 1e-3:
-        return repr(number)
-    return str(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction))
-
-
-def _claim_fault(certificate: Certificate, fields: dict[str, AxisField] | None) -> str:
-    if fields is None:
-        with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
-        return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
-    named = [tree.axis for tree in certificate.trees]
-    if sorted(named) != sorted(fields):
-        return f"the scheme needs a tree for each of {sorted(fields)}; there are {sorted(named)}"
-    if not (certificate.value > 0.0 and math.isfinite(certificate.upper_bound)):
-        return "value and bound must be positive and finite"
-    if certificate.upper_bound < certificate.value:
-        return "the bound is below the value"
-    return ""
-
-
-def _pose_fault(certificate: Certificate, family: Family, fields: dict[str, AxisField]) -> str:
-    angles = (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
-    if any(abs(angle) > _MOST_RAD for angle in angles):
-        return f"pose: an angle beyond {_MOST_RAD:g} rad"
-    p = [Fraction(float(x)) for x in certificate.position_m]
-    for i, name in enumerate("xyz"):
-        if not family.low_m[i] <= certificate.position_m[i] <= family.high_m[i]:
-            return f"pose: {name} = {float(certificate.position_m[i])!r} m is outside the airspace"
-    least = Fraction(family.keep_out_m) - Fraction(_EDGE_M)
-    for point in family.points_m:
-        away2 = sum(((Fraction(float(q)) - x) ** 2 for q, x in zip(point, p, strict=True)), Fraction(0))
-        if least > 0 and away2 < least * least:
-            return f"pose: closer than keep_out_m to the ground point {point.tolist()}"
-    axis = antenna_axis(certificate)
-    affine = [field for field in fields.values() if not field.is_free]
-    if affine and not any(field_offset(field, p, axis) <= Fraction(_AXIS_RAD) ** 2 for field in affine):
-        return "pose: the antenna's axis is not one that the scheme allows"
-    value = smallest_ratio(family, p, axis)
-    if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
-        return f"pose: its smallest SINR is {float(value):.15g}, not {certificate.value:.15g}"
-    return ""
+    return Verdict(proved=True, message=sentence(certificate, total), leaves=total)
 
 
 def _tree_fault(
@@ -213,6 +143,7 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its multipliers do not exist": needs_mix & ((leaves.mix < 0) | (leaves.mix >= len(leaves.mixes))),
         "its keep-out ball does not exist": leaves.ball >= balls,
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
+        "the band's multiplier is not a number": ~np.isfinite(leaves.band),
         "its cell does not exist": (leaves.cell[:, 0] < -1) | (leaves.cell[:, 0] > 2),
     }
     depth = np.concatenate([leaves.box[:, 0::2], leaves.cell[:, 1::2]], axis=1)
@@ -244,14 +175,15 @@ def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
 def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     test = leaves.test[boxes.leaf]
     holds = np.zeros(len(boxes), dtype=bool)
-    for mask, check in (
-        (test == FAR, far_holds),
-        (test == KEPT_OUT, kept_out_holds),
-        ((test == WORLD) | (test == TOWARDS), free_holds),
-    ):
+    checks: tuple[tuple[tuple[int, ...], Callable[[Boxes], np.ndarray]], ...] = (
+        ((FAR,), lambda some: far_holds(family, leaves, some)),
+        ((KEPT_OUT,), lambda some: kept_out_holds(family, leaves, some)),
+        ((OFF_BAND,), lambda some: off_band_holds(field, leaves, some)),
+        ((WORLD, TOWARDS), lambda some: free_holds(family, field, leaves, some)),
+        ((AFFINE,), lambda some: affine_holds(family, field, leaves, some)),
+    )
+    for tests, check in checks:
+        mask = np.isin(test, tests)
         if np.any(mask):
-            holds[mask] = check(family, leaves, boxes.chosen(mask))
-    mask = test == AFFINE
-    if np.any(mask):
-        holds[mask] = affine_holds(family, field, leaves, boxes.chosen(mask))
+            holds[mask] = check(boxes.chosen(mask))
     return holds

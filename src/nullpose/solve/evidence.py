@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes
-from nullpose.certificate.certificate import AFFINE, TOWARDS, WORLD
+from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
 from nullpose.errors import UsageError
 from nullpose.solve.proof import Proof
 from nullpose.solve.solution import Solution
@@ -74,8 +74,9 @@ def leaves_of(proof: Proof) -> Leaves:
             table[key] = len(mixes)
             mixes.append({int(k): float(w) for k, w in zip(ratios[i, :used], weights[i, :used], strict=True)})
         mix[i] = table[key]
-    point = np.where(np.isin(test, (WORLD, AFFINE)), -1, rows[:, node.ANCHOR])
+    point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
+    is_free = np.isin(test, (WORLD, TOWARDS))
     return Leaves(
         box=np.stack([depth[:, 0], index[:, 0], depth[:, 1], index[:, 1], depth[:, 2], index[:, 2]], axis=1),
         cell=_cells(rows, node.FACE, node.CELL),
@@ -85,6 +86,7 @@ def leaves_of(proof: Proof) -> Leaves:
         mix=mix,
         mixes=tuple(mixes),
         sides=np.where(rows[:, [node.FACE]] >= 0.0, rows[:, node.SIDE : node.SIDE + 2], 0.0),
+        band=np.where(is_free, rows[:, node.BAND], 0.0),
         ball=np.where(uses_ball, rows[:, node.BALL], -1).astype(np.int64),
         ball_multiplier=np.where(uses_ball, rows[:, node.NU], 0.0),
     )

@@ -1,0 +1,124 @@
+"""Whether a certificate's claim is one that its scenario admits, and its pose one that gives the value."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+
+from nullpose.certificate.certificate import Certificate
+from nullpose.certificate.pose_value import (
+    antenna_axis,
+    band_excess,
+    body_axes,
+    field_offset,
+    sine_cosine,
+    smallest_ratio,
+)
+from nullpose.family import AxisField, Family
+from nullpose.scenario import Airframe
+
+__all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]
+
+VALUE_RTOL = 1e-10
+"""The stated value may differ from the pose's by so much: it was rounded."""
+
+_EDGE_M = 1e-9  # a position on a face or a ball may be off by rounding
+_AXIS_RAD = 1e-6
+_BAND_RAD = 1e-7  # the ends of a band are squares: their angle is known no better where it is small
+_TILT_RAD = 1e-9
+_MOST_RAD = 4.0
+
+
+def claim_fault(certificate: Certificate, family: Family, fields: dict[str, AxisField] | None) -> str:
+    """Return why a certificate states nothing that can be proved, or an empty string.
+
+    Args:
+        certificate: what it states.
+        family: its scenario's ratios.
+        fields: the axis fields that its scheme needs a tree for, None if there are none.
+    """
+    if certificate.scenario.is_uncertain or len(family.turn):
+        return "the scenario has uncertain positions or pose errors, of which there are no certificates"
+    if fields is None:
+        with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
+        return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
+    named = [tree.axis for tree in certificate.trees]
+    if sorted(named) != sorted(fields):
+        return f"the scheme needs a tree for each of {sorted(fields)}; there are {sorted(named)}"
+    if not (certificate.value > 0.0 and math.isfinite(certificate.upper_bound)):
+        return "value and bound must be positive and finite"
+    if certificate.upper_bound < certificate.value:
+        return "the bound is below the value"
+    return ""
+
+
+def pose_fault(certificate: Certificate, family: Family, fields: dict[str, AxisField]) -> str:
+    """Return why a pose is not allowed or has another value than stated, or an empty string.
+
+    Args:
+        certificate: with pose and value.
+        family: its scenario's ratios.
+        fields: the axis fields of its scheme.
+    """
+    attitude_rad = (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
+    airframe = certificate.scenario.airframe
+    if any(not abs(angle) <= _MOST_RAD for angle in attitude_rad):
+        return f"pose: an angle beyond {_MOST_RAD:g} rad"
+    position = [Fraction(float(x)) for x in certificate.position_m]
+    axis = antenna_axis(attitude_rad, 0.0 if airframe is None else airframe.mount_rad)
+    fault = _place_fault(certificate, family, position) or _axis_fault(fields, position, axis)
+    if not fault and airframe is not None:
+        fault = _tilt_fault(airframe, attitude_rad)
+    if fault:
+        return f"pose: {fault}"
+    value = smallest_ratio(family, position, axis)
+    if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
+        what = _quantity(certificate)
+        return f"pose: its smallest {what} is {float(value):.15g}, not {certificate.value:.15g}"
+    return ""
+
+
+def _quantity(certificate: Certificate) -> str:
+    if certificate.scenario.objective == "secrecy-rate":
+        return "ratio"
+    return "margin" if certificate.scenario.has_margins else "SINR"
+
+
+def _place_fault(certificate: Certificate, family: Family, position: list[Fraction]) -> str:
+    scenario = certificate.scenario
+    for i, name in enumerate("xyz"):
+        if not family.low_m[i] <= certificate.position_m[i] <= family.high_m[i]:
+            return f"{name} = {float(certificate.position_m[i])!r} m is outside the airspace"
+    if not scenario.airspace.allows(certificate.position_m):
+        return "outside the geofence or in a no-fly zone"
+    least = Fraction(family.keep_out_m) - Fraction(_EDGE_M)
+    points = np.vstack(
+        [scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m]
+    )
+    for point in points:
+        away2 = sum(
+            ((Fraction(float(q)) - x) ** 2 for q, x in zip(point, position, strict=True)), Fraction(0)
+        )
+        if least > 0 and away2 < least * least:
+            return f"closer than keep_out_m to the ground point {point.tolist()}"
+    return ""
+
+
+def _tilt_fault(airframe: Airframe, attitude_rad: tuple[float, float, float]) -> str:
+    _, least = sine_cosine(Fraction(airframe.tilt_max_rad) + Fraction(_TILT_RAD))
+    if airframe.tilt_max_rad < math.pi and body_axes(attitude_rad)[1][2] < least:
+        return f"the vehicle tilts by more than {math.degrees(airframe.tilt_max_rad):.10g} degrees"
+    return ""
+
+
+def _axis_fault(fields: dict[str, AxisField], position: list[Fraction], axis: list[Fraction]) -> str:
+    affine = [field for field in fields.values() if not field.is_free]
+    most2 = Fraction(_AXIS_RAD) ** 2
+    if affine and not any(field_offset(field, position, axis) <= most2 for field in affine):
+        return "the antenna's axis is not one that the scheme allows"
+    free = [field for field in fields.values() if field.is_free]
+    if free and all(band_excess(field.band, axis) > Fraction(_BAND_RAD) for field in free):
+        return "the antenna's axis is not one that the airframe reaches"
+    return ""

@@ -1,0 +1,91 @@
+"""What was proved, in the user's terms, every number rounded so that it claims no more than it may."""
+
+from __future__ import annotations
+
+import math
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+
+from nullpose.certificate.certificate import Certificate
+from nullpose.certificate.claim import VALUE_RTOL
+
+__all__ = ["sentence"]
+
+_AXES = {
+    "optimum": "and no antenna axis",
+    "vertical": "with a vertical antenna",
+    "zero-interference": "with an antenna whose null is on a jammer",
+    "maximum-gain": "with an antenna broadside to both nodes",
+}
+
+
+def sentence(certificate: Certificate, leaves: int) -> str:
+    """Return the claim of a certificate that was proved.
+
+    Args:
+        certificate: the claim.
+        leaves: how many were checked.
+    """
+    most, least, near = _numbers(certificate)
+    return (
+        f"proved: in this scenario no position{_places(certificate)} {_axes(certificate)} gives every node "
+        f"{_quantity(certificate)} above {most}, and the stated pose gives every node {least} or more, "
+        f"which is within {near} of it; {leaves} leaves checked"
+    )
+
+
+def _quantity(certificate: Certificate) -> str:
+    if certificate.scenario.objective == "secrecy-rate":
+        return "a secrecy rate"
+    return "a margin" if certificate.scenario.has_margins else "an SINR"
+
+
+def _places(certificate: Certificate) -> str:
+    airspace = certificate.scenario.airspace
+    words = ["inside the geofence"] if airspace.geofence_m is not None else []
+    zones = len(airspace.no_fly)
+    if zones:
+        words.append("outside the no-fly zone" if zones == 1 else f"outside the {zones} no-fly zones")
+    return f" {' and '.join(words)}" if words else ""
+
+
+def _axes(certificate: Certificate) -> str:
+    airframe = certificate.scenario.airframe
+    if certificate.null_jammer is not None:
+        return f"with an antenna whose null is on jammer {certificate.null_jammer}"
+    if certificate.scheme != "optimum" or airframe is None or airframe.is_omnidirectional:
+        return _AXES[certificate.scheme]
+    tilt, mount = math.degrees(airframe.tilt_max_rad), airframe.mount_deg
+    return (
+        f"and no antenna axis within the airframe's reach (tilt at most {tilt:.10g} degrees, dipole mounted "
+        f"at {mount:.10g} degrees)"
+    )
+
+
+def _numbers(certificate: Certificate) -> tuple[str, str, str]:
+    """Return bound, value and how near they are, in words."""
+    bound, value = certificate.upper_bound, certificate.value
+    if certificate.scenario.objective == "secrecy-rate":
+        most, least = (
+            max(0.0, math.log2(bound) + 1e-12),
+            max(0.0, math.log2(value * (1.0 - VALUE_RTOL)) - 1e-12),
+        )
+        unit = "bits/s/Hz"
+        return (
+            f"{_rounded(most, ROUND_CEILING)} {unit}",
+            f"{_rounded(least, ROUND_FLOOR)} {unit}",
+            f"{most - least:.2e} {unit}",
+        )
+    most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
+    least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
+    return (
+        f"{_rounded(bound, ROUND_CEILING)} ({most_db} dB)",
+        f"{_rounded(value * (1.0 - VALUE_RTOL), ROUND_FLOOR)} ({least_db} dB)",
+        f"{bound / value - 1.0:.2e}",
+    )
+
+
+def _rounded(number: float, direction: str, digits: int = 9) -> str:
+    """Return a number with so many decimals that claims no more than it does; in full if it is small."""
+    if 0.0 < number < 1e-3:
+        return repr(number)
+    return str(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction))

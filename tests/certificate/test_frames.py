@@ -1,0 +1,118 @@
+"""Frames: the expansions enclose the forms they stand for, in a frame at rest or one that turns."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.certificate import TOWARDS, WORLD
+from nullpose.certificate.frames import Frames, expansion, frames_of, projector, turning_rate
+from nullpose.certificate.interval import Interval
+from nullpose.family import Family
+
+seeds = st.integers(0, 2**32 - 1)
+
+SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def full(six: list[Interval], b: int = 0) -> np.ndarray:
+    """Return the middle of a form of six intervals as a matrix."""
+    matrix = np.empty((3, 3))
+    for x, (i, j) in zip(six, SIX, strict=True):
+        matrix[i, j] = matrix[j, i] = x.middle()[b]
+    return matrix
+
+
+def one_box(rng: np.random.Generator) -> Boxes:
+    """Return a box above the field."""
+    return Boxes(
+        leaf=np.zeros(1, dtype=np.int64),
+        centre=rng.uniform([-30.0, -30.0, 9.0], [80.0, 80.0, 30.0], (1, 3)),
+        half=rng.uniform(0.05, 1.5, (1, 3)),
+    )
+
+
+def carried(family: Family, frames: Frames, centre: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Return the rotation that carries the world frame at the centre along a straight line to p.
+
+    The direction to a point turns in one plane along the line: the least rotation between its ends is it.
+    """
+    if not frames.turning[0]:
+        return np.eye(3)
+    anchor = family.points_m[frames.anchor[0]]
+    d, e = anchor - centre, anchor - p
+    d, e = d / np.linalg.norm(d), e / np.linalg.norm(e)
+    axis = np.cross(d, e)
+    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.eye(3) + cross + cross @ cross / (1.0 + d @ e)
+
+
+def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator, make: Callable) -> Frames:
+    """Return the frames of one box, standing still or turning towards some point."""
+    point = np.array([int(rng.integers(len(family.points_m)))])
+    leaves = make(
+        1, test=np.array([TOWARDS if turning else WORLD]), point=point if turning else point * 0 - 1
+    )
+    return frames_of(family, leaves, boxes)
+
+
+@pytest.mark.parametrize("turning", [False, True])
+@settings(max_examples=50)
+@given(seed=seeds)
+def test_expansions_enclose_the_forms(
+    turning: bool, seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable
+) -> None:
+    """Value, slopes and remainder enclose the turned form of every point all over the box."""
+    rng = np.random.default_rng(seed)
+    family, boxes = random_family(rng, 3, 2), one_box(rng)
+    frames = framed(family, boxes, turning, rng, make_leaves)
+    basis, gram = frames.basis[0], full(frames.gram)
+    for x in rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]:
+        p = boxes.centre[0] + x
+        rotation = carried(family, frames, boxes.centre[0], p)
+        for j in range(len(family.points_m)):
+            form, slopes, up, down = expansion(family, frames, boxes, np.array([j]))
+            turned = basis.T @ rotation.T @ link_matrix(family.points_m[j] - p) @ rotation @ basis
+            error = turned - full(form) - sum(h * full(s) for h, s in zip(x, slopes, strict=True))
+            around = full(projector(frames)) if turning and j == frames.anchor[0] else gram
+            reach = 0.5 * float(x @ x)
+            slack = 1e-12 * np.abs(turned).max()
+            assert np.linalg.eigvalsh(error - up.high[0] * reach * around)[-1] <= slack
+            assert np.linalg.eigvalsh(error + down.high[0] * reach * around)[0] >= -slack
+
+
+@given(seed=seeds)
+def test_the_form_at_the_centre_is_exact(
+    seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable
+) -> None:
+    """Intervals of the value are narrow and hold the form in the basis; an anchor has its null there."""
+    rng = np.random.default_rng(seed)
+    family, boxes = random_family(rng, 2, 2), one_box(rng)
+    frames = framed(family, boxes, True, rng, make_leaves)
+    basis = frames.basis[0]
+    assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
+    for j in range(4):
+        form, _, _, _ = expansion(family, frames, boxes, np.array([j]))
+        exact = basis.T @ link_matrix(family.points_m[j] - boxes.centre[0]) @ basis
+        for x, (i, k) in zip(form, SIX, strict=True):
+            slack = 1e-14 * np.abs(exact).max()
+            assert x.low[0] - slack <= exact[i, k] <= x.high[0] + slack
+            assert x.high[0] - x.low[0] <= 1e-12 * np.abs(exact).max()
+
+
+@given(seed=seeds)
+def test_turning_rates_are_derivatives(seed: int, random_family: Callable, make_leaves: Callable) -> None:
+    """The rate of a turned constant form agrees with differences of the frame that is carried along."""
+    rng = np.random.default_rng(seed)
+    family, boxes = random_family(rng, 2, 2), one_box(rng)
+    frames = framed(family, boxes, True, rng, make_leaves)
+    q = rng.normal(size=(3, 3))
+    q = q + q.T
+    centre, step = boxes.centre[0], 1e-4
+    for e in range(3):
+        ends = [carried(family, frames, centre, centre + s * step * np.eye(3)[e]) for s in (-1.0, 1.0)]
+        change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)
+        assert turning_rate(frames, Interval(q[None]), e).middle()[0] == pytest.approx(change, abs=1e-7)

@@ -1,0 +1,192 @@
+"""Limited airframes: their certificates are accepted, but not with poses that the vehicle cannot take."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import Certificate, certificate_text, parse_certificate, verify
+from nullpose.certificate.certificate import OFF_BAND, TOWARDS
+from nullpose.scenario import Airframe, Scenario
+
+AIRFRAMES = {
+    "upright": {"preset": "level"},
+    "flat": {"preset": "level", "mount_deg": 90.0},
+    "cone": {"preset": "level", "mount_deg": 45.0},
+    "hexarotor": {"preset": "fixed-tilt-hexarotor"},
+    "low": {"tilt_max_deg": 10.0, "mount_deg": 90.0},
+    "belt": {"tilt_max_deg": 20.0, "mount_deg": 45.0},
+    "any": {"tilt_max_deg": 45.0, "mount_deg": 45.0},
+}
+
+
+def with_airframe(scenario: Scenario, **values: object) -> Scenario:
+    """Return a scenario with an airframe."""
+    return scenario.model_copy(update={"airframe": Airframe(**values)})
+
+
+@pytest.fixture(scope="module")
+def flown(paper: Callable, put_together: Callable) -> Callable[[str], Certificate]:
+    """Returns a function: the certificate of the paper's scene with an airframe, strongly jammed."""
+    made: dict[str, Certificate] = {}
+
+    def certificate(name: str) -> Certificate:
+        if name not in made:
+            made[name] = put_together(with_airframe(paper(10.0), **AIRFRAMES[name]))
+        return made[name]
+
+    return certificate
+
+
+def rejected(certificate: Certificate) -> str:
+    """Return the words with which a certificate is rejected."""
+    verdict = verify(certificate)
+    assert not verdict.proved
+    return verdict.message
+
+
+@pytest.mark.parametrize("name", AIRFRAMES)
+def test_airframes_are_proved(name: str, flown: Callable) -> None:
+    """Every kind of band: upright, level, a cone, and open on one side, both or none."""
+    certificate = flown(name)
+    tree = certificate.trees[0]
+    assert tree.axis == {"upright": "vertical", "any": "free"}.get(name, "band")
+    assert certificate.upper_bound <= certificate.value * 1.0011
+    verdict = verify(certificate)
+    assert verdict.proved, verdict.message
+    has_multipliers = bool(np.any(tree.leaves.band != 0.0))
+    assert has_multipliers == (name not in ("upright", "flat", "any"))
+    words = (
+        "no antenna axis gives" if name == "any" else "no antenna axis within the airframe's reach (tilt at"
+    )
+    assert words in verdict.message
+
+
+def test_the_words_have_tilt_and_mount(flown: Callable) -> None:
+    """What the airframe reaches is said in degrees."""
+    words = "tilt at most 10 degrees, dipole mounted at 90 degrees"
+    assert words in verify(flown("low")).message
+
+
+def test_bands_are_nested(flown: Callable) -> None:
+    """A wider band never gives less, and a narrower band's bound is below what the wider one reaches."""
+    narrow, wide, widest = flown("flat"), flown("low"), flown("any")
+    assert narrow.value <= wide.upper_bound
+    assert wide.value <= widest.upper_bound
+    assert narrow.upper_bound < wide.value
+
+
+def test_proofs_of_wider_bands_are_proofs_of_narrower_ones(flown: Callable) -> None:
+    """Any axis is more than a band's: the free proof holds, and so does the band's pose, with its gap."""
+    flat, free = flown("flat"), flown("any")
+    loose = replace(
+        flat,
+        upper_bound=free.upper_bound,
+        trees=(replace(free.trees[0], axis="band"),),
+    )
+    assert verify(loose).proved
+    strict = replace(free, scenario=flat.scenario, trees=(replace(free.trees[0], axis="band"),))
+    assert "pose: " in rejected(strict)
+
+
+@pytest.mark.parametrize("name", ["hexarotor", "low", "belt", "cone"])
+def test_multipliers_of_the_band_are_needed(name: str, flown: Callable) -> None:
+    """Without them, or with the other sign, the same leaves fail."""
+    certificate = flown(name)
+    tree = certificate.trees[0]
+    for factor in (0.0, -1.0, 100.0):
+        leaves = replace(tree.leaves, band=factor * tree.leaves.band)
+        assert "is not excluded" in rejected(replace(certificate, trees=(replace(tree, leaves=leaves),)))
+
+
+def test_level_axes_are_proved_in_cells(random_scene: Callable, put_together: Callable) -> None:
+    """With many nodes level axes are cut into cells, and those on top of the cube are out of reach."""
+    scenario = with_airframe(random_scene(51, 5, 1), preset="level", mount_deg=90.0)
+    certificate = put_together(scenario, gap=1e-2)
+    leaves = certificate.trees[0].leaves
+    assert verify(certificate).proved
+    assert np.any(leaves.test == OFF_BAND)
+    inside = (leaves.cell[:, 0] >= 0) & (leaves.test != OFF_BAND)
+    assert np.any(inside)
+    assert not np.any(leaves.test == TOWARDS)
+    row = int(np.flatnonzero(leaves.test == OFF_BAND)[0])
+    for face in (-1, 0, 1):
+        cell = leaves.cell.copy()
+        cell[row] = [face, 0, 0, 0, 0]
+        changed = replace(leaves, cell=cell)
+        trees = (replace(certificate.trees[0], leaves=changed),)
+        assert not verify(replace(certificate, trees=trees)).proved
+
+
+def test_cells_are_proved_within_bands(random_scene: Callable, put_together: Callable) -> None:
+    """With many nodes bands are cut into cells, which need their multipliers."""
+    scenario = with_airframe(random_scene(51, 5, 1), tilt_max_deg=20.0, mount_deg=90.0)
+    certificate = put_together(scenario, gap=1e-2)
+    leaves = certificate.trees[0].leaves
+    assert verify(certificate).proved
+    celled = leaves.cell[:, 0] >= 0
+    assert np.any(celled & (leaves.band != 0.0))
+    assert np.any(leaves.test == OFF_BAND)
+
+
+def test_poses_that_the_vehicle_cannot_take_are_rejected(flown: Callable) -> None:
+    """Tilted too far, or with an axis beyond its reach; and another attitude has another value."""
+    for name in ("flat", "low", "hexarotor", "cone"):
+        certificate = flown(name)
+        tilt_rad = certificate.scenario.airframe.tilt_max_rad
+        words = rejected(replace(certificate, pitch_rad=tilt_rad + 1e-6))
+        assert "tilts by more than" in words or "not one that the airframe reaches" in words
+        # the dipole has no front or back: upside down it is the same axis, and no airframe here flies so
+        upside_down = replace(certificate, pitch_rad=certificate.pitch_rad + np.pi)
+        assert "tilts by more than" in rejected(upside_down)
+
+
+def test_attitudes_at_the_limit_are_accepted(flown: Callable) -> None:
+    """A pose whose tilt is the largest allowed, or more by rounding, is one."""
+    certificate = flown("hexarotor")
+    assert certificate.pitch_rad == pytest.approx(np.radians(30.0), abs=1e-12)
+    assert verify(replace(certificate, pitch_rad=certificate.pitch_rad + 1e-13)).proved
+
+
+def test_another_airframe_is_another_claim(flown: Callable) -> None:
+    """A proof for one airframe is none for another, with the pose's value made to fit."""
+    low = flown("low")
+    for name in ("cone", "upright", "any", "hexarotor", "flat"):
+        scenario = flown(name).scenario
+        assert rejected(replace(low, scenario=scenario))
+    wider = with_airframe(low.scenario, tilt_max_deg=20.0, mount_deg=90.0)
+    assert "is not excluded" in rejected(replace(low, scenario=wider))
+
+
+def test_other_schemes_keep_to_the_tilt(paper: Callable, put_together: Callable) -> None:
+    """A vertical antenna is proved for any airframe; the stated pose must be one that the vehicle takes."""
+    upright = put_together(with_airframe(paper(1.0), preset="level"), "vertical")
+    assert "with a vertical antenna" in verify(upright).message
+    flat = with_airframe(paper(1.0), preset="level", mount_deg=90.0)
+    assert "tilts by more than 0 degrees" in rejected(put_together(flat, "vertical"))
+
+
+def test_files_of_airframes_are_of_version_two(flown: Callable, paper: Callable, certified: Callable) -> None:
+    """The band's column comes with the second version; what has no new part is written as before."""
+    certificate = flown("belt")
+    text = certificate_text(certificate)
+    assert '"version": 2' in text
+    assert '"band":' in text
+    again = parse_certificate(text)
+    assert certificate_text(again) == text
+    assert verify(again).message == verify(certificate).message
+    old = certificate_text(certified(paper(), gap=0.1))
+    assert '"version": 1' in old
+    assert '"band":' not in old
+    assert not np.any(parse_certificate(old).trees[0].leaves.band)
+
+
+def test_uncertain_scenarios_have_no_certificate(
+    flown: Callable, certified: Callable, paper: Callable
+) -> None:
+    """A proof about the stated positions is none about all those that are possible."""
+    certificate = certified(paper(), gap=0.1)
+    receiver = certificate.scenario.receiver.model_copy(update={"position_error_m": 0.5})
+    scenario = certificate.scenario.model_copy(update={"receiver": receiver})
+    assert "uncertain" in rejected(replace(certificate, scenario=scenario))
