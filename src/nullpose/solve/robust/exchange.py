@@ -23,11 +23,15 @@ __all__ = ["Exchange", "Visited"]
 
 FloatArray = NDArray[np.float64]
 
-_SEARCH = SearchSettings(coarse=16, polished=2, rounds=2, patience=1)
+_LIGHT = SearchSettings(coarse=16, polished=2, rounds=2, patience=1)
+_THOROUGH = SearchSettings()
+_CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
 _SAME = 1e-9
-_LEAST_GAP = 1e-6
+_FINER = 0.1  # accuracy of guarantees, as a share of the gap
+_ACCURACIES = 1e-6, 3e-3
+_LEAST_GAP, _WIDEST_GAP = 1e-8, 10.0  # of a proof
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,6 +84,12 @@ class Exchange:
         self.cases += new
         return bool(new)
 
+    def accuracy(self) -> float:
+        """Return how close the guarantee of the best pose has to be to its worst case."""
+        assert self.best is not None
+        finest, coarsest = _ACCURACIES
+        return min(coarsest, max(finest, _FINER * self.limits.ratio_gap(self.best.worst)))
+
     def level(self, ratio: float, share: float = 1.0) -> float:
         """Return the ratio that is a share of the gap above one, which counts as 1 for a rate of zero.
 
@@ -114,22 +124,46 @@ class Exchange:
     def search(self, deadline: float) -> None:
         """Add cases until the finite family promises little more than the best pose guarantees.
 
+        A light search leads the way; its end is confirmed by a thorough one.
+
         Args:
             deadline: when to stop in any case, on the clock of ``time.perf_counter``.
         """
+        settings = _LIGHT
         for _ in range(_MOST_ROUNDS):
-            self.rounds += 1
-            with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
-                found = multistart(self.family, self.axis_field, seed=self.seed, settings=_SEARCH)
-            self.starts += found.starts
-            self.evaluations += found.evaluations
+            found = self._search_once(settings)
             self.found, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             assert self.best is not None
             close = promised <= self.level(self.best.worst, _SHARE)
-            # the family stays the one that was searched
-            if close or time.perf_counter() > deadline or not self.add(new):
+            if time.perf_counter() > deadline or (close and settings is _THOROUGH):
+                return  # the family stays the one that was searched
+            if close:
+                settings = _THOROUGH
+            elif not self.add(new):
                 return
+
+    def _search_once(self, settings: SearchSettings) -> Found:
+        """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
+        from nullpose.solve.kernels.polish import polish
+
+        family, field = self.family, self.axis_field
+        self.rounds += 1
+        with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
+            found = multistart(family, field, seed=self.seed, settings=settings)
+        if self.best is not None:
+            p, u = self.best.position_m.copy(), self.best.axis.copy()
+            multipliers = np.empty(len(family.numerator_point))
+            value, steps = polish(
+                family.arrays, family.domain, field.arrays, p, u, _CLIMB, _CLIMB_STEPS, multipliers
+            )
+            self.starts += 1
+            self.evaluations += int(steps)
+            if value > found.log_value:
+                found = replace(found, position_m=p, axis=u, log_value=float(value), multipliers=multipliers)
+        self.starts += found.starts
+        self.evaluations += found.evaluations
+        return found
 
     def prove(self, level: float, began: float, on_progress: Callable[[float, int], None] | None) -> bool:
         """Bound the finite family by a level; return whether to search on, since a better pose turned up.
@@ -144,14 +178,17 @@ class Exchange:
         if self.limits.of_rate:  # a rate is never below zero
             start = replace(start, log_value=max(0.0, start.log_value))
         spent = Spent(seconds=time.perf_counter() - began, nodes=self.boxes)
-        gap = level / math.exp(start.log_value) - 1.0
-        target = replace(self.limits, of_rate=False, gap=gap if gap > _LEAST_GAP else self.limits.gap)
+        value = math.exp(start.log_value)
+        gap = level / value - 1.0
+        if not gap > _LEAST_GAP:  # the search was cut short
+            gap = self.limits.ratio_gap(value)
+        target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
         proof = prove(self.family, self.axis_field, start, target, on_progress=on_progress, spent=spent)
         self.boxes += proof.nodes
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
         self.reason = proof.reason
-        if proof.reason or not proof.found.log_value > start.log_value + _SAME:
+        if not proof.found.log_value > start.log_value + _SAME:
             return False
-        value = math.exp(proof.found.log_value)
-        return self.add(self.visit(proof.found.position_m, proof.found.axis, value))
+        new = self.visit(proof.found.position_m, proof.found.axis, math.exp(proof.found.log_value))
+        return self.add(new) and not proof.reason

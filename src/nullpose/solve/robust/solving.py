@@ -5,8 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-import numpy as np
-
 from nullpose.family import AxisField
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
@@ -25,9 +23,6 @@ __all__ = ["ROBUST_GAP", "solve_robust"]
 
 ROBUST_GAP = 1e-2
 """The relative gap asked for unless another is."""
-
-_ACCURACY = 0.1  # of a guarantee, as a share of the gap
-_FINEST, _COARSEST = 1e-5, 3e-3
 
 
 def solve_robust(
@@ -67,7 +62,6 @@ def solve_robust(
         of_rate=scenario.objective == "secrecy-rate",
     )
     inner = Inner(require_dipole(scenario))
-    accuracy = min(_COARSEST, max(_FINEST, _ACCURACY * gap))
     began = time.perf_counter()
     nominal = solve(scenario, certify=False, seed=seed).pose
     field = AxisField.within(*scenario.axis_band)
@@ -80,18 +74,18 @@ def solve_robust(
         again = True
         while again:
             exchange.search(clock + limits.time_limit_s)
-            level = exchange.level(_best(exchange, accuracy).guarantee.lower)
+            level = exchange.level(_best(exchange).guarantee.lower)
             again = certify and exchange.prove(level, clock, on_progress)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
-    robust = _best(exchange, accuracy)
+    robust = _best(exchange)
     upper_bound = None if exchange.upper_bound is None else worth(scenario, exchange.upper_bound)
     status, reason = _status(exchange, robust.guarantee.lower)
     return RobustSolution(
         scenario=scenario,
         status=status,
         robust=robust,
-        nominal=_guarded(inner, nominal, accuracy),
+        nominal=_guarded(exchange, nominal),
         upper_bound=upper_bound,
         reason=reason,
         cases=len(exchange.cases),
@@ -105,15 +99,15 @@ def solve_robust(
     )
 
 
-def _best(exchange: Exchange, accuracy: float) -> GuardedPose:
+def _best(exchange: Exchange) -> GuardedPose:
     assert exchange.best is not None, "the nominal pose was visited"
     pose = Pose.of_airframe(exchange.inner.scenario, exchange.best.position_m, exchange.best.axis)
-    return _guarded(exchange.inner, pose, accuracy)
+    return _guarded(exchange, pose)
 
 
-def _guarded(inner: Inner, pose: Pose, accuracy: float) -> GuardedPose:
-    proved = guarantee_of(inner, pose.position_m, np.array(pose.antenna_axis), accuracy)
-    return GuardedPose(scenario=inner.scenario, pose=pose, guarantee=proved)
+def _guarded(exchange: Exchange, pose: Pose) -> GuardedPose:
+    proved = guarantee_of(exchange.inner, pose.position_m, pose.antenna_axis, exchange.accuracy())
+    return GuardedPose(scenario=exchange.inner.scenario, pose=pose, guarantee=proved)
 
 
 def _status(exchange: Exchange, guaranteed: float) -> tuple[Status, str]:
