@@ -93,14 +93,15 @@ def fill_equations(f, grads, h, jacobian, active, count, multipliers, t, n, syst
 
 
 @inner_kernel
-def land(
-    family, domain, axis_field, chosen, p, u, z, zs, used, free, length, best, best_p, best_u, multipliers
-):
+def land(family, domain, axis_field, place, limits, best, best_pose, multipliers):
     """Return the best smallest log ratio after solving the equations of the active set.
 
     Unknowns: free search variables, level t, multipliers of the active ratios. Faces with a positive
     multiplier are met exactly. The multipliers, which sum to one, are filled in either case.
     """
+    p, u, z, zs, length = place
+    chosen, used, free = limits
+    best_p, best_u = best_pose
     ratios = family[1].shape[0]
     total = 0.0
     for k in range(ratios):

@@ -229,20 +229,20 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
     best_p, best_u = np.empty(3), np.empty(3)
-    best, value = begin(
-        family, domain, axis_field, p, u, (free, used, chosen, slacks, logs, f), best_p, best_u
-    )
+    work = (free, used, chosen, slacks, logs, f)
+    best, value = begin(family, domain, axis_field, p, u, work, best_p, best_u)
     for k in range(ratios):
         multipliers[k] = 1.0 / ratios
     if not value > -math.inf:
         copy_into(best_p, p)
         return best, 0
-    grads, hess, work = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((groups, 50))
+    grads, hess, parts = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((groups, 50))
     jacobian, h = np.empty((6, 5)), np.empty((5, 5))
     slopes, rows = np.empty((ratios, 6)), np.zeros((sides, 6))
     system, factor, step = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     gaps, new_gaps, every = np.empty(ratios), np.empty(ratios), np.empty(ratios, np.bool_)
     new_p, new_u, new_f, new_slacks = np.empty(3), np.empty(3), np.empty(ratios), np.empty(sides)
+    there = (new_p, new_u, new_f, new_slacks, logs)
     mu = mu_start
     t = best_level(f, mu)
     z, zs = np.empty(ratios), np.zeros(sides)
@@ -257,7 +257,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         steps += 1
         length = nearest_node(family, p)
         n = chart(axis_field[0], axis_field[2], turning(family, p, u), u, free, length, jacobian)
-        derivatives(family, p, u, z, f, grads, hess, work)
+        derivatives(family, p, u, z, f, grads, hess, parts)
         reduce_hessian(hess, jacobian, n, h)
         linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h)
         if stalled >= 2 or residual(f, t, slacks, used, z, zs, slopes, rows, n, mu) <= 10.0 * mu:
@@ -269,15 +269,9 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         dual_scale, largest = longest_scale(rows, slacks, used, step, n, 6 + domain[2].shape[0])
         if math.isnan(slope):
             break
-        scale, new_t = line_search(
-            family,
-            domain,
-            axis_field,
-            (p, u, f, t, slacks),
-            (new_p, new_u, new_f, new_slacks, logs),
-            (jacobian, slopes, rows, used, chosen, z, factor, n, mu),
-            (step, slope, dual_scale),
-        )
+        here, way = (p, u, f, t, slacks), (step, slope, dual_scale)
+        model = (jacobian, slopes, rows, used, chosen, z, factor, n, mu)
+        scale, new_t = line_search(family, domain, axis_field, here, there, model, way)
         if not scale > 0.0:
             stalled += 3
             continue
@@ -296,23 +290,8 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             best = smallest
             copy_into(p, best_p)
             copy_into(u, best_u)
-    best = land(
-        family,
-        domain,
-        axis_field,
-        chosen,
-        p,
-        u,
-        z,
-        zs,
-        used,
-        free,
-        length,
-        best,
-        best_p,
-        best_u,
-        multipliers,
-    )
+    place, limits = (p, u, z, zs, length), (chosen, used, free)
+    best = land(family, domain, axis_field, place, limits, best, (best_p, best_u), multipliers)
     copy_into(best_p, p)
     copy_into(best_u, u)
     return best, steps
