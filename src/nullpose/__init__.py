@@ -41,12 +41,13 @@ if TYPE_CHECKING:
         load,
     )
     from nullpose.solve import Scheme, Solution, Status, compare, solve
-    from nullpose.study import SweepTable, sweep
+    from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
 
     __version__: str
 
 __all__ = [
     "Airframe",
+    "AirframeComparison",
     "Airspace",
     "Array",
     "Eavesdropper",
@@ -72,6 +73,7 @@ __all__ = [
     "__version__",
     "apply_overrides",
     "compare",
+    "compare_airframes",
     "evaluate",
     "json_schema",
     "load",
@@ -118,7 +120,7 @@ _ROOMS = {
         "load",
     ),
     "nullpose.solve": ("Scheme", "Solution", "Status", "compare", "solve"),
-    "nullpose.study": ("SweepTable", "sweep"),
+    "nullpose.study": ("AirframeComparison", "SweepTable", "compare_airframes", "sweep"),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 

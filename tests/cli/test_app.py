@@ -16,8 +16,18 @@ Process = Callable[..., subprocess.CompletedProcess[str]]
 
 PROOF = {"--gap", "--time-limit", "--node-limit", "--fast"}
 VERBS = {
-    "solve": {"--scheme", "--set", "--seed", "--null-jammer", "--certificate", "--json"} | PROOF,
-    "compare": {"--set", "--seed", "--json"} | PROOF,
+    "solve": {
+        "--scheme",
+        "--set",
+        "--seed",
+        "--null-jammer",
+        "--certificate",
+        "--geojson",
+        "--figure",
+        "--json",
+    }
+    | PROOF,
+    "compare": {"--set", "--airframes", "--figure", "--seed", "--json"} | PROOF,
     "sweep": {
         "--set",
         "--from",

@@ -39,6 +39,7 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
         "objective",
         "pose",
         "links",
+        "binding_node",
         "stats",
         "provenance",
         "note",

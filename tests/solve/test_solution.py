@@ -31,6 +31,7 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
         "objective",
         "pose",
         "links",
+        "binding_node",
         "stats",
         "provenance",
         "note",

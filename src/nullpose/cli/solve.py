@@ -63,6 +63,15 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option(
+            "--figure",
+            metavar="FILE",
+            help="Draw the pose in its scene, fence and no-fly zones included, into a file named .png or .svg.",
+            show_default=False,
+        ),
+    ] = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Find the best pose for a scenario, and prove how far from the best of all it can be."""
@@ -81,6 +90,10 @@ def solve(
     if geojson is not None:
         require_origin(scenario)
         prepare_folder(geojson.parent)
+    if figure is not None:
+        from nullpose.report.figures.style import prepare_figure_file
+
+        prepare_figure_file(figure)
     target = default_gap_of(scenario) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(
@@ -98,6 +111,11 @@ def solve(
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:
         write_geojson(solution, geojson)
+    if figure is not None:
+        from nullpose.report.figures import draw_pose
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(draw_pose(solution), figure)
     if json_output:
         show_json(solution.to_dict())
     else:

@@ -10,7 +10,15 @@ from nullpose.report.comparison import Comparison
 from nullpose.report.geometry import null_angle_rad, tilt_rad
 from nullpose.report.quantity import Quantity, bound_text
 from nullpose.report.requirements import requirement_words
-from nullpose.report.tables import azimuth_text, binding_nodes, count_words, degrees_text, fixed, new_table
+from nullpose.report.tables import (
+    azimuth_text,
+    binding_nodes,
+    count_words,
+    degrees_text,
+    fixed,
+    new_table,
+    not_applicable_lines,
+)
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution, Status
 
@@ -41,23 +49,12 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     lines = [f"{solution.scheme.label}: {solution.note}" for solution in solutions if solution.note]
     requirements = [(solution.scheme.label, requirement_words(solution)) for solution in solutions]
     lines += [f"{label}: {words}" for label, words in requirements if words]
-    lines += _left_out(comparison)
+    lines += not_applicable_lines(comparison.left_out)
     lines += _certainty(solutions)
     lines.append(f"* binding: the {quantity.smallest} is at this node")
     if scenario.airframe is not None:
         lines.append("Other vehicles in this scene: nullpose compare FILE --airframes")
     return Group(Text(scenario.name or "scenario", style="bold"), table, Text("\n".join(lines)))
-
-
-def _left_out(comparison: Comparison) -> list[str]:
-    """Return why schemes are missing, those with one reason together."""
-    reasons: dict[str, list[str]] = {}
-    for scheme, reason in comparison.left_out:
-        reasons.setdefault(reason, []).append(scheme.label)
-    return [
-        f"{' and '.join(labels)} {'do' if len(labels) > 1 else 'does'} not apply: {reason}"
-        for reason, labels in reasons.items()
-    ]
 
 
 def _certainty(solutions: Sequence[Solution]) -> list[str]:

@@ -10,6 +10,7 @@ from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.quantity import Quantity, bound_text
+from nullpose.report.tables import not_applicable_lines
 from nullpose.solve import Scheme, Status
 from nullpose.study import SweepRow, SweepTable
 
@@ -61,7 +62,7 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
     for index in range(0, len(table.values), step):
         cells = [_cell(column[index]) for column in columns]
         view.add_row(f"{table.values[index]:.6g}", *cells)
-    lines = [f"{scheme} does not apply: {reason}" for scheme, reason in table.left_out.items()]
+    lines = not_applicable_lines((Scheme(scheme), reason) for scheme, reason in table.left_out.items())
     lines += [f"One row in {step} is shown."] if step > 1 else []
     lines += [f"{line}." for line in certainty_lines(table)]
     lines += _reasons(table)

@@ -12,7 +12,7 @@ from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.report.quantity import Quantity, bound_words, value_words
 from nullpose.report.requirements import requirement_words
-from nullpose.solve import Solution
+from nullpose.solve import Scheme, Solution
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -26,6 +26,7 @@ __all__ = [
     "degrees_text",
     "fixed",
     "new_table",
+    "not_applicable_lines",
     "solution_view",
     "status_words",
 ]
@@ -71,6 +72,21 @@ def count_words(number: int, noun: str, nouns: str = "") -> str:
         nouns: the word for several, if it is not formed with an s.
     """
     return f"{number} {noun if number == 1 else nouns or noun + 's'}"
+
+
+def not_applicable_lines(left_out: Iterable[tuple[Scheme, str]]) -> list[str]:
+    """Return why schemes are missing, a sentence for each reason.
+
+    Args:
+        left_out: the schemes, each with its reason.
+    """
+    reasons: dict[str, list[str]] = {}
+    for scheme, reason in left_out:
+        reasons.setdefault(reason, []).append(scheme.label)
+    return [
+        f"{' and '.join(labels)} {'do' if len(labels) > 1 else 'does'} not apply: {reason}"
+        for reason, labels in reasons.items()
+    ]
 
 
 def new_table(title: str, columns: Iterable[str], *, first: str = "") -> Table:

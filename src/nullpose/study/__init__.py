@@ -1,5 +1,12 @@
-"""Many solves: a setting varied over a range, and the table it fills."""
+"""Many solves: a setting varied over a range and the table it fills, and vehicles compared."""
 
+from nullpose.study.airframe_cases import AIRFRAME_CASES, AirframeCase, cases_of
+from nullpose.study.airframe_comparison import (
+    AirframeComparison,
+    AirframeResult,
+    Guaranteed,
+    compare_airframes,
+)
 from nullpose.study.files import prepare_folder, replacing, write_text
 from nullpose.study.plan import SweepPlan, plan_sweep
 from nullpose.study.spacing import spaced
@@ -7,9 +14,16 @@ from nullpose.study.sweep import sweep
 from nullpose.study.table import SweepRow, SweepTable
 
 __all__ = [
+    "AIRFRAME_CASES",
+    "AirframeCase",
+    "AirframeComparison",
+    "AirframeResult",
+    "Guaranteed",
     "SweepPlan",
     "SweepRow",
     "SweepTable",
+    "cases_of",
+    "compare_airframes",
     "plan_sweep",
     "prepare_folder",
     "replacing",

@@ -1,7 +1,8 @@
 """Pictures of what was found. Matplotlib is imported only when one is drawn."""
 
+from nullpose.report.figures.airframes import draw_airframes
 from nullpose.report.figures.figure2 import draw_figure2
-from nullpose.report.figures.poses import draw_poses
+from nullpose.report.figures.poses import draw_pose, draw_poses
 from nullpose.report.figures.sweep import draw_sweep
 
-__all__ = ["draw_figure2", "draw_poses", "draw_sweep"]
+__all__ = ["draw_airframes", "draw_figure2", "draw_pose", "draw_poses", "draw_sweep"]

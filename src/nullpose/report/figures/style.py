@@ -9,15 +9,27 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from nullpose.study import replacing
+from nullpose.errors import UsageError
+from nullpose.study import prepare_folder, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["CURVES", "GREY", "INK", "Curve", "house_style", "write_figure"]
+__all__ = [
+    "CURVES",
+    "GREY",
+    "INK",
+    "VEHICLES",
+    "Curve",
+    "house_style",
+    "prepare_figure_file",
+    "write_figure",
+    "write_figure_file",
+]
 
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
+_FORMATS = (".png", ".svg")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +64,19 @@ CURVES: Mapping[str, Curve] = MappingProxyType(
         ),
     }
 )
+
+VEHICLES: Mapping[str, Curve] = MappingProxyType(
+    {
+        "level-vertical": Curve("level, vertical", "#cc79a7", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.0),
+        "level-horizontal": Curve("level, horizontal", "#e69f00", (0, (6.0, 2.0)), "s", 1.5, 3.1),
+        "tilt-10": Curve("tilt 10, horizontal", "#009e73", (0, (3.0, 1.2)), "^", 1.6, 3.3),
+        "tilt-30": Curve("tilt 30, horizontal", "#56b4e9", "-", "v", 1.6, 3.2),
+        "omnidirectional": Curve("omnidirectional", "#0a3fd6", "-", "o", 2.4, 3.0),
+        "stated": Curve("the file's", "#d55e00", (0, (4.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "X", 1.6, 3.4),
+        "array": Curve("array", "#8c8c8c", (0, (1.2, 1.2)), "P", 1.5, 2.9),
+    }
+)
+"""How vehicles are drawn: Okabe and Ito's colours, told apart with any colour vision, lines and markers."""
 
 _RC: dict[Any, Any] = {
     "font.family": "sans-serif",
@@ -97,9 +122,36 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
         OutputError: a file cannot be written.
     """
     png, svg = folder / f"{stem}.png", folder / f"{stem}.svg"
-    with house_style():
-        with replacing(png) as temporary:
-            figure.savefig(temporary, format="png", dpi=200, facecolor="white")
-        with replacing(svg) as temporary:
-            figure.savefig(temporary, format="svg", facecolor="white", metadata={"Date": None})
-    return png, svg
+    return write_figure_file(figure, png), write_figure_file(figure, svg)
+
+
+def prepare_figure_file(path: Path) -> Path:
+    """Return the path of a figure to be written later, its folder made if need be.
+
+    Args:
+        path: ends in .png or .svg.
+
+    Raises:
+        UsageError: it ends otherwise.
+        OutputError: its folder cannot be made or written.
+    """
+    if path.suffix.lower() not in _FORMATS:
+        raise UsageError(f"figure: given {path}; allowed: a name that ends in {' or '.join(_FORMATS)}")
+    prepare_folder(path.parent)
+    return path
+
+
+def write_figure_file(figure: Figure, path: Path) -> Path:
+    """Return the path of a figure after writing it, as PNG or SVG by the path's suffix.
+
+    Args:
+        figure: what to write.
+        path: ends in .png or .svg; an existing file is replaced.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    options: dict[str, Any] = {"dpi": 200} if path.suffix.lower() == ".png" else {"metadata": {"Date": None}}
+    with house_style(), replacing(path) as temporary:
+        figure.savefig(temporary, format=path.suffix.lower()[1:], facecolor="white", **options)
+    return path

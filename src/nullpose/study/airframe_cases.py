@@ -1,0 +1,112 @@
+"""The vehicles that a comparison of airframes tries: by the tilt they take, then level ones with arrays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from nullpose.scenario import Airframe, Array, Scenario
+
+__all__ = ["AIRFRAME_CASES", "ARRAY_SIZES", "OMNIDIRECTIONAL", "STATED", "AirframeCase", "cases_of"]
+
+OMNIDIRECTIONAL = "omnidirectional"
+"""Name of the case that the others are measured against."""
+
+STATED = "stated"
+"""Name of the case that a scenario states itself, if it is none of the others."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AirframeCase:
+    """A vehicle that a comparison tries.
+
+    Args:
+        name: as in ``tilt-10``.
+        label: in a table, as in "tilt 10, horizontal".
+        phrase: in a sentence, as in "a 10 degree tilt with a horizontal dipole".
+        airframe: how far it tilts and how its dipole is mounted.
+        array: several upright dipoles in place of the one, or None.
+        combining: of the array: ``"digital"`` or ``"analogue"``; empty without one.
+    """
+
+    name: str
+    label: str
+    phrase: str
+    airframe: Airframe
+    array: Array | None = None
+    combining: str = ""
+
+    def on(self, scenario: Scenario) -> Scenario:
+        """Return the scenario with this vehicle in place of its own.
+
+        Args:
+            scenario: any.
+        """
+        return scenario.model_copy(update={"airframe": self.airframe, "array": self.array})
+
+
+def _case(name: str, label: str, phrase: str, tilt_max_deg: float, mount_deg: float) -> AirframeCase:
+    airframe = Airframe(tilt_max_deg=tilt_max_deg, mount_deg=mount_deg)
+    return AirframeCase(name=name, label=label, phrase=phrase, airframe=airframe)
+
+
+AIRFRAME_CASES: tuple[AirframeCase, ...] = (
+    _case("level-vertical", "level, vertical", "a level vehicle with a vertical dipole", 0.0, 0.0),
+    _case("level-horizontal", "level, horizontal", "a level vehicle with a horizontal dipole", 0.0, 90.0),
+    _case("tilt-10", "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole", 10.0, 90.0),
+    _case("tilt-30", "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole", 30.0, 90.0),
+    _case(OMNIDIRECTIONAL, "omnidirectional", "an omnidirectional vehicle", 180.0, 0.0),
+)
+"""The vehicles that every comparison tries, by the tilt that they take. Yaw is free for all of them."""
+
+
+ARRAY_SIZES = (2, 4, 8)
+"""Numbers of elements of the arrays that every comparison tries, each digital and analogue."""
+
+_LEVEL = AIRFRAME_CASES[0].airframe
+_ARRAY = Array(elements=1, layout="linear", spacing_wavelengths=0.5)
+_COMBINING = {"digital": "with digital combining", "analogue": "with one analogue beam"}
+
+
+def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
+    """Return the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
+
+    Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only; their layout and
+    spacing are those that the scenario states, or a line with half a wavelength from one to the next.
+
+    Args:
+        scenario: with or without an airframe or an array.
+    """
+    vehicles, own = AIRFRAME_CASES, scenario.airframe
+    if own is not None and all(own.axis_band != case.airframe.axis_band for case in vehicles):
+        tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
+        vehicles = tuple(tilting)
+    if scenario.objective != "min-sinr":
+        return vehicles
+    array = _ARRAY if scenario.array is None else scenario.array
+    sizes = set(ARRAY_SIZES) | ({array.elements} if scenario.array is not None else set())
+    return (
+        *vehicles,
+        *(_array_case(array, size, combining) for combining in _COMBINING for size in sorted(sizes)),
+    )
+
+
+def _stated(own: Airframe) -> AirframeCase:
+    tilt, mount = (f"{round(math.degrees(angle), 6):g}" for angle in (own.tilt_max_rad, own.mount_rad))
+    return AirframeCase(
+        name=STATED,
+        label=f"file: tilt {tilt}, mount {mount}",
+        phrase=f"the file's vehicle (a {tilt} degree tilt, the dipole mounted at {mount} degrees)",
+        airframe=own,
+    )
+
+
+def _array_case(array: Array, elements: int, combining: str) -> AirframeCase:
+    return AirframeCase(
+        name=f"array-{elements}-{combining}",
+        label=f"array of {elements}, {combining}",
+        phrase=f"a level vehicle with an array of {elements} {_COMBINING[combining]}",
+        airframe=_LEVEL,
+        array=array.model_copy(update={"elements": elements}),
+        combining=combining,
+    )

@@ -1,0 +1,80 @@
+"""The figure of one pose: whatever the scene has is on it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from nullpose import Scenario, load, solve
+from nullpose.errors import UsageError
+from nullpose.report.figures import draw_pose
+from nullpose.report.figures.outlines import outlines_of
+from nullpose.report.figures.style import prepare_figure_file, write_figure_file
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic"])
+def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
+    """The file is written, is not blank, names every point, and tells the value in its unit."""
+    solution = solve(load(EXAMPLES / f"{name}.toml"), certify=False)
+    figure = draw_pose(solution)
+    (axes,) = figure.axes
+    scenario = solution.scenario
+    names = {*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names}
+    assert names <= {text.get_text() for text in axes.texts}
+    assert solution.objective.words in figure.get_suptitle()
+    assert ("bits/s/Hz" in figure.get_suptitle()) == (name == "eavesdropper")
+    picture = imread(write_figure_file(figure, tmp_path / f"{name}.png"))
+    assert picture[..., :3].std() > 0.03
+
+
+def test_zones_and_fence_are_drawn(paper: Scenario) -> None:
+    """Zones by their names, the fence in the legend; without them neither is there."""
+    figure = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False))
+    assert {"school", "mast", "road"} <= {text.get_text() for text in figure.axes[0].texts}
+    legend = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"geofence", "no-fly zone", "jammer"} <= legend
+    bare = draw_pose(solve(paper, certify=False))
+    assert "geofence" not in {text.get_text() for text in bare.legends[0].get_texts()}
+
+
+def test_one_metre_is_as_long_along_every_axis() -> None:
+    """The box is to scale, zones and fence included."""
+    (axes,) = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes
+    sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
+    ratios = sides.ravel() / axes._box_aspect
+    assert ratios == pytest.approx([ratios[0]] * 3)
+
+
+def test_zones_far_away_are_left_out() -> None:
+    """A zone beyond the distance drawn is not; a cylinder is drawn as a ring of its radius."""
+    airspace = load(EXAMPLES / "no-fly.toml").airspace
+    scene = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]])
+    names = [outline.name for outline in outlines_of(airspace, scene, 150.0)]
+    assert names == ["", "school", "mast", "road"]
+    assert [outline.name for outline in outlines_of(airspace, scene, 30.0)] == ["school", "mast"]
+    school = outlines_of(airspace, scene, 30.0)[0]
+    assert np.linalg.norm(school.vertices_m - [-2.0, 24.0], axis=1) == pytest.approx(12.0)
+
+
+def test_no_jammer_no_line(paper: Scenario) -> None:
+    """A scene without jammers is drawn too, and tells no angle."""
+    calm = Scenario.from_dict({**paper.to_dict(), "jammers": []})
+    assert "null" not in draw_pose(solve(calm, certify=False)).get_suptitle()
+
+
+def test_names_with_dollars(paper: Scenario, tmp_path: Path) -> None:
+    """A name is drawn as it is, not as a formula."""
+    data = paper.to_dict() | {"name": "costs $5 and $x^$"}
+    data["nodes"][0]["name"] = "$\\bad$"
+    figure = draw_pose(solve(Scenario.from_dict(data), certify=False))
+    assert write_figure_file(figure, tmp_path / "pose.svg").stat().st_size > 0
+
+
+def test_a_figure_is_named_by_its_kind(tmp_path: Path) -> None:
+    """Other kinds than PNG and SVG are refused before any work; a folder is made."""
+    with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png or \.svg"):
+        prepare_figure_file(tmp_path / "figure.pdf")
+    assert prepare_figure_file(tmp_path / "new" / "figure.SVG").parent.is_dir()
