@@ -13,6 +13,7 @@ from nullpose.cli.faults import FaultReportingGroup
 from nullpose.cli.reproduce import reproduce
 from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
+from nullpose.cli.studio import studio
 from nullpose.cli.sweep import sweep
 from nullpose.cli.verify import verify
 
@@ -52,7 +53,7 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, sweep, verify, reproduce, check, schema):
+for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 
 

@@ -1,0 +1,85 @@
+"""The cases that the studio offers for a scene: the paper's schemes, vehicles, the robust pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nullpose.scenario import Scenario
+from nullpose.solve import PAPER_SCHEMES, Scheme, not_applicable
+from nullpose.study import AIRFRAME_CASES, AirframeCase
+
+__all__ = ["OPTIMUM", "Case", "all_cases", "case_named", "cases_of"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One way to choose the pose.
+
+    Args:
+        label: its name in the page; every case has its own.
+        scheme: how the pose is chosen.
+        vehicle: the vehicle in place of the scenario's own, or None.
+        robust: whether the pose is to guarantee most under the scenario's errors.
+    """
+
+    label: str
+    scheme: Scheme = Scheme.OPTIMUM
+    vehicle: AirframeCase | None = None
+    robust: bool = False
+
+    def on(self, scenario: Scenario) -> Scenario:
+        """Return the scenario that is solved for this case: one dipole, and the vehicle that it names.
+
+        Args:
+            scenario: as stated.
+        """
+        if self.vehicle is not None:
+            return self.vehicle.on(scenario)
+        return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
+
+    def missing(self, scenario: Scenario) -> str | None:
+        """Return why the case has no meaning for a scenario, or None if it has.
+
+        Args:
+            scenario: as stated.
+        """
+        if self.robust and not scenario.is_uncertain:
+            return "the scenario states no errors to guard against"
+        return not_applicable(self.on(scenario), self.scheme)
+
+
+OPTIMUM = Case(label="Optimum pose")
+"""The case that the studio opens with."""
+
+_CASES = (
+    OPTIMUM,
+    *(Case(label=scheme.label, scheme=scheme) for scheme in PAPER_SCHEMES if scheme is not Scheme.OPTIMUM),
+    Case(label="Robust pose", robust=True),
+    *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
+)
+
+
+def all_cases() -> tuple[Case, ...]:
+    """Return every case, in the order in which they are offered."""
+    return _CASES
+
+
+def cases_of(scenario: Scenario) -> tuple[Case, ...]:
+    """Return the cases that have a meaning for a scenario; never none.
+
+    Args:
+        scenario: as stated.
+    """
+    return tuple(case for case in _CASES if case.missing(scenario) is None)
+
+
+def case_named(label: str) -> Case:
+    """Return the case of a label.
+
+    Args:
+        label: as in the page.
+
+    Raises:
+        KeyError: there is none.
+    """
+    return {case.label: case for case in _CASES}[label]

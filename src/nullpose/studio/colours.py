@@ -1,0 +1,71 @@
+"""Colours that every kind of colour vision tells apart, and the dB scale of maps and links."""
+
+from __future__ import annotations
+
+from functools import cache
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["GROUND", "INK", "KIND_COLOURS", "SLOTS", "css", "scale_colours", "scale_range"]
+
+Rgb = tuple[int, int, int]
+
+INK: Rgb = (26, 26, 26)
+GROUND: Rgb = (110, 110, 110)
+
+KIND_COLOURS = MappingProxyType(
+    {"nodes": (0, 114, 178), "jammers": (213, 94, 0), "eavesdroppers": (204, 121, 167)}
+)
+"""Okabe and Ito's blue, vermilion and reddish purple; the shapes differ too."""
+
+SLOTS: tuple[Rgb, Rgb] = ((30, 60, 200), (0, 0, 0))
+"""The drone of the chosen case, and that of the compared one."""
+
+_LEAST_SPAN = 6.0
+_MOST_SPAN = 30.0
+
+
+def css(colour: Rgb) -> str:
+    """Return a colour as style sheets write it.
+
+    Args:
+        colour: red, green, blue, 0 to 255.
+    """
+    return "#{:02x}{:02x}{:02x}".format(*colour)
+
+
+@cache
+def _table() -> NDArray[np.uint8]:
+    from matplotlib import colormaps
+
+    return np.asarray(255.0 * colormaps["viridis"](np.linspace(0.0, 1.0, 256))[:, :3] + 0.5, dtype=np.uint8)
+
+
+def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint8]:
+    """Return colours, shape (..., 3): viridis from a low value to a high one, ends held; NaN becomes the low.
+
+    Args:
+        values: any shape.
+        low: value of the dark end.
+        high: value of the bright end.
+    """
+    share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
+    index = np.nan_to_num(255.0 * share, nan=0.0, posinf=255.0, neginf=0.0).clip(0.0, 255.0)
+    return np.asarray(_table()[index.astype(np.intp)])
+
+
+def scale_range(values: ArrayLike) -> tuple[float, float]:
+    """Return the ends of a scale for values: round numbers around most of them, 6 to 30 apart.
+
+    Args:
+        values: any shape; what is not finite is left out.
+    """
+    finite = np.asarray(values, dtype=float).ravel()
+    finite = finite[np.isfinite(finite)]
+    if finite.size == 0:
+        return -_LEAST_SPAN, 0.0
+    high = float(np.ceil(finite.max()))
+    low = float(np.floor(np.percentile(finite, 5.0)))
+    return min(high - _LEAST_SPAN, max(low, high - _MOST_SPAN)), high

@@ -1,0 +1,99 @@
+"""What can be taken away from a page: the pose, the power plot, the scene."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from io import BytesIO, StringIO
+from typing import Any
+
+from nullpose.errors import UsageError
+from nullpose.studio.answer import Answer
+from nullpose.studio.session import Session
+
+__all__ = ["figure_png", "pose_json", "scene_html"]
+
+
+def pose_json(session: Session) -> bytes:
+    """Return the solutions of the cases that are shown, as JSON.
+
+    Args:
+        session: whose.
+
+    Raises:
+        UsageError: the present scene is not solved yet.
+    """
+    answers = [_current(session, slot) for slot in range(len(session.view.cases))]
+    solved = [{"case": answer.case.label} | answer.solution.to_dict() for answer in answers]
+    return (json.dumps(solved[0] if len(solved) == 1 else solved, indent=2, allow_nan=False) + "\n").encode()
+
+
+def _current(session: Session, slot: int) -> Answer:
+    answer = session.answer(session.view.cases[slot])
+    if answer is None or not session.is_current(answer):
+        raise UsageError("the scene is being solved; try again when its pose is there")
+    return answer
+
+
+def figure_png(session: Session) -> bytes:
+    """Return the power plot as a picture (PNG).
+
+    Args:
+        session: whose.
+
+    Raises:
+        UsageError: there is no complete plot of the present scene yet.
+    """
+    from nullpose.report.figures.style import house_style
+    from nullpose.report.figures.sweep import draw_sweep
+
+    curve = session.curve
+    if curve is None or not curve.complete or curve.version != session.version:
+        raise UsageError("the plot of this scene is not complete yet; try again in a moment")
+    figure, picture = draw_sweep(curve.table), BytesIO()
+    with house_style():
+        figure.savefig(picture, format="png", dpi=200, facecolor="white")
+    return picture.getvalue()
+
+
+def scene_html(
+    session: Session,
+    chosen_map: str,
+    link_range_db: tuple[float, float],
+    camera_m: Callable[[Any], tuple[Any, Any]],
+) -> bytes:
+    """Return the scene as one HTML file that needs neither a server nor a network.
+
+    Args:
+        session: whose.
+        chosen_map: the map that is shown.
+        link_range_db: ends of the links' colours, dB.
+        camera_m: tells where the camera stands and what it looks at.
+
+    Raises:
+        UsageError: the present scene is not solved yet.
+    """
+    from nullpose.studio.drone import Carpet, Drone
+    from nullpose.studio.page import drone_text
+    from nullpose.studio.panel import BEST_MAP, NO_MAP
+    from nullpose.studio.scene import Ground, scene_size_m
+    from nullpose.studio.server import open_server
+
+    view = session.view
+    answers = [_current(session, slot) for slot in range(len(view.cases))]
+    with redirect_stdout(StringIO()):
+        server = open_server("127.0.0.1", 0)
+    try:
+        server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
+        Ground(server.scene, None).draw(view, freed=False)
+        for slot, answer in enumerate(answers):
+            drone = Drone(server.scene, slot, scene_size_m(view.scenario))
+            drone.show(answer, drone_text(session, slot), link_range_db, pattern=True)
+        fields = session.field_map
+        if fields is not None and chosen_map != NO_MAP:
+            Carpet(server.scene).show(fields.best if chosen_map == BEST_MAP else fields.footprint)
+        return server.scene.as_html().encode()
+    finally:
+        with redirect_stdout(StringIO()):
+            server.stop()

@@ -1,0 +1,166 @@
+"""The server behind the pages: opens, serves each browser a page of its own, and closes without a trace."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout, suppress
+from io import StringIO
+from typing import TYPE_CHECKING, Any
+
+from nullpose.errors import UsageError
+from nullpose.scenario import Scenario
+from nullpose.studio.map_kernel import MapKernel
+
+if TYPE_CHECKING:
+    from viser import ClientHandle, ViserServer
+
+__all__ = ["LOOPBACK", "Studio", "open_server", "require_viser", "studio"]
+
+LOOPBACK = "127.0.0.1"
+"""The address that only programs on this machine reach."""
+
+_INSTALL = 'the studio needs viser, which is not installed; run: pip install "nullpose[studio]"'
+
+_log = logging.getLogger("nullpose.studio")
+
+
+def require_viser() -> None:
+    """Do nothing if viser can be imported.
+
+    Raises:
+        UsageError: it cannot, with what to do about it.
+    """
+    try:
+        import viser  # noqa: F401
+    except ImportError as error:
+        raise UsageError(_INSTALL) from error
+
+
+def open_server(host: str, port: int) -> ViserServer:
+    """Return a server without a page.
+
+    Args:
+        host: address to listen at.
+        port: where to listen; 0 for any that is free.
+
+    Raises:
+        UsageError: the port is in use, or the address is none of this machine's.
+    """
+    import viser
+
+    _require_free(host, port)
+    with redirect_stdout(StringIO()):  # it announces itself; that is for the command line to do
+        server = viser.ViserServer(host=host, port=port, label="nullpose studio", verbose=False)
+    if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
+        server.stop()
+        raise UsageError(_port_in_use(port))
+    return server
+
+
+def _port_in_use(port: int) -> str:
+    return f"--port: {port} is in use by another program; choose another, as in --port {port + 1}"
+
+
+def _require_free(host: str, port: int) -> None:
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except OSError as error:
+        raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
+    with socket.socket(family, kind, protocol) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(address)
+        except PermissionError as error:
+            raise UsageError(f"--port: {port} needs special rights; choose one above 1023") from error
+        except OSError as error:
+            if error.errno in _NO_SUCH_ADDRESS:
+                message = f"--host: given {host}; allowed: a name or address of this machine"
+                raise UsageError(message) from error
+            raise UsageError(_port_in_use(port)) from error
+
+
+_NO_SUCH_ADDRESS = {99, 49, 10049}  # EADDRNOTAVAIL on Linux, macOS, Windows
+
+
+class Studio:
+    """A running studio; each browser that opens it has a page and a session of its own.
+
+    Args:
+        server: where the pages are.
+        scenario: the scene that every page begins with.
+    """
+
+    def __init__(self, server: ViserServer, scenario: Scenario) -> None:
+        from nullpose.studio.page import camera_m
+
+        self._server, self._scenario = server, scenario
+        self._lock = threading.Lock()
+        self._map_kernel = MapKernel()
+        self._closed = False
+        self.pages: dict[int, Any] = {}
+        server.initial_camera.position, server.initial_camera.look_at = camera_m(scenario)
+        server.on_client_connect(self._connect)
+        server.on_client_disconnect(self._disconnect)
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        return self._server.get_port()
+
+    def close(self) -> None:
+        """End every page's thread and the server."""
+        with self._lock:
+            self._closed = True
+            pages, self.pages = list(self.pages.values()), {}
+        for page in pages:
+            page.close()
+        self._map_kernel.close()
+        with redirect_stdout(StringIO()):
+            self._server.stop()
+
+    def _connect(self, client: ClientHandle) -> None:
+        from nullpose.studio.page import Page
+
+        try:
+            page = Page(client, self._scenario, self._map_kernel)
+        except Exception:
+            _log.exception("a page could not be made")
+            return
+        with self._lock:
+            gone = self._closed or client.client_id not in self._server.get_clients()
+            if not gone:
+                self.pages[client.client_id] = page
+        if gone:
+            page.close()
+
+    def _disconnect(self, client: ClientHandle) -> None:
+        with self._lock:
+            page = self.pages.pop(client.client_id, None)
+        if page is not None:
+            page.close()
+
+
+@contextmanager
+def studio(scenario: Scenario, *, host: str = LOOPBACK, port: int = 8080) -> Iterator[Studio]:
+    """Run a studio for the length of a block.
+
+    Args:
+        scenario: the scene that every page begins with.
+        host: address to listen at.
+        port: where to listen; 0 for any that is free.
+
+    Raises:
+        UsageError: viser is not installed, the port is in use, or the address is none of this machine's.
+    """
+    require_viser()
+    running = Studio(open_server(host, port), scenario)
+    try:
+        yield running
+    finally:
+        with suppress(KeyboardInterrupt):  # a second Ctrl-C must not leave a thread behind
+            running.close()

@@ -1,0 +1,122 @@
+"""The solves behind a page: a quick one while the hand moves, a proved one when it rests, a power curve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from nullpose.solve import PAPER_SCHEMES, Solution, not_applicable, solve
+from nullpose.solve.robust import solve_robust
+from nullpose.studio.answer import Answer, answer_of, robust_answer_of
+from nullpose.studio.case import Case
+from nullpose.studio.events import PowerCurve
+from nullpose.studio.view import POWER_DB, View
+from nullpose.study import SweepRow, SweepTable
+
+__all__ = ["POWER_LABEL", "power_curves", "proved_answers", "quick_answer"]
+
+POWER_LABEL = "jamming power over node power (dB)"
+"""What the power curve is drawn over."""
+
+_PROOF_LIMIT_S = 30.0
+_ROBUST_LIMIT_S = 20.0
+_CURVE_POINTS = 15
+_QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
+
+
+def quick_answer(version: int, view: View, case: Case) -> Answer:
+    """Return the best pose that a search finds, nothing being proved.
+
+    For the robust case it is the pose that is best without errors.
+
+    Args:
+        version: the version of the scene.
+        view: the scene.
+        case: what to solve.
+
+    Raises:
+        NullposeError: there is no pose, or the case has no meaning here.
+    """
+    from dataclasses import replace
+
+    found = answer_of(version, case, solve(case.on(view.scenario), case.scheme, certify=False))
+    return replace(found, note=_QUICK_ROBUST) if case.robust else found
+
+
+def proved_answers(
+    version: int, view: View, case: Case, on_progress: Callable[[float, int], None]
+) -> Iterator[Answer]:
+    """Yield the answers that a proof leads to, each better known than the one before.
+
+    Args:
+        version: the version of the scene.
+        view: the scene.
+        case: what to solve.
+        on_progress: called now and then; what it raises ends the proof.
+
+    Raises:
+        NullposeError: there is no pose, or the case has no meaning here.
+    """
+    scenario = case.on(view.scenario)
+    if case.robust:
+        for certify in (False, True):
+            yield robust_answer_of(
+                version,
+                case,
+                solve_robust(
+                    scenario, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
+                ),
+            )
+        return
+    yield answer_of(
+        version,
+        case,
+        solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress),
+    )
+
+
+def power_curves(version: int, view: View) -> Iterator[PowerCurve]:
+    """Yield the schemes' values against the jamming power, first at few powers and then at more.
+
+    The poses are searched for, not proved. Nothing comes without a jamming power to vary.
+
+    Args:
+        version: the version of the scene.
+        view: the scene.
+
+    Raises:
+        NullposeError: there is no pose at some power.
+    """
+    if view.power_db is None:
+        return
+    schemes = [one for one in PAPER_SCHEMES if not_applicable(view.scenario, one) is None]
+    low_db, high_db = POWER_DB
+    rows: dict[tuple[float, str], SweepRow] = {}
+    for every in (7, 1):
+        for i in range(0, _CURVE_POINTS, every):
+            power_db = low_db + (high_db - low_db) * i / (_CURVE_POINTS - 1)
+            at_power = view.with_power_db(power_db)
+            for scheme in schemes:
+                if (power_db, scheme.value) not in rows:
+                    solution = solve(Case(label="").on(at_power.scenario), scheme, certify=False)
+                    rows[power_db, scheme.value] = _row(power_db, solution)
+            if every == 1:
+                yield _curve(version, rows, complete=False)
+        yield _curve(version, rows, complete=every == 1)
+
+
+def _curve(version: int, rows: dict[tuple[float, str], SweepRow], *, complete: bool) -> PowerCurve:
+    table = SweepTable(path=POWER_LABEL, rows=tuple(rows[key] for key in sorted(rows)))
+    return PowerCurve(version=version, table=table, complete=complete)
+
+
+def _row(value: float, solution: Solution) -> SweepRow:
+    return SweepRow(
+        value=value,
+        scheme=solution.scheme.value,
+        status=solution.status.value,
+        objective=solution.objective,
+        pose=solution.pose,
+        links=solution.links,
+        note=solution.note,
+        reason=solution.reason,
+    )

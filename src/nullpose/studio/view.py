@@ -1,0 +1,136 @@
+"""What one user looks at: a scenario and the cases chosen for it. Immutable; every change makes another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics import from_db, to_db
+from nullpose.scenario import GroundPoint, Jammer, Scenario
+from nullpose.studio.case import OPTIMUM, Case, cases_of
+
+__all__ = ["POWER_DB", "Kind", "PointKey", "View"]
+
+Kind = Literal["nodes", "jammers", "eavesdroppers"]
+PointKey = tuple[Kind, int]
+"""A ground point: which list of the scenario it is in, and where there."""
+
+_KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers")
+_ROUND_M = 3  # digits of a metre that a dragged position keeps
+
+POWER_DB = (-30.0, 40.0)
+"""Range of the strongest jammer's power over the nodes' that a page offers, dB."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """A scenario and the cases chosen for it.
+
+    Args:
+        scenario: the scene.
+        case: how its pose is chosen.
+        compared: a second case to set beside it, or None.
+    """
+
+    scenario: Scenario
+    case: Case = OPTIMUM
+    compared: Case | None = None
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """The cases to solve, the chosen one first."""
+        return (self.case,) if self.compared is None else (self.case, self.compared)
+
+    def points(self) -> Iterator[tuple[PointKey, GroundPoint]]:
+        """Yield every ground point with its key."""
+        for kind in _KINDS:
+            for index, point in enumerate(getattr(self.scenario, kind)):
+                yield (kind, index), point
+
+    def moved(self, key: PointKey, position_m: ArrayLike) -> View:
+        """Return the view with one ground point elsewhere, to a millimetre.
+
+        Args:
+            key: which point.
+            position_m: (3,) metres.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        kind, index = key
+        east, north, up = np.round(np.asarray(position_m, dtype=float), _ROUND_M).tolist()
+        points = list(getattr(self.scenario, kind))
+        points[index] = points[index].model_copy(update={"position_m": (east, north, up)})
+        return replace(self, scenario=self.scenario.model_copy(update={kind: tuple(points)}))
+
+    @property
+    def power_db(self) -> float | None:
+        """Power of the strongest jammer over that of the strongest transmitter to be heard, dB.
+
+        None without jammers, or if either has no power.
+        """
+        reference_w = self._reference_w
+        strongest_w = max((jammer.transmit_power_w for jammer in self.scenario.jammers), default=0.0)
+        if strongest_w <= 0.0 or reference_w <= 0.0:
+            return None
+        return float(to_db(strongest_w / reference_w))
+
+    @property
+    def _reference_w(self) -> float:
+        transmitter = self.scenario.transmitter
+        if transmitter is not None:
+            return transmitter.transmit_power_w
+        return max(node.transmit_power_w for node in self.scenario.nodes)
+
+    def with_power_db(self, power_db: float) -> View:
+        """Return the view with all jammers' powers scaled alike, so that the strongest has this one.
+
+        Args:
+            power_db: power of the strongest jammer over that of the strongest transmitter, dB.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        now_db = self.power_db
+        if now_db is None or math.isclose(now_db, power_db, abs_tol=1e-9):
+            return self
+        factor = float(from_db(power_db - now_db))
+        jammers = tuple(_scaled(jammer, factor) for jammer in self.scenario.jammers)
+        return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
+
+    def with_scenario(self, scenario: Scenario) -> View:
+        """Return the view of another scenario, the cases kept where they have a meaning for it.
+
+        Args:
+            scenario: the new one.
+        """
+        allowed = cases_of(scenario)
+        case = self.case if self.case in allowed else allowed[0]
+        compared = self.compared if self.compared in allowed and self.compared != case else None
+        return View(scenario=scenario, case=case, compared=compared)
+
+    def with_case(self, case: Case) -> View:
+        """Return the view with another case chosen.
+
+        Args:
+            case: one that has a meaning for the scenario.
+        """
+        return replace(self, case=case, compared=None if self.compared == case else self.compared)
+
+    def with_compared(self, case: Case | None) -> View:
+        """Return the view with another case set beside the chosen one, or none.
+
+        Args:
+            case: the second case; the chosen one counts as none.
+        """
+        return replace(self, compared=None if case == self.case else case)
+
+
+def _scaled(jammer: Jammer, factor: float) -> Jammer:
+    power_w = float(f"{jammer.transmit_power_w * factor:.12g}")
+    return jammer.model_copy(update={"power_w": power_w, "power_dbm": None})
