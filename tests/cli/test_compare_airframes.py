@@ -1,0 +1,71 @@
+"""The verb `compare` with `--airframes`: one table, one figure, one answer."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+def test_table_and_answer(run: Run, paper: str) -> None:
+    """Every vehicle has a row, and the answer comes last."""
+    result = run("compare", paper, "--airframes", "--set", "jammers.M.power_w=100")
+    assert result.exit_code == 0
+    for words in ("level, vertical", "tilt 10, horizontal", "omnidirectional", "array of 8, analogue"):
+        assert words in result.stdout
+    answer = result.stdout.splitlines()[-2]
+    assert answer.startswith(
+        "A 10 degree tilt with a horizontal dipole gives 99.3 % of what an omnidirectional"
+    )
+
+
+def test_json(run: Run, paper: str) -> None:
+    """One object with the vehicles, their shares and the answer."""
+    result = run("compare", paper, "--airframes", "--fast", "--json")
+    assert result.exit_code == 0
+    data = json.loads(result.stdout)
+    assert list(data) == ["scenario", "cases", "tolerance", "least_sufficient", "provenance", "answer"]
+    assert len(data["cases"]) == 11
+    assert data["least_sufficient"] == "tilt-10"
+    assert "10 degree tilt" in data["answer"][0]
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg"])
+def test_figure(run: Run, paper: str, tmp_path: Path, suffix: str) -> None:
+    """The figure is written by its suffix, in a folder made for it, and its path is told."""
+    file = tmp_path / "new" / f"vehicles.{suffix}"
+    eavesdropper = paper.replace("paper.toml", "eavesdropper.toml")
+    result = run("compare", eavesdropper, "--airframes", "--fast", "--figure", file)
+    assert result.exit_code == 0
+    assert result.stdout.splitlines()[-1] == f"Wrote {file}"
+    if suffix == "png":
+        assert imread(file)[..., :3].std() > 0.05
+    else:
+        assert file.read_text(encoding="utf-8").rstrip().endswith("</svg>")
+    data = json.loads(
+        run("compare", eavesdropper, "--airframes", "--fast", "--figure", file, "--json").stdout
+    )
+    assert data["files"] == [str(file)]
+
+
+def test_a_figure_needs_vehicles_and_a_format(run: Run, paper: str, tmp_path: Path) -> None:
+    """Without --airframes there is nothing to draw; other formats are refused before any work."""
+    result = run("compare", paper, "--figure", tmp_path / "a.png")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "--airframes" in result.stderr
+    result = run("compare", paper, "--airframes", "--figure", tmp_path / "a.pdf")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "allowed: a name that ends in .png or .svg" in result.stderr
+
+
+def test_solve_draws_its_pose(run: Run, paper: str, tmp_path: Path) -> None:
+    """`solve --figure` draws the pose, and refuses what it cannot write."""
+    file = tmp_path / "pose.png"
+    result = run("solve", paper, "--fast", "--figure", file)
+    assert result.exit_code == 0
+    assert imread(file)[..., :3].std() > 0.03
+    assert run("solve", paper, "--figure", tmp_path / "pose.jpg").exit_code == 2

@@ -1,0 +1,180 @@
+"""The answer to the title's question, in words that follow from the numbers."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
+from nullpose.report.airframes import airframes_view, answer_lines, proof_lines, share_text
+from nullpose.report.figures import draw_airframes
+from nullpose.scenario import apply_overrides
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def compared(name: str, *overrides: str, **options: object) -> AirframeComparison:
+    """Returns an example's vehicles compared."""
+    return compare_airframes(apply_overrides(load(EXAMPLES / f"{name}.toml"), list(overrides)), **options)
+
+
+def text_of(comparison: AirframeComparison, width: int = 200) -> str:
+    """Returns what a terminal without colours shows."""
+    console = Console(width=width, file=io.StringIO(), highlight=False)
+    console.print(airframes_view(comparison))
+    return console.file.getvalue()
+
+
+def with_value(comparison: AirframeComparison, name: str, value: float) -> AirframeComparison:
+    """Returns the comparison with one vehicle's value replaced."""
+    results = tuple(
+        replace(result, objective=replace(result.objective, value=value, upper_bound=value))
+        if result.case.name == name
+        else result
+        for result in comparison.results
+    )
+    return replace(comparison, results=results)
+
+
+@pytest.fixture(scope="module")
+def plain() -> AirframeComparison:
+    """The paper's scene at a jamming power of 100."""
+    return compared("paper", "jammers.M.power_w=100")
+
+
+@pytest.fixture(scope="module")
+def robust() -> AirframeComparison:
+    """The example with errors, with a vehicle of its own."""
+    scenario = load(EXAMPLES / "robust.toml")
+    own = Airframe(tilt_max_deg=5.0, mount_deg=90.0)
+    return compare_airframes(scenario.model_copy(update={"airframe": own}))
+
+
+def test_the_example_of_the_question(plain: AirframeComparison) -> None:
+    """At strong jamming ten degrees with a horizontal dipole give 99.3 %, and are the least that suffices."""
+    first, array = answer_lines(plain)
+    assert first == (
+        "A 10 degree tilt with a horizontal dipole gives 99.3 % of what an omnidirectional vehicle gives "
+        "here: the least of these that comes within 1 % of it."
+    )
+    assert array.startswith(
+        "On a level vehicle an array is enough with 2 elements and digital combining (2.13 times"
+    )
+
+
+def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
+    """Were the tilted ones worse, it would take the omnidirectional one; who comes nearest is told."""
+    worse = with_value(with_value(plain, "tilt-10", 0.5), "tilt-30", 0.9 * plain.omnidirectional.value)
+    first = answer_lines(worse)[0]
+    assert first.startswith("It takes an omnidirectional vehicle here: none of the others comes within 1 %")
+    assert first.endswith("A 30 degree tilt with a horizontal dipole comes nearest, with 90 % of its value.")
+
+
+def test_the_least_of_all_suffices(plain: AirframeComparison) -> None:
+    """Were a level vehicle as good, no tilt is said to be needed."""
+    value = 0.995 * plain.omnidirectional.value
+    first = answer_lines(with_value(plain, "level-vertical", value))[0]
+    assert first.startswith("A level vehicle with a vertical dipole gives 99.5 %")
+    assert "the least of these" not in first
+
+
+def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
+    """Where no array is enough, the best found is told with its size and its share."""
+    poor = plain
+    for size in (2, 4, 8):
+        poor = with_value(poor, f"array-{size}-analogue", 0.1 * size * plain.omnidirectional.value)
+    line = answer_lines(poor)[1]
+    assert "with 2 elements and digital combining" in line
+    assert line.endswith(
+        "with one analogue beam none of up to 8 elements was found to be enough (80 % with 8)."
+    )
+    for size in (2, 4, 8):
+        poor = with_value(poor, f"array-{size}-digital", 0.1 * plain.omnidirectional.value)
+    assert answer_lines(poor)[1].startswith(
+        "An array on a level vehicle: with digital combining none of up to 8"
+    )
+
+
+def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:
+    """The file's vehicle is judged, and what is left under the file's errors."""
+    lines = answer_lines(robust)
+    assert any(line.startswith("The file's vehicle (a 5 degree tilt") for line in lines)
+    assert "does not suffice: it gives" in " ".join(lines)
+    assert lines[-1].startswith(
+        "Under the file's errors an omnidirectional vehicle guarantees 20.1 % of its value"
+    )
+    assert "guarantees 100 % of that, the least that comes within 1 %" in lines[-1]
+    text = text_of(robust)
+    assert "Guaranteed under the file's errors (dB)" in text
+    assert "file: tilt 5, mount 90" in text
+    assert "Nothing is guaranteed of arrays." in text
+
+
+def test_nothing_to_give() -> None:
+    """Where no vehicle gives anything there is nothing to compare, and it is said."""
+    zero = compared("eavesdropper", certify=False)
+    for result in zero.results:
+        zero = with_value(zero, result.case.name, 0.0)
+    assert answer_lines(zero) == ["No vehicle with one dipole gives every node anything here."]
+    assert "nan" not in text_of(zero)
+    draw_airframes(zero)
+
+
+def test_what_is_proved_is_told(plain: AirframeComparison) -> None:
+    """Certified dipoles, arrays that are not, and nothing where nothing was proved."""
+    lines = proof_lines(plain)
+    assert any(
+        line.startswith("Every dipole's value is certified: proved to be within 1e-6") for line in lines
+    )
+    assert any(line.startswith("Arrays: ") for line in lines)
+    fast = compared("paper", certify=False)
+    assert {result.status for result in fast.dipoles} == {Status.BEST_FOUND}
+    assert "certified" not in " ".join(proof_lines(fast))
+    short = compared("eavesdropper", node_limit=5)
+    text = text_of(short)
+    assert "bounded" in text
+    assert "the node limit of 5" in text
+
+
+@pytest.mark.parametrize("name", ["paper", "eavesdropper", "requirements"])
+def test_tables_fit_a_terminal(name: str) -> None:
+    """In eighty columns every number is whole and none is missing."""
+    comparison = compared(name, certify=False)
+    text = text_of(comparison, width=80)
+    assert max(map(len, text.splitlines())) <= 80
+    assert "\N{HORIZONTAL ELLIPSIS}" not in text
+    assert "nan" not in text
+    for result in comparison.results:
+        assert result.case.label in text
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [(0.5, "50 %"), (0.9926, "99.3 %"), (0.9994, "99.9 %"), (0.99999, "100 %"), (2.128, "213 %")],
+)
+def test_shares(share: float, words: str) -> None:
+    """Three digits below a hundred, whole per cent above."""
+    assert share_text(share) == words
+
+
+def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
+    """A row for each vehicle by its name, the answer below, guarantees in the legend, no overlaps."""
+    figure = draw_airframes(robust)
+    (axes,) = figure.axes
+    assert [text.get_text() for text in axes.get_yticklabels()] == [one.case.label for one in robust.results]
+    assert "99.3 %" in figure.get_supxlabel()
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"guaranteed, robust pose", "the file's vehicle", "analogue array"} <= set(legend)
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[i + 1 :])
+    assert all(box.x1 <= figure.bbox.x1 for box in boxes)
+
+
+def test_figure_of_rates() -> None:
+    """Rates are drawn from zero, in bits/s/Hz."""
+    (axes,) = draw_airframes(compared("eavesdropper")).axes
+    assert axes.get_xlim()[0] == 0.0
+    assert "(bits/s/Hz)" in axes.get_xlabel()

@@ -1,0 +1,72 @@
+"""The vehicles that are compared."""
+
+from pathlib import Path
+
+import pytest
+
+from nullpose import Airframe, Array, Scenario, load
+from nullpose.study import AIRFRAME_CASES, cases_of
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+DIPOLES = ["level-vertical", "level-horizontal", "tilt-10", "tilt-30", "omnidirectional"]
+
+
+def names(scenario: Scenario) -> list[str]:
+    """Returns the names of the vehicles tried for a scenario."""
+    return [case.name for case in cases_of(scenario)]
+
+
+def test_dipoles_come_by_the_tilt_that_they_take(paper: Scenario) -> None:
+    """From level to omnidirectional, then arrays of 2, 4 and 8, digital and analogue."""
+    assert [case.name for case in AIRFRAME_CASES] == DIPOLES
+    tilts = [case.airframe.tilt_max_rad for case in AIRFRAME_CASES]
+    assert tilts == sorted(tilts)
+    arrays = [f"array-{size}-{combining}" for combining in ("digital", "analogue") for size in (2, 4, 8)]
+    assert names(paper) == DIPOLES + arrays
+
+
+def test_bands_of_axes_widen(paper: Scenario) -> None:
+    """Each horizontal dipole reaches what the one before does; the omnidirectional vehicle reaches all."""
+    bands = [case.airframe.axis_band for case in AIRFRAME_CASES[1:]]
+    assert [low for low, _ in bands] == [0.0] * 4
+    highs = [high for _, high in bands]
+    assert highs == sorted(highs)
+    assert AIRFRAME_CASES[-1].airframe.is_omnidirectional
+    assert AIRFRAME_CASES[0].airframe.axis_band == (1.0, 1.0)
+
+
+def test_own_airframe_joins_by_its_tilt(paper: Scenario) -> None:
+    """One that is none of the others stands where its tilt puts it; one with the same axes is left out."""
+    own = paper.model_copy(update={"airframe": Airframe(tilt_max_deg=20.0, mount_deg=45.0)})
+    assert names(own)[:6] == [
+        "level-vertical",
+        "level-horizontal",
+        "tilt-10",
+        "stated",
+        "tilt-30",
+        "omnidirectional",
+    ]
+    same = paper.model_copy(update={"airframe": Airframe(tilt_max_deg=90.0, mount_deg=0.0)})
+    assert names(same) == names(paper)
+
+
+def test_own_array_sets_layout_and_spacing(paper: Scenario) -> None:
+    """Layout and spacing of the file's array hold for all sizes, and its own size is tried as well."""
+    own = paper.model_copy(update={"array": Array(elements=3, layout="circular", spacing_wavelengths=0.4)})
+    arrays = [case.array for case in cases_of(own) if case.array is not None]
+    assert sorted({array.elements for array in arrays}) == [2, 3, 4, 8]
+    assert {(array.layout, array.spacing_wavelengths) for array in arrays} == {("circular", 0.4)}
+
+
+def test_arrays_are_for_hearing_only() -> None:
+    """With the secrecy rate there are dipoles alone."""
+    assert names(load(EXAMPLES / "eavesdropper.toml")) == DIPOLES
+
+
+@pytest.mark.parametrize("case", AIRFRAME_CASES, ids=DIPOLES)
+def test_a_case_replaces_vehicle_and_array(paper: Scenario, case) -> None:
+    """The scenario with a vehicle has that airframe and no array, and is otherwise the same."""
+    own = paper.model_copy(update={"array": Array(elements=3, layout="linear", spacing_wavelengths=0.5)})
+    varied = case.on(own)
+    assert (varied.airframe, varied.array) == (case.airframe, None)
+    assert varied.model_copy(update={"airframe": None}) == paper

@@ -1,0 +1,152 @@
+"""Airframes compared: known values, the order among vehicles, guarantees, and what suffices."""
+
+import csv
+import itertools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose import AirframeComparison, Scenario, Status, compare_airframes, load, min_sinr
+from nullpose.report.plain import json_text
+from nullpose.scenario import apply_overrides
+from nullpose.study import AIRFRAME_CASES
+
+ROOT = Path(__file__).parents[2]
+KNOWN = ROOT / "tests" / "reference" / "airframes" / "known_answers.csv"
+TILTS = ("level-horizontal", "tilt-10", "tilt-30", "omnidirectional")
+
+
+def known() -> list[dict[str, float]]:
+    """Returns the known values, a row for each jamming power."""
+    with KNOWN.open(encoding="utf-8", newline="") as file:
+        _, *rows = csv.DictReader(file)  # below the names stand the units
+    return [{name: float(text) for name, text in row.items()} for row in rows]
+
+
+@pytest.fixture(scope="module")
+def robust() -> AirframeComparison:
+    """The example with errors, dipoles only."""
+    return compare_airframes(load(ROOT / "examples" / "robust.toml"), cases=AIRFRAME_CASES)
+
+
+@pytest.mark.parametrize("row", known(), ids=lambda row: f"{row['jamming_ratio']:g}")
+def test_known_answers(paper: Scenario, row: dict[str, float]) -> None:
+    """Each vehicle reaches what independent searches found, certified to 1e-6."""
+    level = row["jamming_ratio"]
+    found = compare_airframes(apply_overrides(paper, [f"jammers.M.power_w={level}"]), cases=AIRFRAME_CASES)
+    for result in found.results:
+        assert result.status is Status.CERTIFIED
+        assert result.value <= result.objective.upper_bound <= result.value * (1.0 + 1e-6)
+        if result.case.name in row:
+            assert result.value == pytest.approx(row[result.case.name], abs=1e-4)
+
+
+def test_more_tilt_is_never_worse(paper: Scenario) -> None:
+    """A vehicle that reaches more axes gives at least as much, and its pose keeps to its limit."""
+    found = compare_airframes(paper, cases=AIRFRAME_CASES)
+    for less, more in itertools.pairwise(TILTS):
+        assert found.of(less).value <= found.of(more).objective.upper_bound
+    for result in found.results:
+        assert result.pose.tilt_rad <= result.case.airframe.tilt_max_rad + 1e-9
+        assert min_sinr(paper, result.pose) == pytest.approx(result.value, rel=1e-12)
+
+
+def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
+    """Ten degrees are enough at a ratio of 1, level is enough where jamming is weak."""
+    found = compare_airframes(paper, cases=AIRFRAME_CASES)
+    assert found.least_sufficient.case.name == "tilt-10"
+    weak = compare_airframes(apply_overrides(paper, ["jammers.M.power_w=0.01"]), cases=AIRFRAME_CASES)
+    assert weak.least_sufficient.case.name == "level-horizontal"
+    assert found.suffices(found.omnidirectional)
+    assert found.share(found.omnidirectional) == 1.0
+    assert not found.suffices(found.of("level-vertical"))
+    assert found.suffices(found.of("level-vertical"), tolerance=0.6)
+
+
+def test_arrays_are_tried_on_a_level_vehicle(paper: Scenario) -> None:
+    """More elements give more, a digital array no less than an analogue one, none exceeds its bound."""
+    found = compare_airframes(paper)
+    values = {result.case.name: result for result in found.arrays}
+    for combining in ("digital", "analogue"):
+        sizes = [values[f"array-{size}-{combining}"] for size in (2, 4, 8)]
+        assert [one.value for one in sizes] == sorted(one.value for one in sizes)
+        assert all(one.value <= one.objective.upper_bound for one in sizes)
+        assert all(one.pose.tilt_rad == 0.0 for one in sizes)
+    for size in (2, 4, 8):
+        digital, analogue = values[f"array-{size}-digital"], values[f"array-{size}-analogue"]
+        assert digital.value >= analogue.value * (1.0 - 1e-3)
+    assert found.least_sufficient.case.array is None
+
+
+def test_guarantees_hold_what_they_say(robust: AirframeComparison) -> None:
+    """The robust pose guarantees no less than the nominal one, and no more than the bound or the value."""
+    for result in robust.results:
+        one = result.guaranteed
+        assert 0.0 <= one.nominal_pose <= one.robust_pose <= one.upper_bound
+        assert one.robust_pose <= result.objective.upper_bound
+        assert one.upper_bound <= one.robust_pose * 1.0101
+
+
+def test_a_guarantee_is_below_random_errors(robust: AirframeComparison) -> None:
+    """With axis and jammer moved at random within the stated errors, no value falls below the guarantee."""
+    rng = np.random.default_rng(4)
+    result = robust.of("tilt-10")
+    scenario, pose = robust.scenario, result.pose
+    place, axis = np.array(scenario.jammer_positions_m[0]), pose.antenna_axis
+    worst = np.inf
+    for _ in range(200):
+        away = rng.normal(size=3)
+        moved = place + 3.0 * away / np.linalg.norm(away)
+        across = np.cross(axis, rng.normal(size=3))
+        leaning = axis + np.tan(np.radians(2.0)) * across / np.linalg.norm(across)
+        data = scenario.to_dict()
+        data["jammers"][0] |= {"position_m": moved.tolist(), "uncertainty_m": 0.0}
+        off = type(pose).from_axis(pose.position_m, leaning)
+        worst = min(worst, min_sinr(Scenario.from_dict(data), off))
+    assert worst >= result.guaranteed.nominal_pose
+    assert worst < result.value
+
+
+def test_no_errors_nothing_guaranteed(paper: Scenario) -> None:
+    """Without errors in the file there is no guaranteed value."""
+    found = compare_airframes(paper, cases=AIRFRAME_CASES, certify=False)
+    assert {result.guaranteed for result in found.results} == {None}
+    assert {result.status for result in found.results} == {Status.BEST_FOUND}
+    assert {result.objective.upper_bound for result in found.results} == {None}
+
+
+def test_rates_are_compared_as_rates() -> None:
+    """With an eavesdropper the shares are of rates, and more tilt is never worse."""
+    found = compare_airframes(load(ROOT / "examples" / "eavesdropper.toml"))
+    assert found.arrays == ()
+    assert {result.objective.name for result in found.results} == {"min_secrecy_rate"}
+    shares = [found.share(found.of(name)) for name in TILTS]
+    assert all(less <= more + 1e-6 for less, more in itertools.pairwise(shares))
+
+
+def test_plain_data(robust: AirframeComparison) -> None:
+    """The comparison as plain data is JSON, and says what the objects say."""
+    data = json.loads(json_text(robust.to_dict()))
+    assert [case["name"] for case in data["cases"]] == [case.name for case in AIRFRAME_CASES]
+    assert data["least_sufficient"] == robust.least_sufficient.case.name
+    case = data["cases"][2]
+    assert case["airframe"] == {"tilt_max_deg": 10.0, "mount_deg": 90.0}
+    assert case["guaranteed"]["robust_pose"] == robust.of("tilt-10").guaranteed.robust_pose
+    assert case["share_of_omnidirectional"] == pytest.approx(0.9926, abs=1e-4)
+
+
+def test_progress_counts_the_vehicles(paper: Scenario) -> None:
+    """Each vehicle is one step."""
+    ticks: list[tuple[int, int]] = []
+    compare_airframes(
+        paper, cases=AIRFRAME_CASES, certify=False, on_progress=lambda *tick: ticks.append(tick)
+    )
+    assert ticks == [(done, 5) for done in range(1, 6)]
+
+
+def test_unknown_vehicle(robust: AirframeComparison) -> None:
+    """Asking for a vehicle that was not tried names those that were."""
+    with pytest.raises(KeyError, match="tilt-30"):
+        robust.of("tilt-60")
