@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from nullpose.scenario import Array, Scenario
-from nullpose.solve.array_task import ArrayTask
+from nullpose.solve.array_task import ArrayTask, silent
 
 
 def _task(scenario: Scenario, elements: int = 4, shared: bool = False) -> ArrayTask:
@@ -22,6 +22,32 @@ def test_a_state_has_a_phase_for_each_element_of_a_shared_beam(paper: Callable) 
     """Three coordinates and a yaw; with a shared beam the phases as well."""
     assert _task(paper(1.0)).size == 4
     assert _task(paper(1.0), elements=6, shared=True).size == 10
+
+
+@pytest.mark.parametrize("shared", [False, True])
+def test_turning_by_the_symmetry_changes_nothing(shared: bool, random_scene: Callable) -> None:
+    """A row turned by half a turn, a circle by one of its elements: the digital ratios are the same."""
+    rng = np.random.default_rng(9)
+    for layout, elements in (("linear", 4), ("circular", 5), ("circular", 2), ("circular", 1)):
+        array = Array(elements=elements, layout=layout, spacing_wavelengths=0.5)
+        task = ArrayTask.of(random_scene(rng, 3, 2, 10.0), array, shared=shared).digital()
+        state = np.append(rng.uniform([0, 0, 9], [99, 99, 29]), rng.uniform(-3.0, 3.0))
+        turned = state + np.array([0.0, 0.0, 0.0, 2.0 * math.pi / task.symmetry])
+        assert task.value(turned) == pytest.approx(task.value(state), abs=1e-9)
+
+
+def test_calmer_and_silent(paper: Callable) -> None:
+    """Jammers can be made weaker, or left out of the ratios, the nodes being what they were."""
+    task = _task(paper(100.0))
+    assert task.jamming == pytest.approx(100.0)
+    assert task.calmed(3.0).jamming == pytest.approx(3.0)
+    assert task.calmed(1e3).jamming == pytest.approx(100.0)
+    state = np.array([5.0, 20.0, 9.0, 0.4])
+    assert task.calmed(3.0).value(state) > task.value(state)
+    quiet = silent(task.family)
+    assert len(quiet.denominator_weight) == 0
+    np.testing.assert_array_equal(quiet.numerator_weight, task.family.numerator_weight)
+    np.testing.assert_array_equal(quiet.keep_out_points_m, task.family.keep_out_points_m)
 
 
 @pytest.mark.parametrize("shared", [False, True])

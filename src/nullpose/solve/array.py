@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import SolveError, UsageError
-from nullpose.family import AxisField
+from nullpose.errors import UsageError
 from nullpose.physics import Link, Pose, to_db
 from nullpose.physics.array import (
     analogue_sinr,
@@ -21,12 +20,11 @@ from nullpose.physics.array import (
 )
 from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
-from nullpose.solve.array_finish import finished
-from nullpose.solve.array_search import search_array
+from nullpose.solve.array_hunt import ArrayHunt
 from nullpose.solve.array_solution import ArraySolution, ArrayStats, Combining
 from nullpose.solve.array_task import ArrayTask
-from nullpose.solve.multistart import landmarks, multistart
-from nullpose.solve.objective import Objective, objective_of
+from nullpose.solve.limits import Limits, default_gap
+from nullpose.solve.objective import objective_of
 from nullpose.solve.provenance import provenance
 from nullpose.solve.solution import Status
 
@@ -37,11 +35,7 @@ FloatArray = NDArray[np.float64]
 COMBININGS: tuple[Combining, ...] = ("digital", "analogue")
 """The ways to combine the elements."""
 
-_SEARCHES = 6  # most independent searches
-_AGREEING = 3  # searches with the same end after which no more are made
-_SAME = 1e-4
-_CLOSED = 1e-6  # a value this close to the bound needs no further search
-_PROOF_S = 10.0
+_WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for
 
 
 def solve_array(
@@ -51,6 +45,7 @@ def solve_array(
     elements: int | None = None,
     layout: str | None = None,
     spacing_wavelengths: float | None = None,
+    gap: float | None = None,
     seed: int = 0,
 ) -> ArraySolution:
     """Return the best position, yaw and combining of an array of upright dipoles on a level vehicle.
@@ -59,8 +54,9 @@ def solve_array(
     every node has weights of its own, which follow from position and yaw
     (:func:`nullpose.physics.array.digital_sinr`). Analogue: one beam of phase shifters serves all nodes
     (:func:`nullpose.physics.array.analogue_sinr`), and its phases are searched too. The value is
-    re-evaluated by the physics from what is reported. It is the best of several independent searches; of the
-    optimum it is proved only that it is not above the bound.
+    re-evaluated by the physics from what is reported. The bound comes from a branch and bound over positions
+    and yaws with digital combining, which a shared beam cannot exceed and mostly does not come near; an
+    analogue value is the best of several independent searches.
 
     Args:
         scenario: nodes, jammers, receiver and airspace; its airframe and its uncertainty are not consulted.
@@ -68,10 +64,12 @@ def solve_array(
         elements: number of dipoles; the scenario's if left out, as the next two.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
+        gap: relative gap between bound and value at which the proof is done; without it
+            :func:`nullpose.solve.default_gap` of the number of nodes.
         seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
 
     Raises:
-        UsageError: unknown combining, a bad seed, no array given, or another objective than min-sinr.
+        UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.
     """
@@ -84,29 +82,38 @@ def solve_array(
         )
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise UsageError(f"seed: given {seed!r}; allowed: a whole number of at least 0")
+    target = default_gap(len(scenario.nodes)) if gap is None else Limits(gap=gap).gap
     began = time.perf_counter()
     task = ArrayTask.of(scenario, array, shared=kind == "analogue")
-    bound = array_bound(task, seed=seed, time_limit_s=_PROOF_S)
-    state, counts = _search(task, bound, seed)
+    hunt, bound = _digital(task, target, seed) if kind == "digital" else _analogue(task, target, seed)
+    state = hunt.state
     pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
     weights, links = _evaluated(scenario, array, kind, pose, state[4:])
     objective = objective_of(scenario, links, bound.value)
     if objective.value > bound.value:  # by rounding
         objective = replace(objective, upper_bound=objective.value, relative_gap=0.0)
+    certified = (objective.relative_gap or 0.0) <= target
     return ArraySolution(
         scenario=scenario,
         combining=kind,
         elements=array.elements,
         layout=array.layout,
         spacing_wavelengths=array.spacing_wavelengths,
-        status=Status.BEST_FOUND,
+        status=Status.CERTIFIED if certified else Status.GAP_NOT_REACHED,
         objective=objective,
         pose=pose,
         weights=weights,
         links=links,
-        stats=ArrayStats(wall_s=time.perf_counter() - began, boxes=bound.nodes, **counts),
-        provenance=provenance(seed),
-        note=_note(array.elements, objective),
+        stats=ArrayStats(
+            wall_s=time.perf_counter() - began,
+            starts=hunt.starts,
+            evaluations=hunt.evaluations,
+            boxes=bound.boxes,
+            searches=len(hunt.ends),
+            agreeing=hunt.agreeing,
+        ),
+        provenance=provenance(seed) | {"gap": target},
+        reason="" if certified else _reason(kind),
     )
 
 
@@ -133,37 +140,41 @@ def _array(
     return Array.from_dict(values)
 
 
-def _search(task: ArrayTask, bound: ArrayBound, seed: int) -> tuple[FloatArray, dict[str, int]]:
-    """Return the best state of several independent searches, and the counts for the statistics."""
-    vertical = multistart(task.family, AxisField.vertical(), seed=seed)
-    places_m = np.vstack([vertical.position_m, bound.position_m, landmarks(task.family)])
-    ends: list[float] = []
-    best, best_state = -math.inf, np.empty(0)
-    starts, evaluations = vertical.starts, vertical.evaluations
-    ceiling = math.log(bound.value) - _CLOSED
-    while len(ends) < _SEARCHES and best < ceiling and _agreeing(ends) < _AGREEING:
-        rng = np.random.default_rng([seed, len(ends)])
-        found = search_array(task, rng, places_m)
-        each = [finished(task, state) for state in found.states]
-        value, state = max(each, key=lambda end: end[0], default=(-math.inf, best_state))
-        ends.append(value)
-        starts, evaluations = starts + found.climbs, evaluations + found.evaluations
-        if value > best:
-            best, best_state = value, state
-    if not best > -math.inf:
-        raise SolveError("no position was found at which every node is received; widen the airspace")
-    counts = {
-        "starts": starts,
-        "evaluations": evaluations,
-        "searches": len(ends),
-        "agreeing": _agreeing(ends),
-    }
-    return best_state, counts
+def _digital(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
+    """Return a search and a proof; more searches only where the proof does not get there."""
+    hunt = ArrayHunt(task, seed)
+    hunt.search()
+    bound, boxes = _proved(hunt, gap)
+    if not hunt.reaches(bound.value, gap):
+        before = hunt.best
+        while hunt.is_open:
+            hunt.search()
+        if hunt.best > before:
+            bound, more = _proved(hunt, gap)
+            boxes += more
+    return hunt, replace(bound, boxes=boxes)
 
 
-def _agreeing(ends: list[float]) -> int:
-    """Return how many searches ended at the best value of all."""
-    return sum(end > max(ends) - _SAME for end in ends)
+def _proved(hunt: ArrayHunt, gap: float) -> tuple[ArrayBound, int]:
+    """Return a bound and the boxes examined; what turns up on the way is taken up by the search."""
+    boxes = 0
+    while True:
+        bound = array_bound(hunt.task, hunt.best, gap=gap)
+        boxes += bound.boxes
+        before = hunt.best
+        if bound.state is None or not hunt.look(bound.state) or hunt.best <= before + gap:
+            return bound, boxes
+
+
+def _analogue(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
+    """Return several searches, and the bound of digital combining."""
+    apart = ArrayHunt(task.digital(), seed)
+    apart.search()
+    bound = array_bound(apart.task, apart.best, gap=gap, effort=_WATCHED)
+    hunt = ArrayHunt(task, seed, apart.state[:3])
+    while hunt.is_open and not hunt.reaches(bound.value, gap):
+        hunt.search()
+    return hunt, bound
 
 
 def _evaluated(
@@ -190,12 +201,8 @@ def _evaluated(
     )
 
 
-def _note(elements: int, objective: Objective) -> str:
-    """Return a sentence on what the bound is and how far it lies above the value."""
-    above = f"it lies {100.0 * (objective.relative_gap or 0.0):.2g} % above the value"
-    if elements == 1:
-        return f"one element is the vertical case, and the bound is that case's: {above}"
-    return (
-        f"the bound is {elements} times what one vertical dipole can receive with the jammers silent; "
-        f"{above}, of which nothing else is proved"
-    )
+def _reason(combining: Combining) -> str:
+    """Return why the gap was not reached."""
+    if combining == "analogue":
+        return "the bound is that of digital combining, which a shared beam does not reach"
+    return "the most boxes of positions and yaws that are looked at"

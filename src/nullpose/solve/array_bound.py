@@ -1,19 +1,30 @@
-"""What no combining of an array exceeds, from a proof about one dipole."""
+"""What no position, yaw and combining of an array exceeds."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import AxisField
-from nullpose.solve.array_task import ArrayTask
+from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits, default_gap
+from nullpose.solve.limits import Limits
 from nullpose.solve.settle import settle
 
 __all__ = ["ArrayBound", "array_bound"]
+
+FloatArray = NDArray[np.float64]
+
+_MOST_BOXES = 500_000
+_LEAST_BOXES = 20_000
+_WORK = 3e7  # boxes times what one costs: nodes, jammers and elements
+_ROUNDING = 5e-10
+_INSIDE = 0.9  # the gap that is aimed at, of the gap that is asked for: bound and value are rounded
+_PROOF_S = 10.0
+_LEAST_GAP = 1e-8  # of the vertical case's proof
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -21,46 +32,73 @@ class ArrayBound:
     """A bound on the smallest ratio of an array.
 
     Args:
-        value: no position, yaw and weights exceed this.
-        position_m: (3,) where the dipole of the proof hears best.
-        nodes: boxes examined.
+        value: nothing exceeds this.
+        boxes: boxes examined.
+        state: (4,) a promising place that turned up on the way; None if none did.
     """
 
     value: float
-    position_m: NDArray[np.float64]
-    nodes: int
+    boxes: int
+    state: FloatArray | None = None
 
 
-def array_bound(task: ArrayTask, *, seed: int, time_limit_s: float) -> ArrayBound:
-    """Return K times the certified bound of one vertical dipole with the jammers silent.
+def array_bound(task: ArrayTask, log_value: float, *, gap: float, effort: float = 1.0) -> ArrayBound:
+    """Return a bound for digital combining, and so for a shared beam, which is one choice of the weights.
 
-    With ``R >= sigma^2 I``, ``h_k^H R^-1 h_k <= |h_k|^2 / sigma^2``, and ``|h_k|^2`` is K times what one
-    vertical dipole receives at the same position. A shared beam is one choice of every node's weights, and so
-    never better. One element alone combines nothing, so for it the jammers are left in, and the bound is
-    that of the vertical case itself.
+    A branch and bound over positions and yaws, the best first
+    (:mod:`nullpose.solve.kernels.array_enclosure` has the bound over a box): it stops at the gap asked for or
+    at a number of boxes, with the bound reached. Turning the vehicle by half a turn, or a circle by one of
+    its elements, changes nothing; so that much yaw is looked at. One element is the vertical case, whose own
+    branch and bound is used.
 
     Args:
         task: the array and its scene.
-        seed: seed of the search before the proof.
-        time_limit_s: seconds after which the proof stops with the bound reached.
+        log_value: log ratio of a state with digital combining.
+        gap: relative gap to that at which it is done.
+        effort: share of the usual number of boxes.
+    """
+    value = math.exp(log_value)
+    one = _vertical_bound(task, gap)
+    if len(task.base) == 1 or one.value <= value * (1.0 + gap):
+        return one
+    from nullpose.solve.kernels.array_branch import branch_array
 
-    Raises:
-        SolveError: no position reaches every node.
+    points_m, _, nodes = task.scene
+    most = effort * _WORK / (nodes * (1 + len(points_m) - nodes) * len(task.base))
+    low_m, high_m = task.reach(log_value - _ROUNDING)
+    half_yaw = math.pi / task.symmetry
+    root = np.concatenate(
+        [0.5 * (low_m + high_m), [0.0], 0.5 * (high_m - low_m) * (1.0 + _ROUNDING), [half_yaw]]
+    )
+    state = np.full(4, math.nan)
+    bound, boxes = branch_array(
+        task.scene,
+        task.base,
+        task.family.domain,
+        root,
+        value * (1.0 + _INSIDE * gap),
+        int(min(max(most, _LEAST_BOXES), _MOST_BOXES)),
+        state,
+    )
+    return ArrayBound(
+        value=min(one.value, float(bound) * (1.0 + _ROUNDING)),
+        boxes=one.boxes + int(boxes),
+        state=state if np.all(np.isfinite(state)) else None,
+    )
+
+
+def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
+    """Return K times the bound of one vertical dipole with the jammers silent; for K = 1, not silent.
+
+    With ``R >= sigma^2 I``, ``h_k^H R^-1 h_k <= |h_k|^2 / sigma^2``, and ``|h_k|^2`` is K times what one
+    vertical dipole receives at the same position. Where the jammers can be nulled for nothing, the optimum
+    is a flat ridge, along which a branch and bound is slow, and this bound is met.
     """
     family = task.family
-    nodes = task.scene[2]
     if len(task.base) > 1:
-        family = replace(
-            family,
-            denominator_start=np.zeros(len(family.denominator_isotropic) + 1, dtype=np.int64),
-            denominator_point=np.zeros(0, dtype=np.int64),
-            denominator_weight=np.zeros(0),
-        )
-    limits = Limits(gap=default_gap(nodes), time_limit_s=time_limit_s)
-    settled = settle(family, [AxisField.vertical()], Effort(seed=seed, limits=limits))
+        family = silent(family)
+    limits = Limits(gap=max(_INSIDE * gap, _LEAST_GAP), time_limit_s=_PROOF_S)
+    settled = settle(family, [AxisField.vertical()], Effort(limits=limits))
     assert settled.upper_bound is not None, "a proof was asked for"
-    return ArrayBound(
-        value=len(task.base) * settled.upper_bound,
-        position_m=settled.found.position_m,
-        nodes=settled.nodes,
-    )
+    value = len(task.base) * settled.upper_bound * (1.0 + _ROUNDING)
+    return ArrayBound(value=value, boxes=settled.nodes)

@@ -45,15 +45,16 @@ class ArraySolution:
         elements: number of dipoles.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
-        status: ``best-found``: the best of many local optima, not proved to be the global one.
-        objective: the value at the pose, and a bound on it, which may be loose.
+        status: ``certified``, or ``gap-not-reached``, as always where a shared beam falls short of digital
+            combining, whose bound it has.
+        objective: the value at the pose, and the bound on it.
         pose: level: roll and pitch are zero.
         weights: what each element is multiplied by (its conjugate), of unit length: (n_nodes, K) digital,
             (K,) analogue; complex, read-only.
         links: every node's link, in the scenario's order.
         stats: time and counts.
         provenance: versions and seed.
-        note: a sentence on how far the bound is.
+        reason: what kept the gap from being reached; empty if nothing did.
     """
 
     scenario: Scenario
@@ -68,7 +69,7 @@ class ArraySolution:
     links: tuple[Link, ...]
     stats: ArrayStats
     provenance: Mapping[str, Any]
-    note: str = ""
+    reason: str = ""
 
     def __post_init__(self) -> None:
         weights = np.array(self.weights, dtype=complex)
@@ -123,6 +124,7 @@ class ArraySolution:
                 "weights": np.stack([self.weights.real, self.weights.imag], axis=-1).tolist(),
             },
             "status": self.status.value,
+            "reason": self.reason,
             "objective": {
                 "name": self.objective.name,
                 "value": self.objective.value,
@@ -140,7 +142,6 @@ class ArraySolution:
             "links": [_link_dict(link) for link in self.links],
             "stats": asdict(self.stats),
             "provenance": dict(self.provenance),
-            "note": self.note,
         }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from nullpose.family import Family, build_family
 from nullpose.physics.array import element_positions
 from nullpose.scenario import Array, Scenario
 
-__all__ = ["ArrayTask", "Scene"]
+__all__ = ["ArrayTask", "Scene", "silent"]
 
 FloatArray = NDArray[np.float64]
 Scene = tuple[FloatArray, FloatArray, int]
@@ -30,12 +30,14 @@ class ArrayTask:
         scene: points, nodes first; strengths, m^2 (power times path gain over noise, a node's divided by
             what it requires); the number of nodes.
         base: (k, 2) elements in body axes, wavelengths.
+        symmetry: by how many equal turns the elements come to lie on each other.
         shared: whether one beam serves all nodes.
     """
 
     family: Family
     scene: Scene
     base: FloatArray
+    symmetry: int
     shared: bool
 
     @classmethod
@@ -57,8 +59,30 @@ class ArrayTask:
                 len(scenario.nodes),
             ),
             base=np.ascontiguousarray(places[:, :2]),
+            symmetry=max(2, array.elements) if array.layout == "circular" else 2,
             shared=shared,
         )
+
+    def digital(self) -> ArrayTask:
+        """Return the same task with weights of each node's own."""
+        return replace(self, shared=False)
+
+    def calmed(self, most: float) -> ArrayTask:
+        """Return the task with every jammer at most so many times as strong as the strongest node.
+
+        Args:
+            most: ratio of the strengths.
+        """
+        points_m, strengths, nodes = self.scene
+        limit = most * np.max(strengths[:nodes])
+        calmer = np.concatenate([strengths[:nodes], np.minimum(strengths[nodes:], limit)])
+        return replace(self, scene=(points_m, calmer, nodes))
+
+    @property
+    def jamming(self) -> float:
+        """How many times as strong the strongest jammer is as the strongest node; 0 without jammers."""
+        _, strengths, nodes = self.scene
+        return float(np.max(strengths[nodes:], initial=0.0) / np.max(strengths[:nodes]))
 
     @property
     def size(self) -> int:
@@ -135,3 +159,17 @@ class ArrayTask:
             way = slopes[worst] if np.any(slopes[worst]) else np.array([0.0, 0.0, 1.0])
             position_m = np.clip(position_m + (_CLEAR_M - distance[worst]) * way, low_m, high_m)
         return None
+
+
+def silent(family: Family) -> Family:
+    """Return the family without what is in the denominators but noise; its points are still kept clear of.
+
+    Args:
+        family: ratios over interferers.
+    """
+    return replace(
+        family,
+        denominator_start=np.zeros_like(family.denominator_start),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+    )
