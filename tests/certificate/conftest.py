@@ -234,6 +234,25 @@ def link_matrix() -> Callable[[np.ndarray], np.ndarray]:
 
 
 @pytest.fixture(scope="session")
+def dense_forms(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., tuple]:
+    """Returns a function: numerator and denominator of a family's first ratio at a position, densely."""
+
+    def forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        g = family.denominator_of[0]
+        entries = range(family.denominator_start[g], family.denominator_start[g + 1])
+        links = [link_matrix(point - position_m) for point in family.points_m]
+        below = family.denominator_isotropic[g] * np.eye(3)
+        below = below + sum(
+            (family.denominator_weight[e] * links[family.denominator_point[e]] for e in entries),
+            np.zeros((3, 3)),
+        )
+        above = family.numerator_isotropic[0] * np.eye(3)
+        return above + family.numerator_weight[0] * links[family.numerator_point[0]], below
+
+    return forms
+
+
+@pytest.fixture(scope="session")
 def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., np.ndarray]:
     """Returns a function: the ratios of a family at a pose, by dense matrices and nothing else."""
 

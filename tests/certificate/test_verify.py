@@ -222,7 +222,7 @@ def test_a_pose_in_a_keep_out_ball_is_rejected(walled: Certificate) -> None:
         ({"point": lambda x: x * 0 - 1}, "its point does not exist"),
         ({"mix": lambda x: x + 10**6}, "its multipliers do not exist"),
         ({"mix": lambda x: x * 0 - 1}, "its multipliers do not exist"),
-        ({"ball": lambda x: x + 100}, "its keep-out ball does not exist"),
+        ({"ball": lambda x: x + 100}, "its keep-out ball or zone does not exist"),
         ({"ball_multiplier": lambda x: -x}, "a multiplier is negative"),
         ({"sides": lambda x: x - 1.0}, "a multiplier is negative"),
         ({"cell": lambda x: x * 0 + np.array([3, 0, 0, 0, 0])}, "its cell does not exist"),

@@ -174,7 +174,9 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
                 bent[i] = bent[i] + 2.0 * nu * bound.bend[:, i]
         return _quadratic_negative(boxes.chosen(rows), here, steep, bent)
 
-    holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test)
+    holds = (ranged.high < 0.0) | negative_where_allowed(
+        family, leaves, boxes, test, lambda: np.stack([x.middle() for x in slopes], -1)
+    )
     return np.asarray(certain & holds)
 
 

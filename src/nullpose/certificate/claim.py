@@ -87,11 +87,11 @@ def _quantity(certificate: Certificate) -> str:
 
 
 def _place_fault(certificate: Certificate, family: Family, position: list[Fraction]) -> str:
-    scenario = certificate.scenario
+    scenario, airspace = certificate.scenario, certificate.scenario.airspace
     for i, name in enumerate("xyz"):
-        if not family.low_m[i] <= certificate.position_m[i] <= family.high_m[i]:
+        if not airspace.lower_m[i] <= certificate.position_m[i] <= airspace.upper_m[i]:
             return f"{name} = {float(certificate.position_m[i])!r} m is outside the airspace"
-    if not scenario.airspace.allows(certificate.position_m):
+    if not airspace.allows(certificate.position_m):
         return "outside the geofence or in a no-fly zone"
     least = Fraction(family.keep_out_m) - Fraction(_EDGE_M)
     points = np.vstack(

@@ -7,6 +7,7 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, Leaves
 from nullpose.certificate.interval import Interval
+from nullpose.certificate.zones import forbidden
 from nullpose.family import Family
 
 __all__ = ["far_holds", "kept_out_holds", "root_holds"]
@@ -32,17 +33,22 @@ def far_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
 
 
 def kept_out_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes lie inside their keep-out ball, where no position is allowed.
+    """Return which boxes lie inside their keep-out ball or zone, where no position is allowed.
 
     Args:
-        family: with its keep-out balls.
-        leaves: with the ball.
+        family: with its keep-out balls and zones.
+        leaves: with the ball, or, counted on from the balls, the zone.
         boxes: to be tested.
     """
-    if not len(family.keep_out_points_m):
-        return np.zeros(len(boxes), dtype=bool)
-    farthest2 = boxes.farthest2(family.keep_out_points_m[leaves.point[boxes.leaf]])
-    return np.asarray(farthest2 < Interval(family.keep_out_m).squared().low)
+    balls = len(family.keep_out_points_m)
+    which = leaves.point[boxes.leaf]
+    holds, in_ball = np.zeros(len(boxes), dtype=bool), which < balls
+    if np.any(in_ball):
+        farthest2 = boxes.chosen(in_ball).farthest2(family.keep_out_points_m[which[in_ball]])
+        holds[in_ball] = farthest2 < Interval(family.keep_out_m).squared().low
+    if not np.all(in_ball):
+        holds[~in_ball] = forbidden(family, which[~in_ball] - balls, boxes.chosen(~in_ball))
+    return holds
 
 
 def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:

@@ -11,6 +11,7 @@ from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes, group_shares, mix_slots
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.frames import (
+    PAIRS,
     SWING,
     Frames,
     congruent,
@@ -104,7 +105,7 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
                 slopes[e] = [m + g * slope for m, g in zip(slopes[e], gram, strict=True)]
         return at_corners(half, matrix, slopes, level_axes[rows])
 
-    return negative_where_allowed(family, leaves, boxes, test)
+    return negative_where_allowed(family, leaves, boxes, test, lambda: steepest(total, level_axes))
 
 
 def add_ratios(total: Sum, family: Family, leaves: Leaves, boxes: Boxes, frames: Frames) -> None:
@@ -177,6 +178,28 @@ def add_constant(
         bend = spread / frames.rho_least.squared() * SWING * np.abs(weight) * (boxes.half2 * 0.5)
         total.rest = total.rest + np.where(frames.turning, finite(bend.high), 0.0)
     total.add(Interval(weight), congruent(frames, q), slopes)
+
+
+def steepest(total: Sum, level_axes: np.ndarray) -> FloatArray:
+    """Return about the gradient of the largest eigenvalue at the centres, (b, 3).
+
+    Args:
+        total: the sums.
+        level_axes: (b,) whether the level plane is all that counts.
+    """
+    full = np.zeros((len(level_axes), 3, 3))
+    slope = np.zeros((3, *full.shape))
+    for m, (i, j) in enumerate(PAIRS):
+        full[:, i, j] = full[:, j, i] = total.matrix[m].middle()
+        for e in range(3):
+            slope[e, :, i, j] = slope[e, :, j, i] = total.slopes[e][m].middle()
+    full[level_axes, 2, :] = full[level_axes, :, 2] = 0.0
+    full[level_axes, 2, 2] = -np.linalg.norm(full[level_axes], axis=(1, 2)) - 1.0
+    known = np.all(np.isfinite(full), axis=(1, 2))
+    full[~known] = 0.0
+    top = np.linalg.eigh(full)[1][:, :, -1]
+    gradient = np.einsum("bi,ebij,bj->be", top, slope, top)
+    return np.where(np.isfinite(gradient), gradient, 0.0)
 
 
 def at_corners(

@@ -88,4 +88,4 @@ def _rounded(number: float, direction: str, digits: int = 9) -> str:
     """Return a number with so many decimals that claims no more than it does; in full if it is small."""
     if 0.0 < number < 1e-3:
         return repr(number)
-    return str(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction))
+    return format(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction), "f")

@@ -126,10 +126,11 @@ def _tree_fault(
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
     """Return the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
     leaves = tree.leaves
-    points, ratios, balls = len(family.points_m), len(family.numerator_point), len(family.keep_out_points_m)
+    points, ratios = len(family.points_m), len(family.numerator_point)
+    borders = len(family.keep_out_points_m) + len(family.zone_kind)
     limit = np.select(
         [leaves.test == TOWARDS, leaves.test == FAR, leaves.test == KEPT_OUT],
-        [points, ratios, balls],
+        [points, ratios, borders],
         points + 1,
     )
     needs_point = np.isin(leaves.test, (TOWARDS, FAR, KEPT_OUT))
@@ -141,7 +142,7 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
         "its point does not exist": needs_point & ((leaves.point < 0) | (leaves.point >= limit)),
         "its multipliers do not exist": needs_mix & ((leaves.mix < 0) | (leaves.mix >= len(leaves.mixes))),
-        "its keep-out ball does not exist": leaves.ball >= balls,
+        "its keep-out ball or zone does not exist": leaves.ball >= borders,
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
         "its cell does not exist": (leaves.cell[:, 0] < -1) | (leaves.cell[:, 0] > 2),

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
+from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
 from nullpose.errors import UsageError
+from nullpose.family import build_family
 from nullpose.solve.proof import Proof
 from nullpose.solve.solution import Solution
 
@@ -24,16 +28,15 @@ def certificate_of(solution: Solution) -> Certificate:
         UsageError: nothing was proved, or the scheme has no certificate for this scenario.
     """
     fields = claimed_axes(solution.scenario, solution.scheme, solution.null_jammer)
-    bound = solution.objective.upper_bound
-    if bound is None or fields is None:
-        reason = solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
-        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {reason}")
+    if solution.objective.upper_bound is None or fields is None:
+        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {_lack(solution)}")
     pose = solution.pose
+    value, bound = _ratios(solution)
     return Certificate(
         scenario=solution.scenario,
         scheme=solution.scheme.value,
         null_jammer=solution.null_jammer,
-        value=solution.objective.value,
+        value=value,
         upper_bound=bound,
         position_m=np.array(pose.position_m, dtype=float),
         roll_rad=pose.roll_rad,
@@ -45,6 +48,25 @@ def certificate_of(solution: Solution) -> Certificate:
         ),
         provenance=dict(solution.provenance),
     )
+
+
+def _lack(solution: Solution) -> str:
+    """Return why a solution has no certificate."""
+    if solution.scenario.is_uncertain:
+        return "it has uncertain positions or pose errors, of which there are no certificates"
+    return solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
+
+
+def _ratios(solution: Solution) -> tuple[float, float]:
+    """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
+    objective = solution.objective
+    if not objective.is_rate:
+        return objective.value, max(objective.value, objective.upper_bound or 0.0)
+    pose = solution.pose
+    axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
+    position = [Fraction(float(x)) for x in pose.position_m]
+    value = float(smallest_ratio(build_family(solution.scenario), position, axis))
+    return value, max(value, *(proof.upper_bound for proof in solution.proofs))
 
 
 def leaves_of(proof: Proof) -> Leaves:
