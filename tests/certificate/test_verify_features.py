@@ -1,0 +1,220 @@
+"""Margins, secrecy rates, zones and fences: what the solver certifies is accepted and said right."""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import Certificate, certificate_text, parse_certificate, verify
+from nullpose.certificate.certificate import KEPT_OUT
+from nullpose.family import build_family
+from nullpose.scenario import Airspace, Eavesdropper, Scenario, Transmitter
+
+ALTITUDE_M = (8.0, 30.0)
+ZONES = {
+    "block": {"no_fly": [{"x_m": (-20.0, 5.0), "y_m": (10.0, 40.0)}]},
+    "cylinder": {"no_fly": [{"centre_m": (-2.2, 23.8), "radius_m": 6.0}]},
+    "low cylinder": {"no_fly": [{"centre_m": (-2.2, 23.8), "radius_m": 6.0, "altitude_m": (0.0, 10.0)}]},
+    "triangle": {
+        "no_fly": [{"polygon_m": [(-10.0, 15.0), (10.0, 20.0), (-5.0, 35.0)], "altitude_m": (0.0, 12.0)}]
+    },
+    "notch": {
+        "no_fly": [{"polygon_m": [(-20.0, 10.0), (20.0, 10.0), (20.0, 40.0), (-2.0, 24.5), (-20.0, 40.0)]}]
+    },
+    "fence": {"geofence_m": [(0.0, 0.0), (40.0, 0.0), (40.0, 60.0), (20.0, 30.0), (5.0, 60.0)]},
+    "both": {
+        "geofence_m": [(-30.0, -10.0), (40.0, -10.0), (40.0, 60.0), (-30.0, 60.0)],
+        "no_fly": [
+            {"centre_m": (2.0, 25.0), "radius_m": 5.0},
+            {"x_m": (-20.0, -6.0), "y_m": (10.0, 40.0)},
+        ],
+    },
+}
+
+
+def accepted(certificate: Certificate) -> str:
+    """Return the words with which a certificate is accepted."""
+    verdict = verify(certificate)
+    assert verdict.proved, verdict.message
+    return verdict.message
+
+
+def rejected(certificate: Certificate) -> str:
+    """Return the words with which a certificate is rejected."""
+    verdict = verify(certificate)
+    assert not verdict.proved
+    return verdict.message
+
+
+def within(scenario: Scenario, **airspace: object) -> Scenario:
+    """Return a scenario in another airspace."""
+    return scenario.model_copy(update={"airspace": Airspace(altitude_m=ALTITUDE_M, **airspace)})
+
+
+def weighted(scenario: Scenario, *weights: float) -> Scenario:
+    """Return a scenario whose nodes have weights."""
+    nodes = [
+        node.model_copy(update={"weight": weight})
+        for node, weight in zip(scenario.nodes, weights, strict=True)
+    ]
+    return scenario.model_copy(update={"nodes": tuple(nodes)})
+
+
+def overheard(scenario: Scenario, *places: tuple[float, float, float], power_w: float = 1.0) -> Scenario:
+    """Return a scenario in which the drone transmits and somebody listens in at each place."""
+    return Scenario(
+        objective="secrecy-rate",
+        airspace=scenario.airspace,
+        receiver=scenario.receiver,
+        transmitter=Transmitter(power_w=power_w),
+        nodes=tuple(node.model_copy(update={"power_w": None}) for node in scenario.nodes),
+        eavesdroppers=tuple(Eavesdropper(position_m=place) for place in places),
+    )
+
+
+@pytest.fixture(scope="module")
+def zoned(paper: Callable, certified: Callable) -> Callable[[str, str], Certificate]:
+    """Returns a function: the certificate of the paper's scene in an airspace, under a scheme."""
+    made: dict[tuple[str, str], Certificate] = {}
+
+    def certificate(name: str, scheme: str = "optimum") -> Certificate:
+        if (name, scheme) not in made:
+            made[name, scheme] = certified(within(paper(), **ZONES[name]), scheme)
+        return made[name, scheme]
+
+    return certificate
+
+
+@pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference"])
+@pytest.mark.parametrize("name", ZONES)
+def test_zones_are_proved(name: str, scheme: str, zoned: Callable) -> None:
+    """Zones of each shape, a fence, and both, for free axes and for given ones."""
+    certificate = zoned(name, scheme)
+    assert certificate.upper_bound <= certificate.value * 1.0011
+    words = accepted(certificate)
+    place = {"fence": "inside the geofence", "both": "inside the geofence and outside the 2 no-fly zones"}
+    assert f"no position {place.get(name, 'outside the no-fly zone')} " in words
+
+
+@pytest.mark.parametrize("name", ZONES)
+def test_zones_are_needed(name: str, zoned: Callable) -> None:
+    """Leaves that lean on a zone fail without it, or with another's number."""
+    certificate = zoned(name)
+    tree = certificate.trees[0]
+    balls = len(build_family(certificate.scenario).keep_out_points_m)
+    leaning = tree.leaves.ball >= balls
+    inside = (tree.leaves.test == KEPT_OUT) & (tree.leaves.point >= balls)
+    assert balls == 0
+    assert np.any(leaning)
+    assert np.any(inside)
+    columns = [{"ball": np.where(leaning, -1, tree.leaves.ball)}]
+    if name == "both":  # the other zones' numbers
+        columns.append({"point": np.where(inside, (tree.leaves.point - balls + 1) % 3, tree.leaves.point)})
+        columns.append({"ball": np.where(leaning, (tree.leaves.ball - balls + 1) % 3, tree.leaves.ball)})
+    for changed in columns:
+        leaves = replace(tree.leaves, **changed)
+        assert "is not excluded" in rejected(replace(certificate, trees=(replace(tree, leaves=leaves),)))
+    free = within(certificate.scenario)
+    assert rejected(replace(certificate, scenario=free))
+
+
+def test_a_smaller_zone_is_another_claim(zoned: Callable) -> None:
+    """A proof for a zone does not hold once the zone leaves more room."""
+    certificate = zoned("cylinder")
+    smaller = within(certificate.scenario, no_fly=[{"centre_m": (-2.2, 23.8), "radius_m": 5.9}])
+    assert "is not excluded" in rejected(replace(certificate, scenario=smaller))
+    # while a larger one forbids the pose
+    larger = within(certificate.scenario, no_fly=[{"centre_m": (-2.2, 23.8), "radius_m": 6.1}])
+    assert "no-fly zone" in rejected(replace(certificate, scenario=larger))
+
+
+def test_forbidden_poses_are_rejected(zoned: Callable, certified: Callable, paper: Callable) -> None:
+    """A pose in a zone or beyond the fence is none; one on the border, to a nanometre, is."""
+    free = certified(paper())
+    for name in ("block", "cylinder", "fence"):
+        assert "outside the geofence or in a no-fly zone" in rejected(
+            replace(zoned(name), position_m=free.position_m)
+        )
+    certificate = zoned("cylinder")
+    middle = np.array([-2.2, 23.8, certificate.position_m[2]])
+    inwards = (middle - certificate.position_m) / np.linalg.norm(middle - certificate.position_m)
+    for depth_m, words in ((3e-9, "no-fly zone"), (5e-10, "")):
+        moved = replace(certificate, position_m=certificate.position_m + depth_m * inwards)
+        verdict = verify(replace(moved, value=certificate.value))
+        assert words in verdict.message
+        assert verdict.proved or words or "smallest SINR" in verdict.message
+
+
+def test_zones_and_airframes_go_together(paper: Callable, put_together: Callable) -> None:
+    """Level axes, a band and an upright antenna in an airspace with zones."""
+    for airframe in (
+        {"preset": "level", "mount_deg": 90.0},
+        {"tilt_max_deg": 20.0},
+        {"preset": "level"},
+    ):
+        data = within(paper(10.0), **ZONES["both"]).to_dict() | {"airframe": airframe}
+        certificate = put_together(Scenario.from_dict(data))
+        assert certificate.upper_bound <= certificate.value * 1.0011
+        words = accepted(certificate)
+        assert "inside the geofence and outside the 2 no-fly zones" in words
+        assert "airframe's reach" in words
+
+
+@pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference", "maximum-gain"])
+def test_margins_are_proved(scheme: str, paper: Callable, certified: Callable) -> None:
+    """With weights the numbers are margins, in the words too."""
+    certificate = certified(weighted(paper(), 1.0, 2.0), scheme)
+    words = accepted(certificate)
+    assert "gives every node a margin above" in words
+    assert "SINR" not in words
+    spoiled = rejected(replace(certificate, value=certificate.value * 0.999))
+    assert "smallest margin is" in spoiled
+    assert rejected(replace(certificate, scenario=paper()))
+    equal = certified(weighted(paper(), 1.0, 1.0), scheme)
+    plain = certified(paper(), scheme)
+    assert equal.value == pytest.approx(plain.value, rel=1e-3)
+
+
+@pytest.mark.parametrize("scheme", ["optimum", "vertical"])
+@pytest.mark.parametrize("listeners", [1, 3])
+def test_secrecy_rates_are_proved(listeners: int, scheme: str, paper: Callable, certified: Callable) -> None:
+    """With eavesdroppers the numbers are two to the power of the rate; the words have the rate."""
+    places = [(17.0, 15.0, 4.0), (-30.0, 20.0, 0.0), (20.0, 60.0, 2.0)][:listeners]
+    certificate = certified(overheard(paper(), *places), scheme)
+    words = accepted(certificate)
+    assert "gives every node a secrecy rate above" in words
+    bound, value = (float(x) for x in re.findall(r"(?:above|every node) ([0-9.]+) bits/s/Hz", words))
+    assert 0.0 <= bound - math.log2(certificate.upper_bound) <= 2e-9
+    assert 0.0 <= math.log2(certificate.value) - value <= 2e-9
+    assert "smallest ratio is" in rejected(replace(certificate, value=certificate.value * (1.0 - 1e-6)))
+    louder = certified(overheard(paper(), *places, power_w=1.1), scheme)
+    assert rejected(replace(louder, trees=certificate.trees, upper_bound=certificate.upper_bound))
+
+
+def test_no_secret_is_proved(paper: Callable, certified: Callable) -> None:
+    """Where whoever listens hears a thousand times better, no rate is positive, and that is said."""
+    scenario = overheard(paper(x_m=(-20.0, 20.0), y_m=(0.0, 40.0)), (17.0, 15.0, 4.0), (-10.0, 20.0, 0.0))
+    sharp = [each.model_copy(update={"noise_w": 1e-6}) for each in scenario.eavesdroppers]
+    certificate = certified(scenario.model_copy(update={"eavesdroppers": tuple(sharp)}), gap=0.1)
+    words = accepted(certificate)
+    assert certificate.value < 1.0
+    assert "gives every node 0.000000000 bits/s/Hz or more" in words
+    above = float(re.findall(r"above ([0-9.e-]+) bits/s/Hz", words)[0])
+    assert 0.0 <= above - max(0.0, math.log2(certificate.upper_bound)) <= 2e-9
+
+
+def test_files_keep_what_is_new(zoned: Callable, paper: Callable, certified: Callable) -> None:
+    """Zones, margins and rates are written as version 2, read back and proved again in the same words."""
+    for certificate in (
+        zoned("both"),
+        certified(weighted(paper(), 1.0, 2.0)),
+        certified(overheard(paper(), (17.0, 15.0, 4.0))),
+    ):
+        text = certificate_text(certificate)
+        assert '"version": 2' in text
+        again = parse_certificate(text)
+        assert certificate_text(again) == text
+        assert accepted(again) == accepted(certificate)

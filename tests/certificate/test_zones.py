@@ -1,0 +1,175 @@
+"""Zones in boxes: every allowed position of a box meets an alternative that names it."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.constraint import Constraint
+from nullpose.certificate.distance_tests import kept_out_holds
+from nullpose.certificate.zones import forbidden, zone_alternatives
+from nullpose.errors import ScenarioError
+from nullpose.family import Family, build_family
+from nullpose.scenario import Airspace
+
+seeds = st.integers(0, 2**32 - 1)
+
+ROOM = {"altitude_m": (8.0, 30.0)}
+
+
+def random_airspace(rng: np.random.Generator) -> Airspace:
+    """Return an airspace with zones of each kind and a fence, far enough from simple."""
+    while True:
+        count = int(rng.integers(3, 8))
+        angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
+        vertices = rng.uniform(5.0, 20.0, (count, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])
+        whole = bool(rng.integers(2))
+        fence = 3.0 * np.roll(vertices, 1, axis=1)
+        bottom, top = np.sort(rng.choice([0.0, 10.0, 19.0, 25.0, 40.0], 2, replace=False))
+        zones = [
+            {"polygon_m": (np.round(vertices) if whole else vertices).tolist(), "altitude_m": (bottom, top)},
+            {"centre_m": tuple(rng.uniform(-20.0, 20.0, 2)), "radius_m": float(rng.uniform(3.0, 15.0))},
+            {"x_m": (-5.0, float(rng.uniform(0.0, 9.0))), "y_m": (4.0, 24.0), "altitude_m": (9.0, 12.0)},
+        ]
+        try:
+            return Airspace(geofence_m=(np.round(fence) if whole else fence).tolist(), no_fly=zones, **ROOM)
+        except ScenarioError:  # edges that cross, vertices that meet
+            continue
+
+
+def family_of(airspace: Airspace, paper: Callable) -> Family:
+    """Return a family with an airspace's zones."""
+    return build_family(paper().model_copy(update={"airspace": airspace}))
+
+
+def some_boxes(rng: np.random.Generator, family: Family, count: int) -> Boxes:
+    """Return boxes, most of them near an edge of some zone, some with ends at whole numbers."""
+    at = family.zone_edges[rng.integers(len(family.zone_edges), size=count)]
+    share = rng.choice([0.0, 0.5, 1.0], (count, 1)) * rng.uniform(0.9, 1.1, (count, 1))
+    on_edge = at[:, :2] + share * (at[:, 2:] - at[:, :2])
+    centre = np.column_stack([on_edge, rng.choice([8.5, 9.0, 10.0, 15.0, 25.0, 29.0], count)])
+    half = 10.0 ** rng.uniform(-3.0, 0.9, (count, 3))
+    centre = centre + rng.uniform(-1.0, 1.0, (count, 3)) * half
+    whole = rng.integers(0, 3, count) == 0
+    low, high = np.floor(centre - half), np.ceil(centre + half)
+    centre = np.where(whole[:, None], 0.5 * (low + high), centre)
+    half = np.where(whole[:, None], 0.5 * (high - low), half)
+    return Boxes(leaf=np.arange(count), centre=centre, half=half)
+
+
+def value_at(bound: Constraint, i: int, shift: np.ndarray) -> float:
+    """Return an upper bound on a constraint at a position of the i-th of its boxes."""
+    value = bound.value[i] + sum(bound.slopes[i, m] * shift[m] for m in range(3))
+    return float(value.high) + float(bound.bend[i] @ shift**2)
+
+
+@settings(max_examples=40)
+@given(seed=seeds)
+def test_allowed_positions_meet_an_alternative(seed: int, paper: Callable) -> None:
+    """Whatever the zone: what it allows meets all constraints of an alternative."""
+    rng = np.random.default_rng(seed)
+    airspace = random_airspace(rng)
+    family = family_of(airspace, paper)
+    count = 40
+    boxes = some_boxes(rng, family, count)
+    zone = rng.integers(len(family.zone_kind), size=count)
+    found = zone_alternatives(family, zone, boxes)
+    never = forbidden(family, zone, boxes)
+    assert np.array_equal(never, ~np.isin(np.arange(count), np.concatenate([one.rows for one in found])))
+    for b in range(count):
+        shifts = rng.uniform(-1.0, 1.0, (12, 3))
+        shifts[:6] = np.sign(shifts[:6])
+        for shift in shifts * boxes.half[b]:
+            if not allows(family, int(zone[b]), boxes.centre[b] + shift):
+                continue
+            assert not never[b]
+            assert any(
+                all(value_at(bound, i, shift) >= -1e-9 for bound in one.constraints)
+                for one in found
+                for i in np.flatnonzero(one.rows == b)
+            )
+
+
+def allows(family: Family, zone: int, p: np.ndarray) -> bool:
+    """Return whether a zone allows a position, plainly; just inside it counts as forbidden."""
+    low, high = family.zone_range_m[zone]
+    edges = family.zone_edges[family.zone_start[zone] : family.zone_start[zone + 1]]
+    if p[2] <= low or p[2] >= high:
+        return True
+    if family.zone_kind[zone] == 1:
+        return bool(np.hypot(*(p[:2] - edges[0, :2])) >= edges[0, 2])
+    first, last = edges[:, :2] - p[:2], edges[:, 2:] - p[:2]
+    across = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
+    turned = np.sum(np.arctan2(across, np.sum(first * last, axis=1)))
+    return bool(abs(turned) > np.pi) == (family.zone_kind[zone] == 2)
+
+
+def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
+    """Each kind forbids boxes inside it and not those that reach a border, however little."""
+    airspace = Airspace(
+        no_fly=[
+            {"x_m": (0.0, 10.0), "y_m": (0.0, 10.0), "altitude_m": (9.0, 20.0)},
+            {"centre_m": (30.0, 0.0), "radius_m": 5.0},
+        ],
+        geofence_m=[(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)],
+        **ROOM,
+    )
+    family = family_of(airspace, paper)
+    inside = [
+        (0, (5.0, 5.0, 15.0), (4.9, 4.9, 4.9)),
+        (1, (30.0, 0.0, 15.0), (3.5, 3.5, 100.0)),
+        (2, (60.0, 0.0, 15.0), (9.9, 100.0, 100.0)),
+    ]
+    reaching = [
+        (0, (5.0, 5.0, 15.0), (5.0, 4.9, 4.9)),
+        (0, (5.0, 5.0, 15.0), (4.9, 4.9, 5.0)),
+        (0, (5.0, 5.0, 14.0), (4.9, 4.9, 5.0)),
+        (0, (25.0, 5.0, 14.0), (4.9, 4.9, 5.0)),
+        (1, (30.0, 0.0, 15.0), (3.6, 3.6, 1.0)),
+        (1, (30.0, 0.0, 15.0), (5.0, 0.0, 1.0)),
+        (2, (60.0, 0.0, 15.0), (10.0, 1.0, 1.0)),
+        (2, (0.0, 0.0, 15.0), (10.0, 1.0, 1.0)),
+    ]
+    for cases, expected in ((inside, True), (reaching, False)):
+        zone = np.array([case[0] for case in cases])
+        boxes = Boxes(
+            leaf=np.arange(len(cases)),
+            centre=np.array([case[1] for case in cases]),
+            half=np.array([case[2] for case in cases]),
+        )
+        assert np.all(forbidden(family, zone, boxes) == expected)
+
+
+def test_balls_and_zones_are_counted_on(paper: Callable, make_leaves: Callable) -> None:
+    """Leaves name zones by numbers that follow the balls', and both are looked at."""
+    airspace = Airspace(no_fly=[{"x_m": (0.0, 30.0), "y_m": (0.0, 30.0)}], keep_out_m=12.0, **ROOM)
+    family = family_of(airspace, paper)
+    balls = len(family.keep_out_points_m)
+    assert balls == 3
+    boxes = Boxes(
+        leaf=np.arange(4),
+        centre=np.array([[0.0, 0.0, 9.0], [15.0, 15.0, 20.0], [0.0, 0.0, 9.0], [15.0, 15.0, 20.0]]),
+        half=np.full((4, 3), 0.5),
+    )
+    leaves = make_leaves(4, point=np.array([0, 0, balls, balls]))
+    assert kept_out_holds(family, leaves, boxes).tolist() == [True, False, False, True]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_constraints_are_of_the_walls(side: int, paper: Callable) -> None:
+    """At a wall the one constraint is how far a position is outside, to scale; above and below are added."""
+    airspace = Airspace(
+        no_fly=[{"x_m": (0.0, 10.0), "y_m": (0.0, 10.0), "altitude_m": (9.0, 20.0)}],
+        **ROOM,
+    )
+    family = family_of(airspace, paper)
+    centre = np.array([[10.0, 5.0, 20.0]]) if side else np.array([[5.0, 0.0, 9.0]])
+    boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=centre, half=np.full((1, 3), 0.5))
+    found = zone_alternatives(family, np.zeros(1, dtype=np.int64), boxes)
+    ways = [one.constraints[0].slopes.middle()[0] for one in found]
+    ways = sorted(tuple(way / np.linalg.norm(way)) for way in ways)
+    out = (1.0, 0.0, 0.0) if side else (0.0, -1.0, 0.0)
+    assert ways == sorted([out, (0.0, 0.0, 1.0 if side else -1.0)])
