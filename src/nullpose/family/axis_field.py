@@ -115,10 +115,11 @@ class AxisField:
         offset's first two numbers, and 3 for a band whose ends are one, a cone.
         """
         low, high = self.band
+        # writable copies, as those are that kernels make: they are compiled for one kind of array
+        offset, matrix = self.offset.copy(), self.matrix.copy()
         if not self.is_free:
-            return (1, self.offset, self.matrix)
+            return (1, offset, matrix)
         if (low, high) == (0.0, 1.0):
-            return (0, self.offset, self.matrix)
-        ends = np.array([low, high, 0.0])
-        ends.flags.writeable = False  # as the offset is: kernels are compiled for one kind of array
-        return (3 if low == high else 2, ends, self.matrix)
+            return (0, offset, matrix)
+        offset[:2] = low, high
+        return (3 if low == high else 2, offset, matrix)
