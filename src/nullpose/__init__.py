@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         load,
     )
     from nullpose.solve import Scheme, Solution, Status, compare, solve
+    from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
     from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
 
     __version__: str
@@ -61,6 +62,7 @@ __all__ = [
     "OutputError",
     "Pose",
     "Receiver",
+    "RobustSolution",
     "Scenario",
     "ScenarioError",
     "Scheme",
@@ -75,6 +77,7 @@ __all__ = [
     "compare",
     "compare_airframes",
     "evaluate",
+    "guarantee",
     "json_schema",
     "load",
     "min_margin",
@@ -82,6 +85,7 @@ __all__ = [
     "min_sinr",
     "pose_frames",
     "solve",
+    "solve_robust",
     "sweep",
 ]
 
@@ -120,6 +124,7 @@ _ROOMS = {
         "load",
     ),
     "nullpose.solve": ("Scheme", "Solution", "Status", "compare", "solve"),
+    "nullpose.solve.robust": ("RobustSolution", "guarantee", "solve_robust"),
     "nullpose.study": ("AirframeComparison", "SweepTable", "compare_airframes", "sweep"),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}

@@ -21,6 +21,7 @@ from nullpose.cli.options import (
     TimeLimit,
 )
 from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.robust import refuse_with_robust, solve_robustly
 
 __all__ = ["solve"]
 
@@ -36,6 +37,12 @@ def solve(
     node_limit: NodeLimit = 10**9,
     fast: Fast = False,
     seed: Seed = 0,
+    robust: Annotated[
+        bool,
+        typer.Option(
+            "--robust", help="Maximise what is guaranteed under the errors that the scenario states."
+        ),
+    ] = False,
     null_jammer: Annotated[
         str | None,
         typer.Option(
@@ -78,6 +85,21 @@ def solve(
     from nullpose.scenario import apply_overrides, load
 
     scenario = apply_overrides(load(file), overrides or [])
+    if robust:
+        scheme_given = scheme if scheme is not SchemeName.OPTIMUM else None
+        refuse_with_robust(
+            scheme=scheme_given, null_jammer=null_jammer, certificate=certificate, geojson=geojson
+        )
+        solve_robustly(
+            scenario,
+            gap=gap,
+            time_limit_s=time_limit,
+            node_limit=node_limit,
+            certify=not fast,
+            seed=seed,
+            json_output=json_output,
+        )
+        return
     from nullpose.certificate import write_certificate
     from nullpose.errors import UsageError
     from nullpose.report.export import require_origin, write_geojson

@@ -12,8 +12,9 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
+from nullpose.solve.kernels.denominators import expand_denominator
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
-from nullpose.solve.kernels.exclusion import excludes, expand_denominator, is_level, out_of_reach
+from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
@@ -168,13 +169,13 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
         first = np.int64(0)
         rests = expand_denominator(family, first, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
-    below = (denominator, slopes, rests)
-    if excludes(family, domain, axis_field, view, row, below):
+    below, several = (denominator, slopes, rests), family[5].shape[0] > 1
+    if excludes(family, domain, axis_field, view, row, below, several):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
         for m in range(BAND, BALL):
             row[m] = favourite[m]
-        if excludes(family, domain, axis_field, view, row, below):
+        if excludes(family, domain, axis_field, view, row, below, several):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached = free_multipliers(family, axis_field, basis, row, denominator, coarseness, weights, axis)
@@ -188,7 +189,8 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
-    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
+    sharp = np.bool_(True)
+    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below, sharp):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)

@@ -14,8 +14,14 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solve.kernels.denominators import (
+    ROUNDING,
+    add_mixed_denominators,
+    add_scaled,
+    sharpen,
+)
 from nullpose.solve.kernels.dual import top_eigenvector
-from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, expand_point, min_distance
+from nullpose.solve.kernels.expansion import WORLD, expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
@@ -39,9 +45,8 @@ from nullpose.solve.kernels.node import (
 from nullpose.solve.kernels.symmetric import copy_into
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
-__all__ = ["excludes", "expand_denominator", "is_level", "out_of_reach"]
+__all__ = ["excludes", "is_level", "out_of_reach"]
 
-_ROUNDING = 2e-14  # relative to the terms summed: a hundred units in the last place
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
@@ -90,38 +95,6 @@ def negative_at_corners(matrix, slopes, half, level_axes):
 
 
 @inner_kernel
-def add_scaled(weight, form, slopes, matrix, matrix_slopes):
-    """Add a weighted form and its slopes to a matrix and its slopes."""
-    for m in range(6):
-        matrix[m] += weight * form[m]
-        for i in range(3):
-            matrix_slopes[i, m] += weight * slopes[i, m]
-
-
-@inner_kernel
-def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
-    """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
-    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
-    kind, anchor, basis, rho, rho_min = view
-    form, slopes = np.empty(6), np.empty((3, 6))
-    for m in range(3):
-        out[m] -= level * d0[g]
-    everywhere = across = 0.0
-    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    size = d0[g]
-    for e in range(dstart[g], dstart[g + 1]):
-        j = dpt[e]
-        _, down = expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
-        add_scaled(-level * dw[e], form, slopes, out, out_slopes)
-        if kind == TOWARDS_POINT and j == anchor:
-            across += level * dw[e] * (_ROUNDING * (form[0] + form[1]) - radius * down)
-        else:
-            size += dw[e] * (form[0] + form[1] + form[2])
-            everywhere -= level * dw[e] * radius * down
-    return everywhere + _ROUNDING * level * size, across
-
-
-@inner_kernel
 def add_side(form, weight, view, matrix, matrix_slopes):
     """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
     kind, _, basis, rho, rho_min = view
@@ -144,28 +117,6 @@ def add_side(form, weight, view, matrix, matrix_slopes):
 
 
 @inner_kernel
-def add_mixed_denominators(family, view, row, matrix, slopes):
-    """Add ``-t sum_k lambda_k D_k`` of the row's multipliers and its slopes; return its remainders."""
-    den = family[4]
-    everywhere = across = 0.0
-    used = int(row[COUNT])
-    for s in range(used):
-        g = den[int(row[INDEX + s])]
-        weight, first = 0.0, True
-        for r in range(used):
-            if den[int(row[INDEX + r])] == g:
-                weight += row[WEIGHT + r]
-                first = first and r >= s
-        if first and weight > 0.0:
-            one, two = expand_denominator(
-                family, g, weight * row[LEVEL], view, row[CENTRE:HALF], row[HALF:LEVEL], matrix, slopes
-            )
-            everywhere += one
-            across += two
-    return everywhere, across
-
-
-@inner_kernel
 def add_band(axis_field, view, row, matrix, slopes):
     """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
     weight = row[BAND]
@@ -180,34 +131,14 @@ def add_band(axis_field, view, row, matrix, slopes):
 
 
 @inner_kernel
-def excludes(family, domain, axis_field, view, row, below):
-    """Return whether the row's multipliers exclude its box and cell.
-
-    Args:
-        family: arrays of the family.
-        domain: box, keep-out balls, forbidden pieces and zones.
-        axis_field: kind, offset and matrix; a free axis, perhaps within a band.
-        view: the frame at the box's centre, from ``set_frame``.
-        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
-            denominator for all.
-    """
+def add_numerators(family, axis_field, view, row, matrix, slopes):
+    """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
     points, n0, nw, npt, turn = family[0], family[1], family[2], family[3], family[9]
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    if not row[COUNT] > 0.0:
-        return False
     form, form_slopes = np.empty(6), np.empty((3, 6))
-    matrix, slopes = np.empty(6), np.empty((3, 6))
-    for m in range(6):
-        matrix[m] = below[0][m]
-        for i in range(3):
-            slopes[i, m] = below[1][i, m]
-    everywhere, across = below[2]
-    if family[5].shape[0] > 1:
-        matrix[:], slopes[:, :] = 0.0, 0.0
-        everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    everywhere = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         weight = row[WEIGHT + s]
@@ -218,22 +149,54 @@ def excludes(family, domain, axis_field, view, row, below):
         for m in range(3):
             matrix[m] += weight * n0[k]
         size = n0[k] + nw[k] * (form[0] + form[1] + form[2])
-        everywhere += weight * (radius * nw[k] * up + _ROUNDING * size)
+        everywhere += weight * (radius * nw[k] * up + ROUNDING * size)
     if row[FACE] >= 0.0:
         for side in range(2):
             if row[SIDE + side] > 0.0:
                 cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
                 everywhere += radius * add_side(form, row[SIDE + side], view, matrix, slopes)
-                everywhere += 4.0 * _ROUNDING * row[SIDE + side]  # a side's entries are at most 1
+                everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
     everywhere += radius * add_band(axis_field, view, row, matrix, slopes)
-    everywhere += 4.0 * _ROUNDING * abs(row[BAND])
+    return everywhere + 4.0 * ROUNDING * abs(row[BAND])
+
+
+@inner_kernel
+def excludes(family, domain, axis_field, view, row, below, sharp):
+    """Return whether the row's multipliers exclude its box and cell.
+
+    Args:
+        family: arrays of the family.
+        domain: box, keep-out balls, forbidden pieces and zones.
+        axis_field: kind, offset and matrix; a free axis, perhaps within a band.
+        view: the frame at the box's centre, from ``set_frame``.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
+        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
+            denominator for all.
+        sharp: whether to try the sharper remainder too, which costs as much again.
+    """
+    if not row[COUNT] > 0.0:
+        return False
+    matrix, slopes = np.empty(6), np.empty((3, 6))
+    for m in range(6):
+        matrix[m] = below[0][m]
+        for i in range(3):
+            slopes[i, m] = below[1][i, m]
+    everywhere, across = below[2]
+    if family[5].shape[0] > 1:
+        matrix[:], slopes[:, :] = 0.0, 0.0
+        everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
+    everywhere += add_numerators(family, axis_field, view, row, matrix, slopes)
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
     row[NU] = 0.0
-    level_axes = is_level(axis_field)
+    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
     if negative_at_corners(matrix, slopes, half, level_axes):
         return True
+    if sharp and view[0] == WORLD and not level_axes:
+        sharpen(family, view, row, matrix, slopes)
+        if negative_at_corners(matrix, slopes, half, level_axes):
+            return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
 

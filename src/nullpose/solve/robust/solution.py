@@ -14,6 +14,7 @@ from nullpose.physics import Pose
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.limits import LEAST_RATE_BPS_HZ
+from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
 from nullpose.solve.solution import Stats, Status
@@ -138,6 +139,11 @@ class RobustSolution:
         if self.scenario.objective == "secrecy-rate":
             return (self.upper_bound - guaranteed) / max(guaranteed, LEAST_RATE_BPS_HZ)
         return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended its search or its proof."""
+        return self.reason == INTERRUPT
 
     @property
     def gain(self) -> float:
