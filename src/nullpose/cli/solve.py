@@ -75,7 +75,7 @@ def solve(
         typer.Option(
             "--figure",
             metavar="FILE",
-            help="Draw the pose in its scene, fence and no-fly zones included, into a file named .png or .svg.",
+            help="Draw the pose in its scene, with fence and no-fly zones, into a file named .png or .svg.",
             show_default=False,
         ),
     ] = None,
