@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,6 +89,8 @@ class Pose:
     @property
     def tilt_rad(self) -> float:
         """Angle between the body's vertical and the world's, radians."""
+        if self.roll_rad == 0.0 and abs(self.pitch_rad) <= math.pi:
+            return abs(self.pitch_rad)  # to the last digit
         forward = np.cos(self.roll_rad) * np.sin(self.pitch_rad)
         across = np.hypot(np.sin(self.roll_rad), forward)
         return float(np.arctan2(across, np.cos(self.roll_rad) * np.cos(self.pitch_rad)))

@@ -64,8 +64,10 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     over[0, 2] = family.low_m[2]
     beside = []
     for first, second in permutations(interferers[:_PAIRED], 2):
-        way = (second - first) / np.linalg.norm(second - first)
-        beside += [first + clear_m * way, first - clear_m * way]
+        apart_m = np.linalg.norm(second - first)
+        if apart_m > 0.0:  # one point may stand for several that see different axes
+            way = (second - first) / apart_m
+            beside += [first + clear_m * way, first - clear_m * way]
     return np.vstack([over, *beside])
 
 

@@ -112,9 +112,9 @@ def border_multipliers(slopes, count, gradient, nu):
             nu[1] = (pull[1] * gram[0] - pull[0] * cross) / det
         if nu[0] > 0.0 and nu[1] > 0.0:
             return True
-        lead = 0 if pull[0] * pull[0] / gram[0] * (pull[0] > 0.0) >= pull[1] * pull[1] / gram[1] else 1
-        nu[0] = nu[1] = 0.0
-        nu[lead] = max(0.0, pull[lead] / gram[lead])
+        nu[0], nu[1] = max(0.0, pull[0] / gram[0]), max(0.0, pull[1] / gram[1])
+        lead = 0 if nu[0] * pull[0] >= nu[1] * pull[1] else 1
+        nu[1 - lead] = 0.0
         return nu[lead] > 0.0
     nu[0] = max(0.0, pull[0] / gram[0])
     return nu[0] > 0.0

@@ -194,6 +194,7 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = split_axes or radius == 0.0  # one position has no halves
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
 
