@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nullpose.cli.options import Overrides, ScenarioFile
 
+if TYPE_CHECKING:
+    from threading import Event
+
 __all__ = ["studio"]
 
 _LOOPBACK = "127.0.0.1"
+_ANYWHERE = ("0.0.0.0", "::")
 
 
 def studio(
@@ -27,31 +33,34 @@ def studio(
     scenario = apply_overrides(load(file), overrides or [])
     from nullpose.studio.server import studio as running_studio
 
-    with running_studio(scenario, host=host, port=port) as running:
+    with _until_ended() as ended, running_studio(scenario, host=host, port=port) as running:
         _announce(host, running.port)
-        _wait()
+        while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
+            pass
     typer.echo("stopped")
 
 
 def _announce(host: str, port: int) -> None:
-    local = host in (_LOOPBACK, "localhost", "::1")
-    shown = "localhost" if host in ("0.0.0.0", "::") else f"[{host}]" if ":" in host else host
+    shown = "localhost" if host in _ANYWHERE else f"[{host}]" if ":" in host else host
     typer.echo(f"nullpose studio: http://{shown}:{port}   (Ctrl-C ends it)")
-    if not local:
+    if host not in (_LOOPBACK, "localhost", "::1"):
         typer.echo(f"listening at {host}: other machines can open it too, and nothing asks them who they are")
 
 
-def _wait() -> None:
-    """Wait for Ctrl-C or for the system to end the process."""
+@contextmanager
+def _until_ended() -> Iterator[Event]:
+    """Return an event that Ctrl-C, or the system's wish to end the process, sets: the usual end of it."""
     import signal
     import threading
 
     ended = threading.Event()
-    before = signal.signal(signal.SIGTERM, lambda number, frame: ended.set())
+    if threading.current_thread() is not threading.main_thread():
+        yield ended
+        return
+    signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    before = {number: signal.signal(number, lambda *_: ended.set()) for number in signals}
     try:
-        while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
-            pass
-    except KeyboardInterrupt:
-        typer.echo("")
+        yield ended
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

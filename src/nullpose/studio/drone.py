@@ -15,6 +15,7 @@ from nullpose.studio.meshes import (
     attitude_wxyz,
     body_mesh,
     doughnut_mesh,
+    gain_bands,
     null_line_m,
     rod_mesh,
     rotor_mesh,
@@ -117,12 +118,12 @@ class Drone:
 
     def _build(self) -> None:
         scene, root, size_m = self._scene, self._root, self._size_m
-        arm_m = 0.042 * size_m
+        arm_m = 0.055 * size_m
         self._frame = scene.add_frame(root, show_axes=False)
         add_mesh(scene, f"{root}/body", body_mesh(arm_m), _HULLS[self._slot], flat_shading=True)
         add_mesh(scene, f"{root}/rotors", rotor_mesh(arm_m), SLOTS[self._slot], opacity=0.45)
         self._parts["antenna"] = scene.add_frame(f"{root}/antenna", show_axes=False)
-        add_mesh(scene, f"{root}/antenna/rod", rod_mesh(0.14 * size_m), _NULL)
+        add_mesh(scene, f"{root}/antenna/rod", rod_mesh(0.2 * size_m), _NULL)
         self._parts["pattern"] = self._add_pattern(f"{root}/antenna/pattern")
         self._parts["label"] = scene.add_label(
             f"/labels{root}", "", anchor="bottom-center", font_screen_scale=1.0
@@ -142,17 +143,17 @@ class Drone:
         self._shown = {"frame": True, "pattern": True}
 
     def _add_pattern(self, name: str) -> Any:
-        mesh = doughnut_mesh(0.1 * self._size_m)
+        """Return the frame of the pattern: see-through bands of one gain each, or wires for the second."""
+        frame = self._scene.add_frame(name, show_axes=False)
+        radius_m = 0.11 * self._size_m
         if self._slot == 1:
-            return add_mesh(self._scene, name, mesh, SLOTS[1], wireframe=True, opacity=0.25)
-        import trimesh
-
-        assert mesh.values is not None, "a pattern has its gain"
-        colours = np.column_stack(
-            [scale_colours(mesh.values, 0.0, 1.0), np.full(len(mesh.values), 175, dtype=np.uint8)]
-        )
-        coloured = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=colours, process=False)
-        return self._scene.add_mesh_trimesh(name, coloured, cast_shadow=False, receive_shadow=False)
+            wires = doughnut_mesh(radius_m, 18, 24)
+            add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True, opacity=0.3)
+            return frame
+        for i, (band, gain) in enumerate(gain_bands(doughnut_mesh(radius_m))):
+            colour = tuple(int(c) for c in scale_colours(gain, 0.0, 1.0))
+            add_mesh(self._scene, f"{name}/band-{i}", band, colour, opacity=0.5, side="double")  # type: ignore[arg-type]
+        return frame
 
 
 class Carpet:
@@ -229,7 +230,7 @@ def _image(field: Field, low: float, high: float) -> NDArray[np.uint8]:
     filled = np.where(known, np.clip(np.nan_to_num(field.values, nan=low), low, high), low)
     fine = zoom(filled, 6, order=1, mode="nearest", grid_mode=True)
     solid = zoom(known.astype(float), 6, order=0, mode="nearest", grid_mode=True) > 0.5
-    alpha = np.where(solid, 200, 0).astype(np.uint8)
+    alpha = np.where(solid, 105, 0).astype(np.uint8)
     return np.dstack([scale_colours(fine, low, high), alpha])[::-1]
 
 
@@ -248,12 +249,17 @@ def _contours(
         lines = [np.asarray(line) for line in generator.lines(float(level)) if len(line) > 4]
         segments += [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
         if lines:
-            longest = max(lines, key=len)
-            x, y = longest[len(longest) // 3]
-            labels.append((f"{level:g} {field.unit}".replace("-", "\N{MINUS SIGN}"), (float(x), float(y))))
+            labels.append((f"{level:g} {field.unit}".replace("-", "\N{MINUS SIGN}"), _southmost(lines)))
     if not segments:
         return np.zeros((0, 2, 3)), []
     flat = np.concatenate(segments)
     return np.concatenate([flat, np.zeros((*flat.shape[:2], 1))], axis=-1), labels[
         :: max(1, len(labels) // 4)
     ]
+
+
+def _southmost(lines: list[NDArray[np.float64]]) -> tuple[float, float]:
+    """Return the southmost point of some lines, where labels are out of the way of what is in the middle."""
+    points = np.concatenate(lines)
+    x, y = points[np.argmin(points[:, 1])]
+    return float(x), float(y)

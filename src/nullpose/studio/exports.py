@@ -93,7 +93,7 @@ def scene_html(
         fields = session.field_map
         if fields is not None and chosen_map != NO_MAP:
             Carpet(server.scene).show(fields.best if chosen_map == BEST_MAP else fields.footprint)
-        return server.scene.as_html().encode()
+        return str(server.scene.as_html()).encode()
     finally:
         with redirect_stdout(StringIO()):
             server.stop()

@@ -21,6 +21,7 @@ __all__ = [
     "diamond_mesh",
     "doughnut_mesh",
     "ellipsoid_mesh",
+    "gain_bands",
     "null_line_m",
     "prism_mesh",
     "rod_mesh",
@@ -91,6 +92,25 @@ def doughnut_mesh(radius_m: float, rings: int = 48, around: int = 64) -> Mesh:
         axis=-1,
     )
     return Mesh(radius_m * vertices.reshape(-1, 3), _grid_faces(rings, around), gain.ravel())
+
+
+def gain_bands(mesh: Mesh, bands: int = 10) -> list[tuple[Mesh, float]]:
+    """Return a pattern cut into bands of like gain, each with the gain in its middle.
+
+    Args:
+        mesh: with the gain at its vertices.
+        bands: how many.
+    """
+    if mesh.values is None:
+        return [(mesh, 1.0)]
+    middle = mesh.values[mesh.faces].mean(axis=1)
+    index = np.minimum((bands * middle).astype(int), bands - 1)
+    parts = []
+    for band in np.unique(index):
+        used, faces = np.unique(mesh.faces[index == band], return_inverse=True)
+        part = Mesh(mesh.vertices[used], faces.reshape(-1, 3), mesh.values[used])
+        parts.append((part, (float(band) + 0.5) / bands))
+    return parts
 
 
 def _grid_faces(rings: int, around: int) -> IntArray:

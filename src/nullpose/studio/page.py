@@ -44,7 +44,7 @@ def camera_m(scenario: Scenario) -> tuple[NDArray[np.float64], NDArray[np.float6
     points = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     middle[2] = max(0.08 * size_m, 0.5 * float(scenario.airspace.lower_m[2]))
-    return middle + size_m * np.array([1.0, -0.62, 0.62]), middle
+    return middle + size_m * np.array([0.82, -0.52, 0.56]), middle
 
 
 class Page:

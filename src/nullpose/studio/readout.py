@@ -22,10 +22,10 @@ _ABOUT = """<b>A drone listens to ground nodes while jammers drown them.</b> Its
 hears nothing along its own axis: the <b>null</b>. nullpose finds where to hover and how to tilt so that the
 worst-off node is heard best, and proves that no other pose does better.
 <ul style="margin:4px 0 4px 16px;padding:0">
-<li>Blue boxes: nodes. Orange spikes: jammers. Drag them by their arrows.</li>
-<li>Bright doughnut: what the antenna hears. The orange line through its hole: the null.</li>
-<li>Lines to the nodes: brighter is a better SINR; the thick one decides.</li>
-<li>The carpet: what the drone could reach at each place, at its altitude.</li></ul>"""
+<li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
+<li>Doughnut: what the antenna hears; orange line: the null.</li>
+<li>Lines: brighter is a better SINR; the thick one decides.</li>
+<li>Carpet: the best that each place at this altitude could give.</li></ul>"""
 
 
 def about_html() -> str:

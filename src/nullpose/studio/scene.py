@@ -158,7 +158,7 @@ class Ground:
     def _add_gizmo(self, key: PointKey, name: str, point: GroundPoint, size_m: float, on_drag: OnDrag) -> Any:
         gizmo = self._scene.add_transform_controls(
             name,
-            scale=0.075 * size_m,
+            scale=0.1 * size_m,
             line_width=3.0,
             active_axes=(True, True, self._freed),
             disable_rotations=True,
@@ -201,18 +201,18 @@ class Ground:
                 thickness_units="screen",
             )
         )
-        every = 2 if max(len(east), len(north)) > 7 else 1
+        every = max(1, (max(len(east), len(north)) + 2) // 4)
         ticks = [
-            (f"east-{i}", f"{x:g}", (x, low[1] - 0.35 * step_m)) for i, x in enumerate(east) if i % every == 0
+            (f"east-{i}", f"{x:g}", (x, low[1] - 0.45 * step_m)) for i, x in enumerate(east) if i % every == 0
         ]
         ticks += [
-            (f"north-{i}", f"{y:g}", (low[0] - 0.35 * step_m, y))
+            (f"north-{i}", f"{y:g}", (high[0] + 0.45 * step_m, y))
             for i, y in enumerate(north)
             if i % every == 0
         ]
         ticks += [
-            ("east", "east (m)", (0.5 * (low[0] + high[0]), low[1] - 1.3 * step_m)),
-            ("north", "north (m)", (low[0] - 1.5 * step_m, 0.5 * (low[1] + high[1]))),
+            ("east", "east (m)", (0.5 * (low[0] + high[0]), low[1] - 1.05 * step_m)),
+            ("north", "north (m)", (high[0] + 1.3 * step_m, 0.5 * (low[1] + high[1]))),
         ]
         for name, text, (x, y) in ticks:
             self._around.append(
@@ -235,7 +235,7 @@ class Ground:
         else:
             outline = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
         slab = prism_mesh(outline, floor_m, max(ceiling_m, floor_m + 0.05))
-        self._around.append(add_mesh(self._scene, "/airspace/slab", slab, _SLAB, opacity=0.07, side="double"))
+        self._around.append(add_mesh(self._scene, "/airspace/slab", slab, _SLAB, opacity=0.04, side="double"))
         self._around.append(self._outline("/airspace/edges", outline, floor_m, ceiling_m, _SLAB))
         for i, zone in enumerate(airspace.no_fly):
             mesh = zone_mesh(zone, 0.0, ceiling_m)

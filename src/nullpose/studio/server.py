@@ -49,9 +49,9 @@ def open_server(host: str, port: int) -> ViserServer:
     Raises:
         UsageError: the port is in use, or the address is none of this machine's.
     """
+    _require_free(host, port)
     import viser
 
-    _require_free(host, port)
     with redirect_stdout(StringIO()):  # it announces itself; that is for the command line to do
         server = viser.ViserServer(host=host, port=port, label="nullpose studio", verbose=False)
     if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
@@ -110,7 +110,7 @@ class Studio:
     @property
     def port(self) -> int:
         """Where it listens."""
-        return self._server.get_port()
+        return int(self._server.get_port())
 
     def close(self) -> None:
         """End every page's thread and the server."""

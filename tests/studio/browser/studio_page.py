@@ -1,0 +1,215 @@
+"""The page in a real browser: it is drawn, it solves what is dragged, it takes and gives files."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from playwright.sync_api import Page
+
+from nullpose import load, solve
+from nullpose.solve import Scheme
+
+ROOT = Path(__file__).parents[3]
+CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
+Open = Callable[[], Page]
+
+
+def _value(page: Page) -> float:
+    return float(page.locator("[data-np=value-0]").get_attribute("data-value") or "nan")
+
+
+def _version(page: Page) -> int:
+    return int(page.locator("[data-np=readout]").get_attribute("data-version") or "0")
+
+
+def _settled(page: Page, before: int) -> None:
+    page.wait_for_function(
+        f"+document.querySelector('[data-np=readout]').dataset.version > {before} && {CERTIFIED}"
+    )
+
+
+def _on_screen(page: Page, point_m: Any) -> tuple[float, float]:
+    """Return where a point of the scene is on the canvas, from the camera as the server knows it."""
+    client = page.client  # type: ignore[attr-defined]
+    camera = client.camera
+    forward = np.asarray(camera.look_at) - camera.position
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    away = np.asarray(point_m) - camera.position
+    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov) / (away @ forward)
+    canvas = page.locator("canvas").first.bounding_box()
+    assert canvas is not None
+    x = canvas["x"] + 0.5 * canvas["width"] + scale * float(away @ right)
+    return x, canvas["y"] + 0.5 * canvas["height"] - scale * float(away @ up)
+
+
+def test_the_scene_is_drawn(open_page: Open) -> None:
+    """The canvas has the colours of the map, of the pattern and of the null in it, not only elements."""
+    page = open_page()
+    page.wait_for_selector("[data-np=plot][data-state=current]")
+    page.wait_for_timeout(6000)
+    canvas = page.locator("canvas").first
+    pixels = imread(io.BytesIO(canvas.screenshot()))[..., :3]
+    away = np.abs(pixels - pixels[0, -1]).max(axis=-1) > 0.08
+    assert away.mean() > 0.1
+    orange = (pixels[..., 0] > 0.7) & (pixels[..., 2] < 0.25) & (pixels[..., 1] < 0.6)
+    assert orange.sum() > 100
+    assert len(np.unique((pixels * 15).astype(int).reshape(-1, 3), axis=0)) > 80
+
+
+def test_the_slider_changes_the_value_to_the_solvers(open_page: Open, session_of: Callable[[], Any]) -> None:
+    """After the jamming power is set, the value shown is the solver's for the same scene."""
+    page = open_page()
+    before, version = _value(page), _version(page)
+    field = page.locator("input.mantine-NumberInput-input").first
+    field.fill("20")
+    field.press("Enter")
+    _settled(page, version)
+    scenario = session_of().view.scenario
+    assert scenario.jammers[0].transmit_power_w == pytest.approx(100.0)
+    assert _value(page) == pytest.approx(solve(scenario).objective.value, rel=1e-9)
+    assert _value(page) != pytest.approx(before, rel=1e-3)
+
+
+def test_a_dragged_handle_moves_the_jammer(
+    open_page: Open, running: Any, session_of: Callable[[], Any]
+) -> None:
+    """Dragging the jammer's handle moves it along the ground, and the value is the solver's there."""
+    page = open_page()
+    page.client = running.pages[max(running.pages)]._client  # type: ignore[attr-defined]
+    version = _version(page)
+    start = np.asarray(session_of().view.scenario.jammers[0].position_m)
+    page.wait_for_timeout(3000)
+    size_m = running.pages[max(running.pages)]._size_m
+    x, y = _on_screen(page, start + np.array([0.06 * size_m, 0.0, 0.0]))
+    to = _on_screen(page, start + np.array([0.06 * size_m + 12.0, 0.0, 0.0]))
+    page.mouse.move(x, y)
+    page.wait_for_timeout(500)
+    page.mouse.down()
+    for share in np.linspace(0.1, 1.0, 12):
+        page.mouse.move(x + share * (to[0] - x), y + share * (to[1] - y))
+        page.wait_for_timeout(60)
+    page.mouse.up()
+    _settled(page, version)
+    page.wait_for_timeout(1500)
+    page.wait_for_function(CERTIFIED)
+    moved = np.array(session_of().view.scenario.jammers[0].position_m)
+    assert np.linalg.norm(moved - start) > 4.0
+    assert moved[2] == start[2]
+    assert _value(page) == pytest.approx(solve(session_of().view.scenario).objective.value, rel=1e-9)
+
+
+def test_two_browsers_keep_their_own_state(open_page: Open) -> None:
+    """What one changes the other does not see."""
+    first, second = open_page(), open_page()
+    value, version = _value(second), _version(second)
+    before = _version(first)
+    field = first.locator("input.mantine-NumberInput-input").first
+    field.fill("30")
+    field.press("Enter")
+    _settled(first, before)
+    assert _value(first) != pytest.approx(value, rel=1e-3)
+    assert (_value(second), _version(second)) == (value, version)
+
+
+def test_cases_are_chosen_and_compared(open_page: Open) -> None:
+    """A case from the list is solved as the solver does, and two are set beside each other."""
+    page = open_page()
+    paper = load(ROOT / "examples" / "paper.toml")
+    version = _version(page)
+    page.get_by_role("textbox", name="Case").click()
+    page.get_by_role("option", name="Vertical", exact=True).click()
+    _settled(page, version)
+    assert _value(page) == pytest.approx(solve(paper, Scheme.VERTICAL).objective.value, rel=1e-9)
+    version = _version(page)
+    page.get_by_role("textbox", name="Compare with").click()
+    page.get_by_role("option", name="Optimum pose", exact=True).click()
+    page.wait_for_selector("[data-np=difference]")
+    assert float(page.locator("[data-np=value-1]").get_attribute("data-value") or "nan") > _value(page)
+
+
+def test_files_go_out_and_come_back(open_page: Open, session_of: Callable[[], Any], tmp_path: Path) -> None:
+    """A saved scene loads as it was; a broken file shows its faults by path and changes nothing."""
+    page = open_page()
+    version = _version(page)
+    field = page.locator("input.mantine-NumberInput-input").first
+    field.fill("10")
+    field.press("Enter")
+    _settled(page, version)
+    scenario = session_of().view.scenario
+    page.get_by_role("tab", name="Files").click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save scenario").click()
+        _confirm(page)
+    saved = tmp_path / "saved.toml"
+    download.value.save_as(saved)
+    assert load(saved) == scenario
+
+    version = _version(page)
+    broken = tmp_path / "broken.toml"
+    broken.write_text("[airspace]\naltitude_m = [30.0, 8.0]\n[[nodes]]\npower_w = -1\n")
+    _upload(page, broken)
+    page.wait_for_function("document.querySelector('[data-np=faults]').innerText.includes('broken.toml')")
+    told = page.locator("[data-np=faults]").inner_text()
+    assert "airspace.altitude_m" in told
+    assert "nodes[0].power_w" in told
+    assert _version(page) == version
+
+    page.get_by_role("tab", name="Scene").click()
+    page.get_by_role("button", name="Undo").click()
+    _settled(page, version)
+    assert session_of().view.scenario != scenario
+    version = _version(page)
+    page.get_by_role("tab", name="Files").click()
+    _upload(page, saved)
+    _settled(page, version)
+    assert session_of().view.scenario == scenario
+    assert page.locator("[data-np=faults]").inner_text() == ""
+
+
+def test_the_exported_scene_needs_no_server(open_page: Open, tmp_path: Path) -> None:
+    """The exported HTML draws the scene from a file, and asks for nothing else."""
+    page = open_page()
+    page.wait_for_selector("[data-np=plot][data-state=current]")
+    page.get_by_role("tab", name="Files").click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Export scene").click()
+        _confirm(page)
+    path = tmp_path / "scene.html"
+    download.value.save_as(path)
+    asked: list[str] = []
+    alone = page.context.new_page()
+    alone.on("request", lambda request: asked.append(request.url))
+    alone.goto(path.as_uri())
+    alone.wait_for_selector("canvas")
+    alone.wait_for_timeout(6000)
+    pixels = imread(io.BytesIO(alone.screenshot()))[..., :3]
+    assert (np.abs(pixels - pixels[0, -1]).max(axis=-1) > 0.08).mean() > 0.05
+    assert [url for url in asked if url.startswith(("http", "ws"))] == []
+
+
+def test_the_explanation_can_be_closed(open_page: Open) -> None:
+    """What am I looking at is there at first, and gone when it is closed."""
+    page = open_page()
+    assert page.locator("[data-np=about]").is_visible()
+    page.get_by_role("button", name="Got it").click()
+    page.wait_for_selector("[data-np=about]", state="detached")
+
+
+def _upload(page: Page, path: Path) -> None:
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Load scenario").click()
+    chooser.value.set_files(path)
+
+
+def _confirm(page: Page) -> None:
+    """Press the button of the notice by which the page offers a file."""
+    page.get_by_text("Download", exact=True).last.click()

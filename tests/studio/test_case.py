@@ -1,0 +1,39 @@
+"""The cases on offer."""
+
+from nullpose.scenario import Scenario
+from nullpose.studio.case import OPTIMUM, all_cases, case_named, cases_of
+
+
+def test_labels_are_unique() -> None:
+    """Every case is found by its label again."""
+    assert [case_named(case.label) for case in all_cases()] == list(all_cases())
+
+
+def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario) -> None:
+    """The paper's scene has its four cases and the vehicles, and no robust one, for it states no errors."""
+    labels = [case.label for case in cases_of(paper)]
+    assert labels[:4] == ["Optimum pose", "Zero interference", "Maximum gain", "Vertical"]
+    assert "Robust pose" not in labels
+    assert sum(label.startswith("Vehicle: ") for label in labels) == 5
+
+
+def test_errors_bring_the_robust_case(paper: Scenario) -> None:
+    """A jammer known only up to a ball makes the robust pose a case."""
+    unsure = paper.jammers[0].model_copy(update={"uncertainty_m": 1.0})
+    scenario = paper.model_copy(update={"jammers": (unsure,)})
+    assert "Robust pose" in [case.label for case in cases_of(scenario)]
+
+
+def test_a_secrecy_rate_leaves_few_cases(secret: Scenario) -> None:
+    """Cases that the paper states for a receiving drone are not offered for a transmitting one."""
+    labels = [case.label for case in cases_of(secret)]
+    assert "Zero interference" not in labels
+    assert "Optimum pose" in labels
+
+
+def test_a_vehicle_takes_the_place_of_the_scenarios_own(paper: Scenario) -> None:
+    """A vehicle's case solves the same scene with another airframe."""
+    level = case_named("Vehicle: level, vertical").on(paper)
+    assert level.axis_band == (1.0, 1.0)
+    assert level.nodes == paper.nodes
+    assert OPTIMUM.on(paper) == paper

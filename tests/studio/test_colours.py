@@ -1,0 +1,36 @@
+"""Colours and scales."""
+
+import numpy as np
+from hypothesis import given, seed
+from hypothesis import strategies as st
+
+from nullpose.studio.colours import KIND_COLOURS, css, scale_colours, scale_range
+
+
+def test_brightness_grows_along_the_scale() -> None:
+    """A larger value is never darker, so that the scale reads without colour vision too."""
+    colours = scale_colours(np.linspace(-5.0, 5.0, 200), -4.0, 4.0).astype(float)
+    brightness = colours @ np.array([0.2126, 0.7152, 0.0722])
+    assert np.all(np.diff(brightness) >= -1.5)
+    assert brightness[-1] > brightness[0] + 100.0
+
+
+@seed(0)
+@given(values=st.lists(st.floats(-80.0, 80.0), min_size=1, max_size=30))
+def test_a_scale_spans_a_readable_range(values: list[float]) -> None:
+    """Its ends are whole numbers 6 to 30 apart, with the largest value inside."""
+    low, high = scale_range([*values, np.nan, -np.inf])
+    assert low == round(low)
+    assert high == round(high)
+    assert 6.0 <= high - low <= 30.0
+    assert low <= max(values) <= high
+
+
+def test_nothing_finite_has_a_scale_too() -> None:
+    """Without a single value the scale is still one."""
+    assert scale_range([np.nan])[0] < scale_range([np.nan])[1]
+
+
+def test_kinds_differ_in_colour() -> None:
+    """Nodes, jammers and eavesdroppers have three colours."""
+    assert len({css(colour) for colour in KIND_COLOURS.values()}) == 3

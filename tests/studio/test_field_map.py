@@ -1,0 +1,85 @@
+"""The maps agree with the physics, point by point."""
+
+import numpy as np
+import pytest
+
+from nullpose.physics import objective_value, to_db
+from nullpose.scenario import NoFlyZone, Scenario
+from nullpose.solve import best_axis, solve
+from nullpose.studio.answer import answer_of
+from nullpose.studio.case import Case, case_named
+from nullpose.studio.field_map import field_map, map_extent_m
+
+
+def _map(scenario: Scenario, case: Case):  # type: ignore[no-untyped-def]
+    answer = answer_of(1, case, solve(case.on(scenario), case.scheme, certify=False))
+    return answer, field_map(answer)
+
+
+def test_the_best_value_is_the_best_axis(paper: Scenario) -> None:
+    """At points all over the map the value is that of the solver's best axis there."""
+    answer, maps = _map(paper, case_named("Optimum pose"))
+    best = maps.best
+    assert best.altitude_m == pytest.approx(answer.pose.position_m[2])
+    assert np.all(np.isfinite(best.values))
+    for row, column in ((0, 0), (5, 20), (20, 10), (30, 24), (44, 3)):
+        place = np.array([best.east_m[column], best.north_m[row], best.altitude_m])
+        pose = best_axis(paper, place)
+        expected = to_db(objective_value(paper, place, pose.antenna_axis))
+        assert best.values[row, column] == pytest.approx(float(expected), abs=1e-9)
+
+
+def test_no_place_of_the_map_beats_the_drone(paper: Scenario) -> None:
+    """The drone is at the best place of its plane, for every case of the paper."""
+    for label in ("Optimum pose", "Zero interference", "Maximum gain", "Vertical"):
+        answer, maps = _map(paper, case_named(label))
+        assert np.nanmax(maps.best.values) <= answer.shown_value + 1e-6
+        assert np.nanmax(maps.best.values) > answer.shown_value - 1.5
+
+
+def test_a_tilting_vehicle_lies_below_a_free_one(paper: Scenario) -> None:
+    """What a vehicle reaches is nowhere more than what a free axis gives, sampled as its axes are."""
+    _, level = _map(paper, case_named("Vehicle: level, vertical"))
+    _, tilting = _map(paper, case_named("Vehicle: tilt 30, horizontal"))
+    assert np.all(np.isfinite(level.best.values))
+    assert np.nanmax(tilting.best.values) > np.nanmax(level.best.values)
+
+
+def test_forbidden_places_have_no_value(paper: Scenario) -> None:
+    """In a no-fly zone there is nothing to show."""
+    zone = NoFlyZone(centre_m=(10.0, 25.0), radius_m=6.0)
+    closed = paper.model_copy(update={"airspace": paper.airspace.model_copy(update={"no_fly": (zone,)})})
+    _, maps = _map(closed, case_named("Optimum pose"))
+    east, north = np.meshgrid(maps.best.east_m, maps.best.north_m)
+    inside = np.hypot(east - 10.0, north - 25.0) < 5.9
+    assert inside.any()
+    assert np.all(np.isnan(maps.best.values[inside]))
+    assert np.all(np.isfinite(maps.best.values[np.hypot(east - 10.0, north - 25.0) > 6.1]))
+
+
+def test_rates_have_a_map_too(secret: Scenario) -> None:
+    """A secrecy rate's map is in bits/s/Hz and never much above the drone's."""
+    answer, maps = _map(secret, case_named("Optimum pose"))
+    assert maps.best.unit == "bits/s/Hz"
+    assert np.nanmax(maps.best.values) <= answer.shown_value + 1e-6
+
+
+def test_the_footprint_is_dark_where_the_null_falls(paper: Scenario) -> None:
+    """On the ground the pattern is weakest near where the null's line meets it."""
+    loud = paper.model_copy(update={"jammers": (paper.jammers[0].model_copy(update={"power_w": 100.0}),)})
+    answer, maps = _map(loud, case_named("Zero interference"))
+    axis, here = answer.pose.antenna_axis, answer.pose.position_m
+    hit = here - axis * here[2] / axis[2]
+    east, north = np.meshgrid(maps.footprint.east_m, maps.footprint.north_m)
+    near = np.hypot(east - hit[0], north - hit[1])
+    if near.min() < 2.0:
+        assert maps.footprint.values.flat[np.argmin(near)] < np.median(maps.footprint.values)
+    assert maps.footprint.altitude_m == 0.0
+
+
+def test_the_drawn_ground_holds_everything(paper: Scenario) -> None:
+    """All points and the drone lie well inside the drawn ground."""
+    low, high = map_extent_m(paper, np.array([100.0, -40.0, 8.0]))
+    for place in (*paper.node_positions_m, *paper.jammer_positions_m, np.array([100.0, -40.0, 8.0])):
+        assert np.all(place[:2] > low)
+        assert np.all(place[:2] < high)

@@ -1,0 +1,127 @@
+"""Shapes: they are where and as large as the physics says, and closed."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, seed
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics import Pose, antenna_gain, rotation_world_from_body
+from nullpose.scenario import NoFlyZone
+from nullpose.studio import meshes
+from nullpose.studio.meshes import Mesh
+
+_ANGLE = st.floats(-3.0, 3.0)
+
+
+def _volume(mesh: Mesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+    return float(np.sum(np.cross(a, b) * c) / 6.0)
+
+
+def test_the_doughnut_is_the_gain() -> None:
+    """Along each direction the doughnut's distance is the antenna's gain there, zero on its axis."""
+    mesh = meshes.doughnut_mesh(2.0)
+    distance = np.linalg.norm(mesh.vertices, axis=1)
+    away = distance > 1e-6
+    gain = antenna_gain(np.zeros(3), np.array([0.0, 0.0, 1.0]), mesh.vertices[away])
+    assert distance[away] == pytest.approx(2.0 * gain, abs=1e-9)
+    assert mesh.values is not None
+    assert mesh.values == pytest.approx(distance / 2.0, abs=1e-12)
+    assert np.min(distance) < 1e-12
+
+
+def test_bands_are_the_whole_pattern() -> None:
+    """Cut into bands of like gain, no triangle is lost, and each band's gain is near its triangles'."""
+    mesh = meshes.doughnut_mesh(1.0)
+    bands = meshes.gain_bands(mesh, 10)
+    assert sum(len(part.faces) for part, _ in bands) == len(mesh.faces)
+    for part, gain in bands:
+        assert part.values is not None
+        assert np.abs(part.values[part.faces].mean(axis=1) - gain).max() <= 0.05 + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("mesh", "volume"),
+    [
+        (meshes.box_mesh(2.0), 8.0),
+        (meshes.diamond_mesh(1.0), 2.0 * 0.64 * 2.0 / 3.0),
+        (meshes.ellipsoid_mesh(np.diag([1.0, 2.0, 3.0]), 90, 180), 8.0 * math.pi),
+        (meshes.prism_mesh([[0, 0], [4, 0], [4, 1], [1, 1], [1, 4], [0, 4]], -1.0, 1.0), 14.0),
+    ],
+)
+def test_solids_are_closed_and_face_outwards(mesh: Mesh, volume: float) -> None:
+    """The divergence theorem gives a solid's volume only if it is closed and its faces look outwards."""
+    assert _volume(mesh) == pytest.approx(volume, rel=2e-3)
+    assert _volume(mesh.moved([5.0, -7.0, 2.0])) == pytest.approx(volume, rel=2e-3)
+
+
+def test_the_cone_stands_on_the_ground() -> None:
+    """A jammer's spike is closed and has its tip above its foot."""
+    cone = meshes.cone_mesh(1.0)
+    assert _volume(cone) > 0.0
+    assert cone.vertices[:, 2].min() == 0.0
+
+
+@seed(0)
+@given(roll=_ANGLE, pitch=_ANGLE, yaw=_ANGLE)
+def test_the_body_is_turned_as_reported(roll: float, pitch: float, yaw: float) -> None:
+    """The quaternion that turns the drawn body is the rotation of the convention."""
+    pose = Pose(np.zeros(3), roll, pitch, yaw)
+    w, x, y, z = meshes.attitude_wxyz(pose)
+    turned = Rotation.from_quat([x, y, z, w]).as_matrix()
+    assert turned == pytest.approx(rotation_world_from_body(roll, pitch, yaw), abs=1e-12)
+
+
+@seed(0)
+@given(roll=_ANGLE, pitch=_ANGLE, yaw=_ANGLE, mount=st.floats(0.0, math.pi / 2))
+def test_the_rod_is_the_antenna(roll: float, pitch: float, yaw: float, mount: float) -> None:
+    """Body turn and mount turn together put the rod, which is drawn along z, onto the antenna's axis."""
+    pose = Pose(np.zeros(3), roll, pitch, yaw, mount)
+    body, rod = (
+        Rotation.from_quat(np.roll(wxyz, -1))
+        for wxyz in (meshes.attitude_wxyz(pose), meshes.antenna_wxyz(mount))
+    )
+    assert (body * rod).apply([0.0, 0.0, 1.0]) == pytest.approx(pose.antenna_axis, abs=1e-12)
+
+
+@seed(0)
+@given(east=st.floats(-1.0, 1.0), north=st.floats(-1.0, 1.0))
+def test_the_null_line_lies_along_the_axis(east: float, north: float) -> None:
+    """Both ends of the null's line are on the antenna's axis, the lower one on the ground."""
+    pose = Pose.from_axis([3.0, 4.0, 8.0], [east, north, 1.0])
+    ends = meshes.null_line_m(pose, 5.0)
+    for end in ends:
+        assert np.cross(end - pose.position_m, pose.antenna_axis) == pytest.approx(np.zeros(3), abs=1e-9)
+    assert ends[1, 2] == pytest.approx(0.0, abs=1e-9)
+    assert np.linalg.norm(ends[0] - pose.position_m) == pytest.approx(5.0)
+
+
+def test_a_level_null_line_ends() -> None:
+    """A level axis never meets the ground; its line ends all the same."""
+    pose = Pose.from_axis([0.0, 0.0, 8.0], [1.0, 0.0, 0.0])
+    assert np.linalg.norm(meshes.null_line_m(pose, 5.0, most_m=100.0)[1] - pose.position_m) == pytest.approx(
+        100.0
+    )
+
+
+def test_zones_are_drawn_where_they_forbid() -> None:
+    """A point just inside a drawn zone is forbidden, for each shape."""
+    for zone in (
+        NoFlyZone(x_m=(0.0, 4.0), y_m=(0.0, 2.0)),
+        NoFlyZone(centre_m=(1.0, 1.0), radius_m=2.0, altitude_m=(0.0, 5.0)),
+        NoFlyZone(polygon_m=((0.0, 0.0), (0.0, 4.0), (1.0, 1.0), (4.0, 0.0))),
+    ):
+        mesh = meshes.zone_mesh(zone, 0.0, 10.0)
+        assert _volume(mesh) > 0.0
+        assert np.all(np.abs(zone.depth_m(mesh.vertices)) < 0.02 * 2.0 + 1e-9)
+
+
+def test_the_multirotor_is_in_one_piece() -> None:
+    """Body and rotors refer to their own vertices only, and the rotors are outside the hull."""
+    for mesh in (meshes.body_mesh(1.0), meshes.rotor_mesh(1.0), meshes.rod_mesh(1.0)):
+        assert mesh.faces.min() == 0
+        assert mesh.faces.max() == len(mesh.vertices) - 1
+        assert _volume(mesh) > 0.0

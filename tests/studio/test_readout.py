@@ -1,0 +1,64 @@
+"""The panel's numbers."""
+
+from html.parser import HTMLParser
+
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Scenario
+from nullpose.studio.readout import about_html, failure_html, readout_html
+from nullpose.studio.session import Session, scenario_from_text
+
+
+class _Text(HTMLParser):
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.text = ""
+        self.open: list[str] = []
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag != "br":
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+@pytest.fixture
+def idle(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> Session:
+    """A session whose worker never answers."""
+    monkeypatch.setattr("nullpose.studio.worker.Worker._serve", lambda self, request: None)
+    session = Session(paper)
+    session.start()
+    return session
+
+
+def test_without_an_answer_there_are_no_numbers(idle: Session) -> None:
+    """Before the first answer it says that it is solving, and no value is shown."""
+    html = readout_html(idle)
+    assert "solving" in _Text(html).text
+    assert "data-value" not in html
+    assert idle.close()
+
+
+def test_faults_are_listed_by_their_path() -> None:
+    """Each fault of a file stands with its path, markup in it being harmless."""
+    with pytest.raises(ScenarioError) as raised:
+        scenario_from_text(b'[[nodes]]\n"<b>x" = 1\n', "<i>.toml")
+    html = failure_html(raised.value, "<i>.toml")
+    text = _Text(html)
+    assert text.open == []
+    assert "<i>.toml was not taken" in text.text
+    assert "airspace" in text.text
+    assert "<i>" not in html
+
+
+def test_the_explanation_is_short_and_closed() -> None:
+    """What am I looking at fits a panel."""
+    text = _Text(about_html())
+    assert text.open == []
+    assert len(text.text.split()) < 110

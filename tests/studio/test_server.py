@@ -1,0 +1,34 @@
+"""What is checked before a server opens."""
+
+import socket
+import sys
+
+import pytest
+
+from nullpose.errors import UsageError
+from nullpose.studio.server import LOOPBACK, open_server, require_viser
+
+
+def test_without_the_extra_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where viser is missing, the message is one line with the command that installs it."""
+    monkeypatch.setitem(sys.modules, "viser", None)
+    with pytest.raises(UsageError, match=r'pip install "nullpose\[studio\]"') as raised:
+        require_viser()
+    assert "\n" not in str(raised.value)
+
+
+def test_a_port_in_use_is_told() -> None:
+    """Another program's port is not taken, and no other is taken in its place."""
+    with socket.socket() as other:
+        other.bind((LOOPBACK, 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(UsageError, match=f"--port: {port} is in use"):
+            open_server(LOOPBACK, port)
+
+
+@pytest.mark.parametrize("host", ["203.0.113.7", "no-such-host.invalid"])
+def test_an_address_elsewhere_is_told(host: str) -> None:
+    """An address that is not this machine's is refused by name."""
+    with pytest.raises(UsageError, match=f"--host: given {host}"):
+        open_server(host, 0)

@@ -1,0 +1,170 @@
+"""A session: what is shown always belongs to the present scene, or is said not to."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from nullpose.errors import ScenarioError, SolveError
+from nullpose.scenario import Scenario
+from nullpose.solve import solve
+from nullpose.studio.answer import Answer, Stage
+from nullpose.studio.case import OPTIMUM, case_named
+from nullpose.studio.session import Session, scenario_from_text
+
+_PATIENCE_S = 120.0
+
+
+def wait(condition: Callable[[], bool]) -> None:
+    """Wait until a condition holds; fail if it never does."""
+    until = time.monotonic() + _PATIENCE_S
+    while not condition():
+        assert time.monotonic() < until, "it never came"
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def session(paper: Scenario) -> Iterator[Session]:
+    """A session of the paper's scene, started."""
+    running = Session(paper, rest_s=0.05)
+    running.start()
+    yield running
+    assert running.close(_PATIENCE_S)
+
+
+def _certified(session: Session) -> bool:
+    answer = session.answer(session.view.case)
+    return session.is_current(answer) and answer is not None and answer.stage is Stage.CERTIFIED
+
+
+def test_the_answer_is_the_solvers(session: Session) -> None:
+    """What is certified is what the solver says of the same scene, before a move and after one."""
+    for position_m in ((17.0, 15.0, 4.0), (25.0, 30.0, 4.0)):
+        session.move(("jammers", 0), position_m)
+        wait(lambda: _certified(session))
+        answer = session.answer(OPTIMUM)
+        assert answer is not None
+        expected = solve(session.view.scenario)
+        assert answer.value == pytest.approx(expected.objective.value, rel=1e-9)
+        assert answer.bound == pytest.approx(expected.objective.upper_bound, rel=1e-9)
+
+
+def test_an_old_answer_is_never_current(session: Session) -> None:
+    """From a change until its answer the status is solving, whatever was known before."""
+    wait(lambda: _certified(session))
+    old = session.answer(OPTIMUM)
+    session.move(("jammers", 0), (30.0, 30.0, 4.0))
+    seen = session.answer(OPTIMUM)
+    if seen is old:
+        assert not session.is_current(seen)
+        assert session.status(OPTIMUM) == "solving"
+    wait(lambda: _certified(session))
+    new = session.answer(OPTIMUM)
+    assert new is not None
+    assert new.version == session.version
+    assert session.status(OPTIMUM).startswith("certified to 1e-6")
+
+
+def test_everything_told_names_its_version(paper: Scenario) -> None:
+    """Versions only grow, each answer is of the scene of its version, and the last scene is answered."""
+    told: list[Answer] = []
+    session = Session(
+        paper, on_event=lambda event: told.append(event) if isinstance(event, Answer) else None, rest_s=0.05
+    )
+    scenes = {}
+    for i in range(12):
+        session.move(("jammers", 0), (17.0 + i, 15.0 + i, 4.0), "drag")
+        scenes[session.version] = session.view.scenario
+        time.sleep(0.01)
+    wait(lambda: _certified(session))
+    assert session.close(_PATIENCE_S)
+    versions = [answer.version for answer in told]
+    assert versions == sorted(versions)
+    assert all(answer.scenario == scenes[answer.version] for answer in told)
+    assert versions[-1] == session.version
+
+
+def test_maps_and_curve_follow_at_rest(session: Session) -> None:
+    """At rest the maps and the whole power curve of the present version come; a change outdates the maps."""
+    wait(lambda: session.field_map is not None)
+    curve = session.curve
+    assert curve is not None
+    assert curve.complete
+    assert curve.version == session.version
+    session.set_power_db(10.0)
+    assert session.field_map is None
+
+
+def test_two_cases_are_answered(session: Session) -> None:
+    """With a second case chosen both are certified, the free axis at least as good."""
+    vertical = case_named("Vertical")
+    session.compare(vertical)
+    wait(lambda: session.status(vertical).startswith("certified") and _certified(session))
+    first, second = session.answer(OPTIMUM), session.answer(vertical)
+    assert first is not None
+    assert second is not None
+    assert first.value >= second.value
+
+
+def test_undo_and_redo_are_solved_too(session: Session) -> None:
+    """One step back is the scene before, with an answer of its own."""
+    session.set_power_db(20.0)
+    session.undo()
+    assert session.view.power_db == pytest.approx(0.0)
+    assert session.can_redo
+    session.redo()
+    assert session.view.power_db == pytest.approx(20.0)
+    wait(lambda: _certified(session))
+
+
+def test_a_refused_change_changes_nothing(session: Session) -> None:
+    """A place that makes no scenario leaves version and view as they were."""
+    version, view = session.version, session.view
+    with pytest.raises(ScenarioError):
+        session.move(("jammers", 0), (float("inf"), 0.0, 0.0))
+    with pytest.raises(ScenarioError, match=r"broken\.toml"):
+        session.load(b"nodes = 3", "broken.toml")
+    assert (session.version, session.view) == (version, view)
+
+
+def test_a_scene_without_a_pose_says_so(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the solver finds no pose, the status is its message, and the session goes on."""
+    wait(lambda: _certified(session))
+
+    def none(*_: object) -> Answer:
+        raise SolveError("no position was found")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("nullpose.studio.worker.quick_answer", none)
+        patched.setattr("nullpose.studio.worker.proved_answers", none)
+        session.set_power_db(10.0)
+        wait(lambda: session.status(OPTIMUM) == "no pose: no position was found")
+    session.undo()
+    wait(lambda: _certified(session))
+
+
+def test_a_saved_scene_loads_as_the_same(paper: Scenario) -> None:
+    """Saving and loading is a round trip."""
+    assert scenario_from_text(paper.to_toml().encode(), "scene.toml") == paper
+
+
+def test_faults_of_a_file_are_told_by_path_and_name(tmp_path: Path) -> None:
+    """Every fault is named with its place, and the file as the user knows it, not where it lay."""
+    with pytest.raises(ScenarioError) as raised:
+        scenario_from_text(b"[airspace]\naltitude_m = [8.0]\n[[nodes]]\npower_w = -1.0\n", "mine.toml")
+    assert raised.value.source == "mine.toml"
+    paths = {fault.path for fault in raised.value.faults}
+    assert {"airspace.altitude_m", "nodes[0].power_w"} <= paths
+    assert "/tmp" not in str(raised.value).replace(str(tmp_path), "/tmp")
+
+
+def test_a_closed_session_leaves_no_thread(paper: Scenario) -> None:
+    """Closing ends the worker, in the middle of whatever it does."""
+    for pause_s in (0.0, 0.02, 0.3):
+        session = Session(paper, rest_s=0.01)
+        session.start()
+        time.sleep(pause_s)
+        assert session.close(_PATIENCE_S)
+    assert not [thread for thread in threading.enumerate() if thread.name == "nullpose-studio-worker"]

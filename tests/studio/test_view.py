@@ -1,0 +1,72 @@
+"""What a user changes: every change makes another view."""
+
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Scenario
+from nullpose.studio.case import OPTIMUM, case_named
+from nullpose.studio.view import View
+
+
+def test_a_moved_point_moves_alone(paper: Scenario) -> None:
+    """Moving the jammer changes its position and nothing else, and the first view stays as it was."""
+    view = View(scenario=paper)
+    moved = view.moved(("jammers", 0), (1.0, 2.0, 3.0))
+    assert moved.scenario.jammers[0].position_m == (1.0, 2.0, 3.0)
+    assert moved.scenario.nodes == paper.nodes
+    assert view.scenario == paper
+    assert moved.moved(("jammers", 0), (17.0, 15.0, 4.0)).scenario == paper
+
+
+def test_positions_are_kept_to_a_millimetre(paper: Scenario) -> None:
+    """What a mouse gives beyond a millimetre is dropped, so that a saved file can be read."""
+    moved = View(scenario=paper).moved(("nodes", 1), (0.12345, 49.99961, 0.0))
+    assert moved.scenario.nodes[1].position_m == (0.123, 50.0, 0.0)
+
+
+def test_a_place_that_makes_no_scenario_is_refused(paper: Scenario) -> None:
+    """A point that is put where the scenario is at fault raises with the path of the fault."""
+    with pytest.raises(ScenarioError, match="position_m"):
+        View(scenario=paper).moved(("nodes", 0), (float("nan"), 0.0, 0.0))
+
+
+def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
+    """The power set is the strongest jammer's over the strongest node's; ratios of jammers stay."""
+    weak = paper.jammers[0].model_copy(update={"name": "W", "position_m": (30.0, 40.0, 0.0), "power_w": 0.1})
+    both = View(scenario=paper.model_copy(update={"jammers": (*paper.jammers, weak)}))
+    assert both.power_db == pytest.approx(0.0)
+    louder = both.with_power_db(20.0)
+    assert louder.power_db == pytest.approx(20.0)
+    assert [j.transmit_power_w for j in louder.scenario.jammers] == pytest.approx([100.0, 10.0])
+    assert louder.with_power_db(0.0).scenario == both.scenario
+
+
+def test_a_power_in_dbm_is_replaced_by_one_in_watts(paper: Scenario) -> None:
+    """A jammer stated in dBm can be scaled too."""
+    jammer = paper.jammers[0].model_copy(update={"power_w": None, "power_dbm": 30.0})
+    view = View(scenario=paper.model_copy(update={"jammers": (jammer,)})).with_power_db(10.0)
+    assert view.scenario.jammers[0].transmit_power_w == pytest.approx(10.0)
+
+
+def test_without_jammers_there_is_no_power(paper: Scenario) -> None:
+    """Nothing can be scaled where nothing jams."""
+    view = View(scenario=paper.model_copy(update={"jammers": ()}))
+    assert view.power_db is None
+    assert view.with_power_db(10.0) == view
+
+
+def test_another_scenario_keeps_the_cases_that_it_has(paper: Scenario, secret: Scenario) -> None:
+    """A case without meaning for a loaded scenario gives way to one that has; a second case falls away."""
+    gain, vertical = case_named("Maximum gain"), case_named("Vertical")
+    view = View(scenario=paper, case=gain, compared=vertical)
+    assert view.with_scenario(paper) == view
+    other = view.with_scenario(secret)
+    assert other.case == OPTIMUM
+    assert other.compared == vertical
+
+
+def test_a_case_is_not_compared_with_itself(paper: Scenario) -> None:
+    """Choosing the compared case as the first, or the first as the compared, compares nothing."""
+    vertical = case_named("Vertical")
+    assert View(scenario=paper).with_compared(OPTIMUM).compared is None
+    assert View(scenario=paper).with_compared(vertical).with_case(vertical).compared is None
