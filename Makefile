@@ -7,10 +7,10 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test check docs bench figures clean
+.PHONY: help demo test test-studio check docs bench figures clean
 
 help: ## what can be made, a line each
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
 
 demo: .venv/.with-core ## the paper's problem solved, its Figure 2 and its claims checked, into out/
 	$(BIN)/nullpose compare examples/paper.toml
@@ -18,6 +18,10 @@ demo: .venv/.with-core ## the paper's problem solved, its Figure 2 and its claim
 
 test: .venv/.with-test ## the tests, on two processes
 	$(BIN)/pytest -n 2
+
+test-studio: .venv/.with-studiotest ## the studio's page, in Chromium
+	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }
+	$(BIN)/pytest tests/studio/browser/studio_command.py tests/studio/browser/studio_page.py
 
 check: .venv/.with-lint ## lint, format, types and the import contract
 	$(BIN)/ruff check .
