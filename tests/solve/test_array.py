@@ -112,6 +112,19 @@ def test_more_elements_are_never_worse(random_scene: Callable) -> None:
     assert values[-1] > 2.0 * values[0]
 
 
+@pytest.mark.parametrize("how", COMBININGS)
+def test_without_proof_it_is_the_best_found(how: str, paper: Callable) -> None:
+    """Without a proof there is no bound, several searches agree, and the value is the same."""
+    proved, found = (
+        solve_array(paper(1.0), how, elements=2, certify=certify, **HALF_WAVE) for certify in (True, False)
+    )
+    assert found.status is Status.BEST_FOUND
+    assert found.objective.upper_bound is found.objective.relative_gap is None
+    assert (found.stats.boxes, found.reason) == (0, "")
+    assert found.stats.agreeing == 3
+    assert found.objective.value == pytest.approx(proved.objective.value, rel=1e-6)
+
+
 @pytest.mark.parametrize("jamming_w", [1.0, 30.0])
 @pytest.mark.parametrize("layout", ["linear", "circular"])
 def test_digital_combining_is_certified(layout: str, jamming_w: float, random_scene: Callable) -> None:

@@ -24,7 +24,7 @@ from nullpose.solve.array_hunt import ArrayHunt
 from nullpose.solve.array_solution import ArraySolution, ArrayStats, Combining
 from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.limits import Limits, default_gap
-from nullpose.solve.objective import objective_of
+from nullpose.solve.objective import Objective, objective_of
 from nullpose.solve.provenance import provenance
 from nullpose.solve.solution import Status
 
@@ -46,6 +46,7 @@ def solve_array(
     layout: str | None = None,
     spacing_wavelengths: float | None = None,
     gap: float | None = None,
+    certify: bool = True,
     seed: int = 0,
 ) -> ArraySolution:
     """Return the best position, yaw and combining of an array of upright dipoles on a level vehicle.
@@ -66,6 +67,7 @@ def solve_array(
         spacing_wavelengths: distance between neighbours, in wavelengths.
         gap: relative gap between bound and value at which the proof is done; without it
             :func:`nullpose.solve.default_gap` of the number of nodes.
+        certify: whether to prove anything; without it there are searches alone.
         seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
 
     Raises:
@@ -85,21 +87,24 @@ def solve_array(
     target = default_gap(len(scenario.nodes)) if gap is None else Limits(gap=gap).gap
     began = time.perf_counter()
     task = ArrayTask.of(scenario, array, shared=kind == "analogue")
-    hunt, bound = _digital(task, target, seed) if kind == "digital" else _analogue(task, target, seed)
+    if not certify:
+        hunt, bound = _searched(ArrayHunt(task, seed)), None
+    else:
+        hunt, bound = _digital(task, target, seed) if kind == "digital" else _analogue(task, target, seed)
     state = hunt.state
     pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
     weights, links = _evaluated(scenario, array, kind, pose, state[4:])
-    objective = objective_of(scenario, links, bound.value)
-    if objective.value > bound.value:  # by rounding
+    objective = objective_of(scenario, links, None if bound is None else bound.value)
+    if bound is not None and objective.value > bound.value:  # by rounding
         objective = replace(objective, upper_bound=objective.value, relative_gap=0.0)
-    certified = (objective.relative_gap or 0.0) <= target
+    status = _status(objective, target)
     return ArraySolution(
         scenario=scenario,
         combining=kind,
         elements=array.elements,
         layout=array.layout,
         spacing_wavelengths=array.spacing_wavelengths,
-        status=Status.CERTIFIED if certified else Status.GAP_NOT_REACHED,
+        status=status,
         objective=objective,
         pose=pose,
         weights=weights,
@@ -108,12 +113,12 @@ def solve_array(
             wall_s=time.perf_counter() - began,
             starts=hunt.starts,
             evaluations=hunt.evaluations,
-            boxes=bound.boxes,
+            boxes=0 if bound is None else bound.boxes,
             searches=len(hunt.ends),
             agreeing=hunt.agreeing,
         ),
-        provenance=provenance(seed) | {"gap": target},
-        reason="" if certified else _reason(kind),
+        provenance=provenance(seed) | ({"gap": target} if certify else {}),
+        reason=_reason(kind) if status is Status.GAP_NOT_REACHED else "",
     )
 
 
@@ -140,30 +145,30 @@ def _array(
     return Array.from_dict(values)
 
 
+def _searched(hunt: ArrayHunt) -> ArrayHunt:
+    """Search until another search is not likely to change anything."""
+    while hunt.is_open:
+        hunt.search()
+    return hunt
+
+
 def _digital(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
-    """Return a search and a proof; more searches only where the proof does not get there."""
+    """Return a search and a proof; more searches, and another proof, where that does not get there.
+
+    What turns up in the first proof is taken up by the search.
+    """
     hunt = ArrayHunt(task, seed)
     hunt.search()
-    bound, boxes = _proved(hunt, gap)
-    if not hunt.reaches(bound.value, gap):
-        before = hunt.best
-        while hunt.is_open:
-            hunt.search()
-        if hunt.best > before:
-            bound, more = _proved(hunt, gap)
-            boxes += more
-    return hunt, replace(bound, boxes=boxes)
-
-
-def _proved(hunt: ArrayHunt, gap: float) -> tuple[ArrayBound, int]:
-    """Return a bound and the boxes examined; what turns up on the way is taken up by the search."""
-    boxes = 0
-    while True:
-        bound = array_bound(hunt.task, hunt.best, gap=gap)
-        boxes += bound.boxes
-        before = hunt.best
-        if bound.state is None or not hunt.look(bound.state) or hunt.best <= before + gap:
-            return bound, boxes
+    first = array_bound(task, hunt.best, gap=gap)
+    if hunt.reaches(first.value, gap):
+        return hunt, first
+    before = hunt.best
+    if first.state is not None:
+        hunt.look(first.state)
+    if _searched(hunt).best <= before + gap:
+        return hunt, first
+    second = array_bound(task, hunt.best, gap=gap)
+    return hunt, replace(second, value=min(first.value, second.value), boxes=first.boxes + second.boxes)
 
 
 def _analogue(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
@@ -199,6 +204,12 @@ def _evaluated(
         )
         for name, ratio, margin in zip(scenario.node_names, ratios, margins, strict=True)
     )
+
+
+def _status(objective: Objective, gap: float) -> Status:
+    if objective.relative_gap is None:
+        return Status.BEST_FOUND
+    return Status.CERTIFIED if objective.relative_gap <= gap else Status.GAP_NOT_REACHED
 
 
 def _reason(combining: Combining) -> str:

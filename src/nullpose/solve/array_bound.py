@@ -18,7 +18,7 @@ __all__ = ["ArrayBound", "array_bound"]
 
 FloatArray = NDArray[np.float64]
 
-_MOST_BOXES = 500_000
+_MOST_BOXES = 300_000
 _LEAST_BOXES = 20_000
 _WORK = 3e7  # boxes times what one costs: nodes, jammers and elements
 _ROUNDING = 5e-10

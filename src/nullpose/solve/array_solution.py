@@ -45,9 +45,9 @@ class ArraySolution:
         elements: number of dipoles.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
-        status: ``certified``, or ``gap-not-reached``, as always where a shared beam falls short of digital
-            combining, whose bound it has.
-        objective: the value at the pose, and the bound on it.
+        status: ``certified``; or ``gap-not-reached``, as always where a shared beam falls short of digital
+            combining, whose bound it has; or ``best-found`` without a proof.
+        objective: the value at the pose, and the bound on it if there was a proof.
         pose: level: roll and pitch are zero.
         weights: what each element is multiplied by (its conjugate), of unit length: (n_nodes, K) digital,
             (K,) analogue; complex, read-only.
