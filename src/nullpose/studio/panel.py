@@ -28,9 +28,8 @@ class Panel:
 
     def __init__(self, gui: GuiApi) -> None:
         self._gui = gui
-        gui.configure_theme(
-            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
-        )
+        gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+        gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
         self._add_about()
         self.readout: Any = gui.add_html("")

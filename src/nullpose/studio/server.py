@@ -130,6 +130,9 @@ class Studio:
             page = Page(client, self._scenario, self._map_kernel)
         except Exception:
             _log.exception("a page could not be made")
+            client.add_notification(
+                "Not opened", "The page could not be made; the terminal says why.", color="red"
+            )
             return
         with self._lock:
             gone = self._closed or client.client_id not in self._server.get_clients()
