@@ -88,7 +88,11 @@ def solve(
     if robust:
         scheme_given = scheme if scheme is not SchemeName.OPTIMUM else None
         refuse_with_robust(
-            scheme=scheme_given, null_jammer=null_jammer, certificate=certificate, geojson=geojson
+            scheme=scheme_given,
+            null_jammer=null_jammer,
+            certificate=certificate,
+            geojson=geojson,
+            figure=figure,
         )
         solve_robustly(
             scenario,

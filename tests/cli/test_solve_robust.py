@@ -1,0 +1,66 @@
+"""`solve --robust`: the guarantee and its bound in tables and JSON, and what it refuses."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+ROBUST = str(Path(__file__).parents[2] / "examples" / "robust.toml")
+QUICK = ("--set", "receiver.position_error_m=0", "--gap", "0.05")
+
+
+def test_json_holds_guarantee_and_bound(run: Run) -> None:
+    """The robust pose guarantees more than the nominal one, and no more than the bound."""
+    result = run("solve", ROBUST, "--robust", "--json", *QUICK)
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    assert answer["status"] == "certified"
+    assert answer["robust"]["guaranteed"] >= 1.75 * answer["nominal"]["guaranteed"]
+    assert answer["robust"]["guaranteed"] <= answer["robust"]["worst_found"] <= answer["robust"]["nominal"]
+    assert answer["robust"]["guaranteed"] <= answer["upper_bound"]
+    assert answer["relative_gap"] <= 0.05
+
+
+def test_tables_say_what_is_guaranteed(run: Run) -> None:
+    """Both poses stand side by side, with the errors, the bound and the worst case in words."""
+    result = run("solve", ROBUST, "--robust", *QUICK)
+    assert result.exit_code == 0
+    for words in (
+        "smallest SINR guaranteed",
+        "no pose guarantees more than",
+        "errors: axis 2 deg, M up to 3 m",
+        "best pose as stated",
+        "worst for the robust pose: axis 2 deg off",
+        "times as much as the best as stated",
+    ):
+        assert words in result.stdout
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        ("--scheme", "vertical"),
+        ("--null-jammer", "M"),
+        ("--certificate", "c.json"),
+        ("--geojson", "m.geojson"),
+        ("--figure", "f.png"),
+    ],
+    ids=lambda option: option[0],
+)
+def test_options_without_meaning_are_refused(run: Run, option: tuple[str, str]) -> None:
+    """What --robust has none of is named, and nothing is solved."""
+    result = run("solve", ROBUST, "--robust", *option)
+    assert result.exit_code == 2
+    assert option[0] in result.stderr
+    assert "--robust" in result.stderr
+
+
+def test_a_scenario_without_errors_is_refused(run: Run, paper: str) -> None:
+    """The message says where errors are stated."""
+    result = run("solve", paper, "--robust")
+    assert result.exit_code == 2
+    assert "receiver.attitude_error_deg" in result.stderr
