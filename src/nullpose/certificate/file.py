@@ -181,7 +181,7 @@ def parse_certificate(text: str) -> Certificate:
     null_jammer = data.get("null_jammer", 0)
     if not (null_jammer is None or isinstance(null_jammer, str)):
         raise CertificateError("null_jammer: is missing or wrong; must be a name or null")
-    return Certificate(
+    certificate = Certificate(
         scenario=Scenario.from_dict(scenario, "scenario"),
         scheme=_get(data, "scheme", str),
         null_jammer=null_jammer,
@@ -196,6 +196,9 @@ def parse_certificate(text: str) -> Certificate:
         ),
         provenance=_get(data, "provenance", dict),
     )
+    if _version(certificate) > data["version"]:
+        raise CertificateError(f"version: what it holds came with version {_version(certificate)}")
+    return certificate
 
 
 def _plain(text: str) -> dict[str, Any]:

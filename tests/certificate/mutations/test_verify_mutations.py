@@ -1,0 +1,355 @@
+"""A certificate spoiled anywhere is rejected: each mutation is judged by plain sampling before."""
+
+import copy
+import json
+import math
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nullpose.certificate import Certificate, Leaves, certificate_text, parse_certificate, verify
+from nullpose.certificate.file import scenario_digest
+from nullpose.errors import CertificateError, ScenarioError
+from nullpose.physics import Pose
+from nullpose.scenario import Airframe, Airspace, Eavesdropper, Scenario, Transmitter
+
+Data = dict[str, Any]
+
+WANTED = 600
+
+
+def numbers(value: Any, path: tuple = ()) -> list[tuple]:
+    """Return the paths of all numbers and texts inside."""
+    if isinstance(value, dict | list):
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        return [one for key, item in items for one in numbers(item, (*path, key))]
+    return [path]
+
+
+def look(data: Any, path: tuple) -> Any:
+    """Return what a path points at."""
+    for key in path:
+        data = data[key]
+    return data
+
+
+def changed(value: Any, rng: np.random.Generator) -> Any:
+    """Return another value of the same kind: a little or a lot different."""
+    if value is None:
+        return "M"
+    if isinstance(value, str):
+        others = [
+            "optimum",
+            "vertical",
+            "zero-interference",
+            "maximum-gain",
+            "free",
+            "null M",
+            "null M1",
+            "M1",
+        ]
+        return str(rng.choice([*others, value + "x", value[:-1]]))
+    if isinstance(value, int):
+        steps = [1, -1, 2, -2, int(rng.integers(-60, 60)), 2**40, -(2**40)]
+        return value + int(rng.choice(steps))
+    kind = rng.integers(5)
+    if kind == 0:
+        return value * (1.0 + float(10.0 ** rng.uniform(-9, -1) * rng.choice([-1, 1])))
+    if kind == 1:
+        return -value
+    if kind == 2:
+        return value * float(10.0 ** rng.uniform(-3, 3))
+    return value + float(rng.normal() * 10.0 ** rng.uniform(-6, 2)) if kind == 3 else 0.0
+
+
+COLUMNS = (
+    "box",
+    "cell",
+    "test",
+    "point",
+    "level",
+    "mix",
+    "sides",
+    "band",
+    "ball",
+    "ball_multiplier",
+    "mixes",
+)
+CLASSES = (
+    *COLUMNS,
+    "value",
+    "upper_bound",
+    "position_m",
+    "angle",
+    "root_m",
+    "axis",
+    "scheme",
+    "null_jammer",
+    "format",
+    "version",
+    "scenario_sha256",
+    "scenario",
+    "scenario, digest redone",
+    "scenario, claim redone",
+    "airframe, claim redone",
+    "no_fly, claim redone",
+    "leaf dropped",
+    "leaf moved",
+    "tree dropped",
+)
+
+
+def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
+    """Return where a mutation of a class may strike."""
+    tree = int(rng.integers(len(data["trees"])))
+    if kind in COLUMNS:
+        column = data["trees"][tree]["leaves"].get(kind, [])
+        rows = list(range(len(column)))
+        if kind in ("cell", "sides"):  # rather those that have a cell
+            cells = data["trees"][tree]["leaves"]["cell"]
+            rows = [i for i in rows if cells[i][0] >= 0] or rows
+        if kind in ("ball", "ball_multiplier"):
+            rows = [i for i in rows if data["trees"][tree]["leaves"]["ball"][i] >= 0] or rows
+        if not rows:
+            return []
+        row = int(rng.choice(rows))
+        return numbers(column[row], ("trees", tree, "leaves", kind, row))
+    if kind == "root_m":
+        return numbers(data["trees"][tree]["root_m"], ("trees", tree, "root_m"))
+    if kind == "axis":
+        return [("trees", tree, "axis")]
+    if kind == "position_m":
+        return [("pose", kind, i) for i in range(3)]
+    if kind == "angle":
+        return [("pose", name) for name in ("roll_rad", "pitch_rad", "yaw_rad")]
+    if kind.startswith("scenario") and kind != "scenario_sha256":
+        return numbers(data["scenario"], ("scenario",))
+    if kind.startswith("airframe"):
+        return numbers(data["scenario"].get("airframe", {}), ("scenario", "airframe"))
+    if kind.startswith("no_fly"):
+        zones = data["scenario"]["airspace"].get("no_fly", [])
+        return numbers(zones, ("scenario", "airspace", "no_fly"))
+    return [(kind,)]
+
+
+def spoiled(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
+    """Return a certificate's data with one change of a class, or None if it has no such place."""
+    data = copy.deepcopy(sound)
+    leaves = data["trees"][int(rng.integers(len(data["trees"])))]["leaves"]
+    if kind in ("leaf dropped", "leaf moved"):
+        row = int(rng.integers(len(leaves["box"])))
+        if kind == "leaf moved":
+            leaves["box"][row] = list(leaves["box"][int(rng.integers(len(leaves["box"])))])
+            return data
+        for name in set(leaves) - {"mixes"}:
+            del leaves[name][row]
+        return data
+    if kind == "tree dropped":
+        del data["trees"][-1]
+        return data
+    paths = paths_of(kind, data, rng)
+    if not paths:
+        return None
+    path = paths[int(rng.integers(len(paths)))]
+    new = changed(look(data, path), rng)
+    if new == look(data, path):
+        return None
+    look(data, path[:-1])[path[-1]] = new
+    if kind.endswith("redone"):
+        data["scenario_sha256"] = scenario_digest(data["scenario"])
+    return data
+
+
+def forged(data: Data, value_of: Callable[[Scenario, Pose], float]) -> Data | None:
+    """Return a certificate for a changed scenario with value, bound and levels made to fit its pose."""
+    try:
+        scenario = Scenario.from_dict(data["scenario"])
+    except ScenarioError:
+        return None
+    airframe = scenario.airframe
+    mount_rad = 0.0 if airframe is None else airframe.mount_rad
+    value = value_of(scenario, Pose(**data["pose"], mount_rad=mount_rad))
+    factor = value / data["value"]
+    data["value"], data["upper_bound"] = value, factor * data["upper_bound"]
+    for tree in data["trees"]:
+        tree["leaves"]["level"] = [min(factor * x, data["upper_bound"]) for x in tree["leaves"]["level"]]
+    return data
+
+
+def rejection(data: Data) -> str:
+    """Return the words with which a certificate is refused or rejected; none if it is accepted."""
+    try:
+        verdict = verify(parse_certificate(json.dumps(data)))
+    except (CertificateError, ScenarioError) as error:
+        return str(error)
+    assert verdict.message.startswith("proved: " if verdict.proved else "rejected: ")
+    return "" if verdict.proved else verdict.message.removeprefix("rejected: ")
+
+
+def without_top(certificate: Certificate) -> Certificate:
+    """Return a certificate whose cells on top of the cube of axes are out of reach, as they are if level."""
+    tree = certificate.trees[0]
+    top = tree.leaves.cell[:, 0] == 2
+    test, point, mix = (
+        np.where(top, value, getattr(tree.leaves, name))
+        for name, value in (("test", 5), ("point", -1), ("mix", -1))
+    )
+    leaves = replace(tree.leaves, test=test, point=point, mix=mix)
+    return replace(certificate, trees=(replace(tree, leaves=leaves),))
+
+
+def renewed(scenario: Scenario, **parts: Any) -> Scenario:
+    """Return a scenario with other parts, validated."""
+    return Scenario(**({name: getattr(scenario, name) for name in Scenario.model_fields} | parts))
+
+
+@pytest.fixture(scope="module")
+def sound(
+    paper: Callable, scene: Callable, certified: Callable, cut_into_cells: Callable
+) -> dict[str, Certificate]:
+    """Returns small certificates of all kinds."""
+    three = scene([(0, 0, 0), (40, 5, 2), (10, 40, 1)], [(17, 15, 4), (30, 30, 0)])
+    room = {"x_m": (-20.0, 30.0), "y_m": (5.0, 60.0)}
+    zones = Airspace(
+        altitude_m=(8.0, 30.0),
+        geofence_m=[(-20.0, -5.0), (40.0, -5.0), (10.0, 25.0), (40.0, 60.0), (-20.0, 60.0)],
+        no_fly=[
+            {"centre_m": (-2.0, 24.0), "radius_m": 5.0, "altitude_m": (0.0, 12.0)},
+            {"polygon_m": [(-20.0, 10.0), (-6.0, 12.0), (-9.0, 20.0), (-6.0, 35.0), (-20.0, 40.0)]},
+        ],
+    )
+    heard = {
+        "objective": "secrecy-rate",
+        "transmitter": Transmitter(power_w=1.0),
+        "eavesdroppers": (Eavesdropper(position_m=(17, 15, 4)), Eavesdropper(position_m=(-30, 20, 0))),
+        "nodes": tuple(node.model_copy(update={"power_w": None}) for node in paper().nodes),
+        "jammers": (),
+    }
+    weights = tuple(
+        node.model_copy(update={"weight": w}) for node, w in zip(paper().nodes, (0.5, 2.0), strict=True)
+    )
+    level, belt = Airframe(preset="level", mount_deg=90.0), Airframe(tilt_max_deg=20.0, mount_deg=30.0)
+    return {
+        "optimum": certified(paper(10.0), gap=0.2),
+        "cells": cut_into_cells(certified(paper(0.1), gap=0.2)),
+        "ball": certified(paper(keep_out_m=26.5), gap=0.02),
+        "vertical": certified(paper(), "vertical", gap=0.4),
+        "broadside": certified(paper(**room), "maximum-gain", gap=0.4),
+        "null": certified(three, "zero-interference", gap=0.4),
+        "belt": certified(renewed(paper(10.0), airframe=belt), gap=0.1),
+        "level": without_top(cut_into_cells(certified(renewed(paper(0.1), airframe=level), gap=0.2))),
+        "zones": certified(renewed(paper(), airspace=zones), gap=0.02),
+        "secret": certified(renewed(paper(), **heard), gap=0.05),
+        "weights": certified(renewed(paper(**room), nodes=weights), gap=0.1),
+    }
+
+
+STRUCK = {
+    "value",
+    "hole",
+    "multipliers",
+    "distance",
+    "root",
+    "digest",
+    "bound below the optimum",
+    "tilt",
+    "reach",
+    "kept out",
+    "pose outside",
+}
+
+
+def test_false_certificates_are_rejected(
+    sound: dict[str, Certificate], judge_of: Callable, value_of: Callable
+) -> None:
+    """Hundreds of random changes that make a statement false are each rejected, with a reason."""
+    rng = np.random.default_rng(2024)
+    bases = {name: json.loads(certificate_text(one)) for name, one in sound.items()}
+    judges = {name: judge_of(data, rng) for name, data in bases.items()}
+    for name, data in bases.items():
+        assert judges[name].falsehood(data) == "", name
+        assert rejection(data) == "", name
+    best_for = {
+        "cell": ("cells", "level"),
+        "sides": ("cells", "level"),
+        "band": ("belt",),
+        "ball": ("ball", "zones"),
+        "ball_multiplier": ("ball",),
+        "airframe, claim redone": ("belt", "level"),
+        "no_fly, claim redone": ("zones",),
+    }
+    found: Counter[str] = Counter()
+    struck: Counter[str] = Counter()
+    accepted = []
+    turn = 0
+    while sum(found.values()) < WANTED:
+        kind = CLASSES[turn % len(CLASSES)]
+        turn += 1
+        assert turn < 10 * WANTED
+        name = str(rng.choice(best_for.get(kind, tuple(bases))))
+        data = spoiled(bases[name], kind, rng)
+        if data is not None and kind.endswith("claim redone"):
+            data = forged(data, value_of)
+        falsehood = "" if data is None else judges[name].falsehood(data)
+        if not falsehood:
+            continue
+        found[kind] += 1
+        struck[falsehood] += 1
+        if not rejection(data):
+            accepted.append((name, kind, falsehood))
+    assert accepted == []
+    assert set(found) == set(CLASSES)
+    assert set(struck) >= STRUCK
+
+
+def test_leaves_are_needed_one_and_all(sound: dict[str, Certificate]) -> None:
+    """Without any one leaf, or with its level far too low, the rest is rejected."""
+    for one in (sound["cells"], sound["null"]):
+        tree = one.trees[0]
+        rng = np.random.default_rng(5)
+        for row in rng.choice(len(tree.leaves), size=15, replace=False):
+            kept = np.delete(np.arange(len(tree.leaves)), row)
+            columns = {name: getattr(tree.leaves, name)[kept] for name in Leaves.__slots__ if name != "mixes"}
+            leaves = Leaves(mixes=tree.leaves.mixes, **columns)
+            verdict = verify(replace(one, trees=(replace(tree, leaves=leaves), *one.trees[1:])))
+            assert not verdict.proved
+            assert "do not cover" in verdict.message
+            level = tree.leaves.level.copy()
+            level[row] *= 1e-9
+            leaves = replace(tree.leaves, level=level)
+            verdict = verify(replace(one, trees=(replace(tree, leaves=leaves), *one.trees[1:])))
+            if tree.leaves.test[row] != 4:
+                assert not verdict.proved
+                assert f"leaf {row} " in verdict.message
+
+
+def test_a_bound_that_is_too_low_is_rejected(sound: dict[str, Certificate]) -> None:
+    """With bound and levels lowered together to just below the value, some leaf fails."""
+    for one in sound.values():
+        bound = one.value * (1.0 + 1e-9)
+        trees = tuple(
+            replace(t, leaves=replace(t.leaves, level=np.minimum(t.leaves.level, bound))) for t in one.trees
+        )
+        verdict = verify(replace(one, upper_bound=bound, trees=trees))
+        assert not verdict.proved
+        assert "is not excluded" in verdict.message or "root" in verdict.message
+
+
+def test_undefined_numbers_prove_nothing(sound: dict[str, Certificate]) -> None:
+    """Numbers that no file can hold, but a program could put in, do not slip through."""
+    one = sound["ball"]
+    tree = one.trees[0]
+    for bad in (math.nan, math.inf):
+        for field in ("value", "upper_bound"):
+            assert not verify(replace(one, **{field: bad})).proved
+        for name in ("level", "ball_multiplier"):
+            column = np.full(len(tree.leaves), bad)
+            leaves = replace(tree.leaves, **{name: column})
+            assert not verify(replace(one, trees=(replace(tree, leaves=leaves),))).proved
+        root_m = tree.root_m.copy()
+        root_m[0, 0] = bad
+        assert not verify(replace(one, trees=(replace(tree, root_m=root_m),))).proved
