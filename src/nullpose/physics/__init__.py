@@ -3,6 +3,16 @@
 Every number that nullpose reports is evaluated here from the reported pose.
 """
 
+from nullpose.physics.array import (
+    analogue_sinr,
+    analogue_weights,
+    array_channels,
+    beam_sinr,
+    digital_sinr,
+    digital_weights,
+    element_positions,
+    steering_vectors,
+)
 from nullpose.physics.decibel import from_db, to_db
 from nullpose.physics.error_case import (
     ErrorCase,
@@ -40,10 +50,17 @@ __all__ = [
     "Link",
     "Pose",
     "PoseFrames",
+    "analogue_sinr",
+    "analogue_weights",
     "antenna_axis",
     "antenna_gain",
+    "array_channels",
     "attitude_from_axis",
+    "beam_sinr",
+    "digital_sinr",
+    "digital_weights",
     "eavesdropper_snr",
+    "element_positions",
     "elevation_cosine",
     "evaluate",
     "flu_from_frd",
@@ -67,6 +84,7 @@ __all__ = [
     "secrecy_rate",
     "sinr",
     "sinr_under",
+    "steering_vectors",
     "to_db",
     "zero_interference_axis",
     "zero_interference_sinr",

@@ -88,8 +88,8 @@ def steering_vectors(
         points_m: ground points, shape ``(m, 3)``, metres, none of them at the centre.
 
     Returns:
-        Array of shape ``(..., m, K)``, all of modulus 1. Far field: valid where the distance is many times
-        the square of the array's length over the wavelength.
+        Array of shape ``(..., m, K)``, all of modulus 1. Far field: valid beyond twice the square of the
+        array's length over the wavelength.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     directions = to_points / np.linalg.norm(to_points, axis=-1, keepdims=True)

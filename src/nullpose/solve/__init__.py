@@ -1,6 +1,8 @@
 """From a scenario to a solution: the paper's four cases."""
 
 from nullpose.solve.api import best_axis, compare, solve
+from nullpose.solve.array import solve_array
+from nullpose.solve.array_solution import ArraySolution, ArrayStats
 from nullpose.solve.compiling import announce_compiling
 from nullpose.solve.evidence import certificate_of
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
@@ -11,6 +13,8 @@ __all__ = [
     "NODE_LIMIT",
     "PAPER_SCHEMES",
     "TIME_LIMIT_S",
+    "ArraySolution",
+    "ArrayStats",
     "Objective",
     "Scheme",
     "Solution",
@@ -25,4 +29,5 @@ __all__ = [
     "default_gap_of",
     "not_applicable",
     "solve",
+    "solve_array",
 ]

@@ -53,8 +53,8 @@ def solve_array(
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Digital:
     every node has weights of its own, which follow from position and yaw
-    (:func:`nullpose.physics.array.digital_sinr`). Analogue: one beam of phase shifters serves all nodes
-    (:func:`nullpose.physics.array.analogue_sinr`), and its phases are searched too. The value is
+    (:func:`nullpose.physics.digital_sinr`). Analogue: one beam of phase shifters serves all nodes
+    (:func:`nullpose.physics.analogue_sinr`), and its phases are searched too. The value is
     re-evaluated by the physics from what is reported. The bound comes from a branch and bound over positions
     and yaws with digital combining, which a shared beam cannot exceed and mostly does not come near; an
     analogue value is the best of several independent searches.

@@ -1,0 +1,56 @@
+"""The page on arrays: its numbers are those of the program, and its examples load."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import nullpose
+from nullpose.scenario import Array
+from nullpose.solve import Status, solve_array
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "arrays.md").read_text(encoding="utf-8")
+EXAMPLE = ROOT / "examples" / "array.toml"
+ROWS = {
+    float(cells[0]): [float(cell) for cell in cells[1:]]
+    for cells in (
+        [cell.strip() for cell in line.strip("| \n").split("|")]
+        for line in PAGE.splitlines()
+        if re.match(r"\| \d", line)
+    )
+}
+
+
+def _paper(ratio: float) -> nullpose.Scenario:
+    scenario = nullpose.load(ROOT / "examples" / "paper.toml")
+    return nullpose.apply_overrides(scenario, [f"jammers.M.power_w={ratio}"])
+
+
+def test_every_ratio_is_there() -> None:
+    """The table has a row for each jamming power and a column for each array."""
+    assert list(ROWS) == [0.01, 0.1, 1.0, 10.0, 100.0]
+    assert {len(row) for row in ROWS.values()} == {7}
+
+
+@pytest.mark.parametrize("ratio", [0.1, 100.0])
+def test_numbers_are_those_of_the_program(ratio: float) -> None:
+    """Each value of a row is found again to its last digit, the digital ones with a proof."""
+    columns = [(1, "digital"), *((k, how) for k in (2, 4, 8) for how in ("digital", "analogue"))]
+    for (elements, how), printed in zip(columns, ROWS[ratio], strict=True):
+        solution = solve_array(
+            _paper(ratio), how, elements=elements, layout="linear", spacing_wavelengths=0.5
+        )
+        assert solution.objective.value == pytest.approx(printed, abs=6e-5)
+        if how == "digital":
+            assert solution.status is Status.CERTIFIED
+
+
+def test_the_example_is_what_the_page_shows() -> None:
+    """The table in the page is the example's, and the example solves."""
+    shown = re.search(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
+    assert shown is not None
+    scenario = nullpose.load(EXAMPLE)
+    assert scenario.array == Array(**tomllib.loads(shown[1])["array"])
+    assert solve_array(scenario).objective.value == pytest.approx(ROWS[10.0][3], abs=6e-5)
