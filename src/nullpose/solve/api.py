@@ -159,7 +159,8 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     """Return the pose with the best axis at a given position, of those that the airframe reaches.
 
     Maximises what the scenario asks for over the axis alone: by enumeration of the active sets of one, two
-    and three ratios, exact for a smallest SINR or margin; within an airframe's reach by a proved search.
+    and three ratios, exact for a smallest SINR or margin; within an airframe's reach by a search and a proof,
+    which few positions keep from being closed.
 
     Args:
         scenario: what is asked for; its airspace is not consulted.
@@ -186,9 +187,12 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         kernel(family.arrays, position, axis)
     else:
         here = replace(family, low_m=position, high_m=position, **_NO_BORDERS)
-        axis = settle(here, [AxisField.within(*band)], Effort(limits=Limits(gap=1e-8))).found.axis
+        limits = Limits(gap=1e-8, node_limit=_AXIS_NODES)
+        axis = settle(here, [AxisField.within(*band)], Effort(limits=limits)).found.axis
     return Pose.of_airframe(scenario, position, axis)
 
+
+_AXIS_NODES = 50_000  # of the proof at one position, which needs few if it is closed at all
 
 _NO_BORDERS: dict[str, Any] = {
     "keep_out_points_m": np.zeros((0, 3)),

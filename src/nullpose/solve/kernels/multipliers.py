@@ -33,7 +33,17 @@ _FEW = 6
 _ROUNDS = 5
 _SLIGHT = 1e-3
 _THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
+_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
 _GRID = 9  # of axes looked at for one inside both a cell and a band
+
+
+@inner_kernel
+def half_width(axis_field):
+    """Return half the width that a cone is given; zero for a band."""
+    if axis_field[0] != 3:
+        return 0.0
+    c = axis_field[1][0]
+    return min(_THIN, _STEEP * min(c, 1.0 - c))
 
 
 @inner_kernel
@@ -109,7 +119,7 @@ def centre_forms(family, axis_field, basis, row, denominator, forms, back):
             f[2] = -(abs(f[0]) + abs(f[1]) + 2.0 * abs(f[3])) - level if k < ratios else 0.0
             f[4] = f[5] = 0.0
     elif axis_field[0] >= 2:
-        thin = _THIN if axis_field[0] == 3 else 0.0
+        thin = half_width(axis_field)
         for end in range(2):
             c = axis_field[1][end] + (thin if end == 1 else -thin)
             if 0.0 < c < 1.0:
@@ -162,8 +172,7 @@ def cell_start(axis_field, basis, back, row, start):
         start[m] = 0.0
     u = np.empty(3)
     least, greatest = axis_field[1][0], axis_field[1][1]
-    if axis_field[0] == 3 and not level_axes:
-        least, greatest = least - _THIN, greatest + _THIN
+    least, greatest = least - half_width(axis_field), greatest + half_width(axis_field)
     least, greatest = max(0.0, least), min(1.0, greatest)
     count = 0
     if face < 0:
@@ -358,7 +367,7 @@ def keep_sides(axis_field, row, weights, ratios):
             row[SIDE + side] = weights[c]
             c += 1
     if axis_field[0] >= 2 and not level_axes:
-        thin = _THIN if axis_field[0] == 3 else 0.0
+        thin = half_width(axis_field)
         for end in range(2):
             if 0.0 < axis_field[1][end] + (thin if end == 1 else -thin) < 1.0:
                 row[BAND] += -weights[c] if end == 0 else weights[c]
@@ -390,7 +399,8 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, we
     else:
         if not cell_start(axis_field, basis, back, row, start):
             return math.inf, 0.0
-        primal = sparse_dual(forms, ratios, sides, row, level, 1e-5, start, weights, matrix)
+        accuracy = 1e-5 if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
+        primal = sparse_dual(forms, ratios, sides, row, level, accuracy, start, weights, matrix)
         top_eigenvector(matrix, v)
         if primal > level and primal - smallest_form(forms, ratios, v) > coarseness * level:
             # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
