@@ -113,15 +113,27 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
         widest = short(max(gap for gap in gaps if gap is not None))
         who = "Every dipole's value is" if len(certified) == len(dipoles) else f"{_names(certified)}:"
         lines.append(f"{who} certified: proved to be within {widest} of the best that the vehicle can reach.")
-    lines += [f"{result.case.label}: {result.reason}" for result in comparison.results if result.reason]
+    lines += [f"{result.case.label}: {result.reason}" for result in comparison.dipoles if result.reason]
     if any(result.status is Status.BEST_FOUND for result in dipoles):
         lines.append("Without proofs each value is the best of a search.")
-    if comparison.arrays:
-        lines.append("Arrays: the best of several searches; no pose exceeds the bound, which may be loose.")
+    lines += _array_proof(comparison)
     if comparison.scenario.is_uncertain:
         lines.append(_guaranteed_line(comparison))
         lines += ["Nothing is guaranteed of arrays."] if comparison.arrays else []
     return lines
+
+
+def _array_proof(comparison: AirframeComparison) -> list[str]:
+    """Return how many values of arrays are certified, and why the others are not."""
+    arrays = [result for result in comparison.arrays if result.objective is not None]
+    others = [result for result in arrays if result.status is not Status.CERTIFIED]
+    if not arrays:
+        return []
+    if not others:
+        return ["The values of the arrays are certified as well."]
+    share = f"{len(arrays) - len(others)} of {len(arrays)}"
+    reasons = "; ".join(dict.fromkeys(result.reason for result in others if result.reason))
+    return [f"Arrays: {share} values are certified, the others the best found{reasons and f' ({reasons})'}."]
 
 
 def _names(results: list[AirframeResult]) -> str:

@@ -239,7 +239,7 @@ def compare_airframes(
         gap: relative gap at which each proof is done; without it, by the number of nodes.
         time_limit_s: seconds after which each proof stops.
         node_limit: boxes after which each proof stops.
-        certify: whether to prove anything about dipoles; arrays are never proved to be the best.
+        certify: whether to prove anything about dipoles; of arrays, what can be is proved anyway.
         seed: the random seed of every solve.
         on_progress: called after each vehicle with how many are done and how many there are.
 
@@ -261,7 +261,8 @@ def compare_airframes(
                 interrupted = interrupted or solution.interrupted
                 results.append(_dipole_result(case, solution, None if interrupted else limits, certify))
             else:
-                results.append(_array_result(case, solve_array(case.on(scenario), case.combining, seed=seed)))
+                found = solve_array(case.on(scenario), case.combining, gap=limits.gap, seed=seed)
+                results.append(_array_result(case, found))
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
@@ -293,7 +294,13 @@ def _nothing(case: AirframeCase, error: SolveError) -> AirframeResult:
 
 
 def _array_result(case: AirframeCase, solution: ArraySolution) -> AirframeResult:
-    return AirframeResult(case=case, status=solution.status, objective=solution.objective, pose=solution.pose)
+    return AirframeResult(
+        case=case,
+        status=solution.status,
+        objective=solution.objective,
+        pose=solution.pose,
+        reason=solution.reason,
+    )
 
 
 def _dipole_result(
