@@ -35,7 +35,7 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """Triangles.
+    """A surface of triangles.
 
     Args:
         vertices: (n, 3) metres.

@@ -5,15 +5,16 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from nullpose import load
+from nullpose.studio.case import OPTIMUM
 from nullpose.studio.server import Studio, studio
+from nullpose.studio.session import Session
 
-ROOT = Path(__file__).parents[3]
+PAPER = load(Path(__file__).parents[3] / "examples" / "paper.toml")
 PATIENCE_MS = 90_000
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
@@ -35,18 +36,17 @@ def browser() -> Iterator[Browser]:
 @pytest.fixture(scope="session")
 def running() -> Iterator[Studio]:
     """A studio of the paper's scene."""
-    with studio(load(ROOT / "examples" / "paper.toml"), port=0) as one:
+    with studio(PAPER, port=0) as one:
         yield one
 
 
-@pytest.fixture
-def open_page(browser: Browser, running: Studio) -> Iterator[Open]:
-    """Opens a page of its own, waits for its first proof, and closes it in the end."""
-    contexts = []
+@pytest.fixture(scope="session")
+def open_page(browser: Browser, running: Studio) -> Open:
+    """Opens a page of its own and waits for its first proof."""
 
     def opened() -> Page:
-        context = browser.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True)
-        contexts.append(context)
+        # a quarter of the pixels: without a graphics card it is they that take the time
+        context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=0.5)
         page = context.new_page()
         page.set_default_timeout(PATIENCE_MS)
         page.goto(f"http://127.0.0.1:{running.port}")
@@ -55,12 +55,34 @@ def open_page(browser: Browser, running: Studio) -> Iterator[Open]:
             button.click()  # the notice that there is no graphics card
         return page
 
-    yield opened
-    for context in contexts:
-        context.close()
+    return opened
+
+
+@pytest.fixture(scope="session")
+def first_page(open_page: Open, running: Studio) -> tuple[Page, Session]:
+    """The page that most tests share, since opening one takes long, with the server's side of it."""
+    page = open_page()
+    (ours,) = running.pages.values()
+    return page, ours.session
 
 
 @pytest.fixture
-def session_of(running: Studio) -> Callable[[], Any]:
-    """Returns the server's side of the page that was opened last."""
-    return lambda: running.pages[max(running.pages)].session
+def session(first_page: tuple[Page, Session]) -> Session:
+    """The server's side of the shared page, back at the paper's scene."""
+    page, session = first_page
+    session.choose(OPTIMUM)
+    session.compare(None)
+    session.load(PAPER.to_toml().encode(), "paper.toml")
+    page.wait_for_function(
+        f"+document.querySelector('[data-np=readout]').dataset.version == {session.version}"
+    )
+    page.wait_for_function(CERTIFIED)
+    return session
+
+
+@pytest.fixture
+def page(first_page: tuple[Page, Session], session: Session) -> Page:
+    """The shared page, showing the paper's scene with its proof, its first tab in front."""
+    page, _ = first_page
+    page.get_by_role("tab", name="Scene").click()
+    return page

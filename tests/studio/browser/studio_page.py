@@ -14,8 +14,9 @@ from playwright.sync_api import Page
 
 from nullpose import load, solve
 from nullpose.solve import Scheme
+from nullpose.studio.server import Studio
+from nullpose.studio.session import Session
 
-ROOT = Path(__file__).parents[3]
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 Open = Callable[[], Page]
 
@@ -34,10 +35,8 @@ def _settled(page: Page, before: int) -> None:
     )
 
 
-def _on_screen(page: Page, point_m: Any) -> tuple[float, float]:
+def _on_screen(page: Page, camera: Any, point_m: Any) -> tuple[float, float]:
     """Return where a point of the scene is on the canvas, from the camera as the server knows it."""
-    client = page.client  # type: ignore[attr-defined]
-    camera = client.camera
     forward = np.asarray(camera.look_at) - camera.position
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -51,9 +50,8 @@ def _on_screen(page: Page, point_m: Any) -> tuple[float, float]:
     return x, canvas["y"] + 0.5 * canvas["height"] - scale * float(away @ up)
 
 
-def test_the_scene_is_drawn(open_page: Open) -> None:
+def test_the_scene_is_drawn(page: Page) -> None:
     """The canvas has the colours of the map, of the pattern and of the null in it, not only elements."""
-    page = open_page()
     page.wait_for_selector("[data-np=plot][data-state=current]")
     page.wait_for_timeout(6000)
     canvas = page.locator("canvas").first
@@ -65,32 +63,29 @@ def test_the_scene_is_drawn(open_page: Open) -> None:
     assert len(np.unique((pixels * 15).astype(int).reshape(-1, 3), axis=0)) > 80
 
 
-def test_the_slider_changes_the_value_to_the_solvers(open_page: Open, session_of: Callable[[], Any]) -> None:
+def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Session) -> None:
     """After the jamming power is set, the value shown is the solver's for the same scene."""
-    page = open_page()
     before, version = _value(page), _version(page)
     field = page.locator("input.mantine-NumberInput-input").first
     field.fill("20")
     field.press("Enter")
     _settled(page, version)
-    scenario = session_of().view.scenario
+    scenario = session.view.scenario
     assert scenario.jammers[0].transmit_power_w == pytest.approx(100.0)
     assert _value(page) == pytest.approx(solve(scenario).objective.value, rel=1e-9)
     assert _value(page) != pytest.approx(before, rel=1e-3)
 
 
-def test_a_dragged_handle_moves_the_jammer(
-    open_page: Open, running: Any, session_of: Callable[[], Any]
-) -> None:
+def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running: Studio) -> None:
     """Dragging the jammer's handle moves it along the ground, and the value is the solver's there."""
-    page = open_page()
-    page.client = running.pages[max(running.pages)]._client  # type: ignore[attr-defined]
+    ours = next(iter(running.pages.values()))
+    camera = ours._client.camera
     version = _version(page)
-    start = np.asarray(session_of().view.scenario.jammers[0].position_m)
+    start = np.asarray(session.view.scenario.jammers[0].position_m)
     page.wait_for_timeout(3000)
-    size_m = running.pages[max(running.pages)]._size_m
-    x, y = _on_screen(page, start + np.array([0.06 * size_m, 0.0, 0.0]))
-    to = _on_screen(page, start + np.array([0.06 * size_m + 12.0, 0.0, 0.0]))
+    size_m = ours._size_m
+    x, y = _on_screen(page, camera, start + np.array([0.06 * size_m, 0.0, 0.0]))
+    to = _on_screen(page, camera, start + np.array([0.06 * size_m + 12.0, 0.0, 0.0]))
     page.mouse.move(x, y)
     page.wait_for_timeout(500)
     page.mouse.down()
@@ -101,15 +96,15 @@ def test_a_dragged_handle_moves_the_jammer(
     _settled(page, version)
     page.wait_for_timeout(1500)
     page.wait_for_function(CERTIFIED)
-    moved = np.array(session_of().view.scenario.jammers[0].position_m)
+    moved = np.array(session.view.scenario.jammers[0].position_m)
     assert np.linalg.norm(moved - start) > 4.0
     assert moved[2] == start[2]
-    assert _value(page) == pytest.approx(solve(session_of().view.scenario).objective.value, rel=1e-9)
+    assert _value(page) == pytest.approx(solve(session.view.scenario).objective.value, rel=1e-9)
 
 
-def test_two_browsers_keep_their_own_state(open_page: Open) -> None:
+def test_two_browsers_keep_their_own_state(page: Page, open_page: Open) -> None:
     """What one changes the other does not see."""
-    first, second = open_page(), open_page()
+    first, second = page, open_page()
     value, version = _value(second), _version(second)
     before = _version(first)
     field = first.locator("input.mantine-NumberInput-input").first
@@ -118,12 +113,12 @@ def test_two_browsers_keep_their_own_state(open_page: Open) -> None:
     _settled(first, before)
     assert _value(first) != pytest.approx(value, rel=1e-3)
     assert (_value(second), _version(second)) == (value, version)
+    second.context.close()
 
 
-def test_cases_are_chosen_and_compared(open_page: Open) -> None:
+def test_cases_are_chosen_and_compared(page: Page, session: Session) -> None:
     """A case from the list is solved as the solver does, and two are set beside each other."""
-    page = open_page()
-    paper = load(ROOT / "examples" / "paper.toml")
+    paper = session.view.scenario
     version = _version(page)
     page.get_by_role("textbox", name="Case").click()
     page.get_by_role("option", name="Vertical", exact=True).click()
@@ -136,15 +131,14 @@ def test_cases_are_chosen_and_compared(open_page: Open) -> None:
     assert float(page.locator("[data-np=value-1]").get_attribute("data-value") or "nan") > _value(page)
 
 
-def test_files_go_out_and_come_back(open_page: Open, session_of: Callable[[], Any], tmp_path: Path) -> None:
+def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path) -> None:
     """A saved scene loads as it was; a broken file shows its faults by path and changes nothing."""
-    page = open_page()
     version = _version(page)
     field = page.locator("input.mantine-NumberInput-input").first
     field.fill("10")
     field.press("Enter")
     _settled(page, version)
-    scenario = session_of().view.scenario
+    scenario = session.view.scenario
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Save scenario").click()
@@ -166,18 +160,17 @@ def test_files_go_out_and_come_back(open_page: Open, session_of: Callable[[], An
     page.get_by_role("tab", name="Scene").click()
     page.get_by_role("button", name="Undo").click()
     _settled(page, version)
-    assert session_of().view.scenario != scenario
+    assert session.view.scenario != scenario
     version = _version(page)
     page.get_by_role("tab", name="Files").click()
     _upload(page, saved)
     _settled(page, version)
-    assert session_of().view.scenario == scenario
+    assert session.view.scenario == scenario
     assert page.locator("[data-np=faults]").inner_text() == ""
 
 
-def test_the_exported_scene_needs_no_server(open_page: Open, tmp_path: Path) -> None:
+def test_the_exported_scene_needs_no_server(page: Page, tmp_path: Path) -> None:
     """The exported HTML draws the scene from a file, and asks for nothing else."""
-    page = open_page()
     page.wait_for_selector("[data-np=plot][data-state=current]")
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
@@ -196,9 +189,8 @@ def test_the_exported_scene_needs_no_server(open_page: Open, tmp_path: Path) -> 
     assert [url for url in asked if url.startswith(("http", "ws"))] == []
 
 
-def test_the_explanation_can_be_closed(open_page: Open) -> None:
+def test_the_explanation_can_be_closed(page: Page) -> None:
     """What am I looking at is there at first, and gone when it is closed."""
-    page = open_page()
     assert page.locator("[data-np=about]").is_visible()
     page.get_by_role("button", name="Got it").click()
     page.wait_for_selector("[data-np=about]", state="detached")

@@ -1,0 +1,1 @@
+"""How quickly the studio's page follows a hand, and whether it lasts."""

@@ -1,0 +1,59 @@
+"""A Chromium that draws without a graphics card, and where a point of the scene is on its screen."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+__all__ = ["CERTIFIED", "on_screen", "opened"]
+
+CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
+_FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+
+@contextmanager
+def opened(port: int, *, scale: float = 0.5) -> Iterator[Any]:
+    """Give a page of the studio at a port, its first proof being there.
+
+    Args:
+        port: where the studio is.
+        scale: pixels along each side for one of the page's; without a graphics card they take the time.
+    """
+    from playwright.sync_api import sync_playwright
+
+    path = shutil.which("chromium")
+    if path is None:
+        raise SystemExit("Chromium is needed: apt-get install chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=_FLAGS)
+        page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=scale)
+        page.set_default_timeout(120_000)
+        page.goto(f"http://127.0.0.1:{port}")
+        page.wait_for_function(CERTIFIED)
+        for button in page.locator("button.mantine-Notification-closeButton").all():
+            button.click()  # the notice that there is no graphics card
+        yield page
+        browser.close()
+
+
+def on_screen(page: Any, camera: Any, point_m: Any) -> tuple[float, float]:
+    """Return where a point of the scene is on the page, pixels.
+
+    Args:
+        page: the browser's page.
+        camera: the same page's camera as the server knows it.
+        point_m: (3,) metres.
+    """
+    forward = np.asarray(camera.look_at) - camera.position
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    away = np.asarray(point_m) - camera.position
+    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov) / (away @ forward)
+    box = page.locator("canvas").first.bounding_box()
+    across, up = float(away @ right), float(away @ np.cross(right, forward))
+    return (box["x"] + 0.5 * box["width"] + scale * across, box["y"] + 0.5 * box["height"] - scale * up)

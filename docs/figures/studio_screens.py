@@ -1,0 +1,51 @@
+"""Takes the pictures of the studio in the documentation; needs the extra ``studiotest`` and Chromium."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.studio.chromium import opened  # noqa: E402
+
+from nullpose import load  # noqa: E402
+from nullpose.studio.case import case_named  # noqa: E402
+from nullpose.studio.server import studio  # noqa: E402
+from nullpose.studio.session import Session  # noqa: E402
+
+IMAGES = ROOT / "docs" / "images"
+
+# name: example, what is done first
+SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
+    "studio-weak": ("paper", lambda session: session.set_power_db(-20.0)),
+    "studio-strong": ("paper", lambda session: session.set_power_db(20.0)),
+    "studio-ten-nodes": ("field", lambda session: None),
+    "studio-comparison": ("paper", lambda session: session.compare(case_named("Vertical"))),
+    "studio-robust": ("robust", lambda session: session.choose(case_named("Robust pose"))),
+}
+_QUIET_MS = 9000  # without a graphics card a frame takes long
+
+
+def take(name: str) -> None:
+    """Take one picture."""
+    example, change = SCREENS[name]
+    with (
+        studio(load(ROOT / "examples" / f"{example}.toml"), port=0) as running,
+        opened(running.port, scale=1.0) as page,
+    ):
+        page.get_by_role("button", name="Got it").click()
+        session: Any = next(iter(running.pages.values())).session
+        change(session)
+        while session.field_map is None or session.status(session.view.case).startswith("solving"):
+            page.wait_for_timeout(200)
+        page.wait_for_timeout(_QUIET_MS)
+        page.screenshot(path=IMAGES / f"{name}.png")
+
+
+if __name__ == "__main__":
+    for each in sys.argv[1:] or SCREENS:
+        take(each)
