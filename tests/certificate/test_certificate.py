@@ -1,5 +1,6 @@
 """Certificates: which axes a scheme claims, and that no code of the solver is used to check them."""
 
+import math
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +10,7 @@ import pytest
 
 from nullpose.certificate import claimed_axes
 from nullpose.family import AxisField
+from nullpose.scenario import Airframe
 from nullpose.solve import Scheme
 
 
@@ -35,6 +37,24 @@ def test_the_axes_are_the_schemes(random_scene: Callable) -> None:
     for (scheme, name), field in expected.items():
         claimed = claimed_axes(scenario, scheme, None)[name]
         for one, other in zip(claimed.arrays, field.arrays, strict=True):
+            assert np.array_equal(one, other)
+
+
+def test_the_optimum_keeps_to_the_airframe(random_scene: Callable) -> None:
+    """Any axis, a band of them, or the vertical: what the airframe reaches."""
+    cases = [
+        ({"preset": "omnidirectional"}, "free", AxisField.free()),
+        ({"tilt_max_deg": 50.0, "mount_deg": 40.0}, "free", AxisField.free()),
+        ({"preset": "level"}, "vertical", AxisField.vertical()),
+        ({"preset": "level", "mount_deg": 90.0}, "band", AxisField.within(0.0, 0.0)),
+        ({"tilt_max_deg": 60.0}, "band", AxisField.within(math.cos(math.radians(60.0)) ** 2, 1.0)),
+    ]
+    for airframe, name, field in cases:
+        scenario = random_scene(1, 2, 1).model_copy(update={"airframe": Airframe(**airframe)})
+        claimed = claimed_axes(scenario, "optimum", None)
+        assert list(claimed) == [name]
+        assert claimed[name].band == field.band
+        for one, other in zip(claimed[name].arrays, field.arrays, strict=True):
             assert np.array_equal(one, other)
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from nullpose.certificate import verify
-from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS, WORLD
+from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, OFF_BAND, TOWARDS, WORLD
 from nullpose.errors import UsageError
-from nullpose.scenario import Scenario
+from nullpose.scenario import Airframe, Eavesdropper, Scenario, Transmitter
 from nullpose.solve import Solution, certificate_of, solve
 from nullpose.solve.evidence import leaves_of
 from nullpose.solve.kernels import node
@@ -143,6 +143,55 @@ def test_a_bound_from_distances_has_leaves_that_show_it(altitude_m: tuple, scene
     """Above a lone node the distance says it all: the certificate must prove the bound that is stated."""
     solution = solve(scene([(0, 0, 0)], altitude_m=altitude_m), time_limit_s=ENOUGH_S)
     assert verify(certificate_of(solution)).proved
+
+
+def test_bands_count_where_they_are_used() -> None:
+    """Tests of free axes keep the band's multiplier, of either sign; others have none."""
+    proof = proof_of(np.empty(0))
+    kinds = [WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT, OFF_BAND]
+    proof.leaves = np.array([row_of((0,) * 6, proof, KIND=kind, ANCHOR=3, BAND=-0.5) for kind in kinds])
+    leaves = leaves_of(proof)
+    assert leaves.band.tolist() == [-0.5, -0.5, 0.0, 0.0, 0.0, 0.0]
+    assert leaves.test.tolist() == kinds
+    assert leaves.point.tolist() == [-1, 3, -1, 3, 3, -1]
+    assert leaves.mix.tolist() == [0, 0, 0, -1, -1, -1]
+
+
+@pytest.mark.parametrize(
+    "airframe",
+    [
+        {"preset": "level"},
+        {"preset": "level", "mount_deg": 90.0},
+        {"preset": "fixed-tilt-hexarotor"},
+        {"tilt_max_deg": 10.0, "mount_deg": 70.0},
+    ],
+)
+def test_certificates_of_airframes(airframe: dict, paper: Callable) -> None:
+    """The pose that is reported is one that the vehicle takes, and the bound is proved for its axes."""
+    scenario = paper(1.0).model_copy(update={"airframe": Airframe(**airframe)})
+    solution = solved(scenario)
+    certificate = certificate_of(solution)
+    assert (certificate.roll_rad, certificate.pitch_rad) == (solution.pose.roll_rad, solution.pose.pitch_rad)
+    assert certificate.yaw_rad == solution.pose.yaw_rad
+    assert verify(certificate).proved
+
+
+def test_certificates_of_rates_hold_ratios(paper: Callable) -> None:
+    """Value and bound of a rate are written as two to the power of it."""
+    stated = paper(1.0)
+    scenario = Scenario(
+        objective="secrecy-rate",
+        airspace=stated.airspace,
+        receiver=stated.receiver,
+        transmitter=Transmitter(power_w=1.0),
+        nodes=tuple(node.model_copy(update={"power_w": None}) for node in stated.nodes),
+        eavesdroppers=(Eavesdropper(position_m=(17.0, 15.0, 4.0)),),
+    )
+    solution = solved(scenario)
+    certificate = certificate_of(solution)
+    assert np.log2(certificate.value) == pytest.approx(solution.objective.value, abs=1e-12)
+    assert np.log2(certificate.upper_bound) == pytest.approx(solution.objective.upper_bound, abs=1e-12)
+    assert verify(certificate).proved
 
 
 def test_no_proof_no_certificate(paper: Callable, random_scene: Callable) -> None:

@@ -123,15 +123,13 @@ class Certificate:
 def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField] | None:
     """Return the axis fields of a scheme by the names they have in a certificate; None if there are none.
 
-    There are none where positions are uncertain, the pose is held with errors, or dipoles form an array.
+    They are those of one dipole in the scene as stated, uncertainties and arrays left out.
 
     Args:
         scenario: nodes, jammers and airframe.
         scheme: the case.
         null_jammer: zero interference only: the jammer to be nulled, or None for any.
     """
-    if scenario.is_uncertain or scenario.array is not None:
-        return None
     if null_jammer is not None and scheme != "zero-interference":
         return None
     jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))

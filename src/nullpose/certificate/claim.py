@@ -39,8 +39,8 @@ def claim_fault(certificate: Certificate, family: Family, fields: dict[str, Axis
         family: its scenario's ratios.
         fields: the axis fields that its scheme needs a tree for, None if there are none.
     """
-    if certificate.scenario.is_uncertain or len(family.turn):
-        return "the scenario has uncertain positions or pose errors, of which there are no certificates"
+    if len(family.turn):
+        return "there are no certificates of poses that are held with errors"
     if fields is None:
         with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
         return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"

@@ -27,10 +27,17 @@ def sentence(certificate: Certificate, leaves: int) -> str:
     """
     most, least, near = _numbers(certificate)
     return (
-        f"proved: in this scenario no position{_places(certificate)} {_axes(certificate)} gives every node "
-        f"{_quantity(certificate)} above {most}, and the stated pose gives every node {least} or more, "
-        f"which is within {near} of it; {leaves} leaves checked"
+        f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
+        f"{_axes(certificate)} gives every node {_quantity(certificate)} above {most}, and the stated pose "
+        f"gives every node {least} or more, which is within {near} of it; {leaves} leaves checked"
     )
+
+
+def _left_out(certificate: Certificate) -> str:
+    """Return what the scenario states that a certificate does not speak of."""
+    scenario = certificate.scenario
+    words = [word for word, holds in (("errors", scenario.is_uncertain), ("array", scenario.array)) if holds]
+    return f", its {' and '.join(words)} left out," if words else ""
 
 
 def _quantity(certificate: Certificate) -> str:

@@ -29,7 +29,8 @@ def certificate_of(solution: Solution) -> Certificate:
     """
     fields = claimed_axes(solution.scenario, solution.scheme, solution.null_jammer)
     if solution.objective.upper_bound is None or fields is None:
-        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {_lack(solution)}")
+        reason = solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
+        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {reason}")
     pose = solution.pose
     value, bound = _ratios(solution)
     return Certificate(
@@ -48,13 +49,6 @@ def certificate_of(solution: Solution) -> Certificate:
         ),
         provenance=dict(solution.provenance),
     )
-
-
-def _lack(solution: Solution) -> str:
-    """Return why a solution has no certificate."""
-    if solution.scenario.is_uncertain:
-        return "it has uncertain positions or pose errors, of which there are no certificates"
-    return solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
 
 
 def _ratios(solution: Solution) -> tuple[float, float]:

@@ -130,8 +130,6 @@ class Judge:
     def claim(self, data: Data, scenario: Scenario) -> str:
         """Return what is false of the pose and the two numbers."""
         value, bound = data["value"], data["upper_bound"]
-        if scenario.is_uncertain or scenario.array is not None:
-            return "uncertain"
         if not value > 0.0 or bound < value:
             return "bound below the value"
         airframe, problem = scenario.airframe, Problem(scenario)
