@@ -147,7 +147,7 @@ class Page:
 
     def _send(self, name: str, make: Any) -> None:
         try:
-            self._client.send_file_download(name, make())
+            self._client.send_file_download(name, make(), save_immediately=True)
         except NullposeError as error:
             self._client.add_notification("Not exported", str(error), color="red", auto_close_seconds=8.0)
 

@@ -120,12 +120,12 @@ def test_cases_are_chosen_and_compared(page: Page, session: Session) -> None:
     """A case from the list is solved as the solver does, and two are set beside each other."""
     paper = session.view.scenario
     version = _version(page)
-    page.get_by_role("textbox", name="Case").click()
+    page.locator("input.mantine-Select-input:visible").nth(0).click()
     page.get_by_role("option", name="Vertical", exact=True).click()
     _settled(page, version)
     assert _value(page) == pytest.approx(solve(paper, Scheme.VERTICAL).objective.value, rel=1e-9)
     version = _version(page)
-    page.get_by_role("textbox", name="Compare with").click()
+    page.locator("input.mantine-Select-input:visible").nth(1).click()
     page.get_by_role("option", name="Optimum pose", exact=True).click()
     page.wait_for_selector("[data-np=difference]")
     assert float(page.locator("[data-np=value-1]").get_attribute("data-value") or "nan") > _value(page)
@@ -142,7 +142,6 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Save scenario").click()
-        _confirm(page)
     saved = tmp_path / "saved.toml"
     download.value.save_as(saved)
     assert load(saved) == scenario
@@ -175,7 +174,6 @@ def test_the_exported_scene_needs_no_server(page: Page, tmp_path: Path) -> None:
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Export scene").click()
-        _confirm(page)
     path = tmp_path / "scene.html"
     download.value.save_as(path)
     asked: list[str] = []
@@ -200,8 +198,3 @@ def _upload(page: Page, path: Path) -> None:
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Load scenario").click()
     chooser.value.set_files(path)
-
-
-def _confirm(page: Page) -> None:
-    """Press the button of the notice by which the page offers a file."""
-    page.get_by_text("Download", exact=True).last.click()
