@@ -24,6 +24,8 @@ VERBS = {
         "--certificate",
         "--geojson",
         "--figure",
+        "--combining",
+        "--robust",
         "--json",
     }
     | PROOF,

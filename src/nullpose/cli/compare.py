@@ -32,7 +32,7 @@ def compare(
         typer.Option(
             "--figure",
             metavar="FILE",
-            help="With --airframes: draw the vehicles as bars, into a file named .png or .svg.",
+            help="Draw the vehicles of --airframes as bars, into a file named .png or .svg.",
             show_default=False,
         ),
     ] = None,

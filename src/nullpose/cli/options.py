@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 __all__ = [
+    "CombiningName",
     "Fast",
     "Gap",
     "JsonOutput",
@@ -30,6 +31,13 @@ class SchemeName(StrEnum):
     MAXIMUM_GAIN = "maximum-gain"
     VERTICAL = "vertical"
     MAXIMUM_GAIN_PRINTED = "maximum-gain-printed"
+
+
+class CombiningName(StrEnum):
+    """The ways to combine an array's elements, by name."""
+
+    DIGITAL = "digital"
+    ANALOGUE = "analogue"
 
 
 ScenarioFile = Annotated[

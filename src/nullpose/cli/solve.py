@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
+from nullpose.cli.array import refuse_with_array, solve_with_array
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
+    CombiningName,
     Fast,
     Gap,
     JsonOutput,
@@ -70,6 +72,14 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    combining: Annotated[
+        CombiningName | None,
+        typer.Option(
+            "--combining",
+            help="With an [array]: weights for each node, or one beam for all.",
+            show_default="digital",
+        ),
+    ] = None,
     figure: Annotated[
         Path | None,
         typer.Option(
@@ -104,6 +114,24 @@ def solve(
             json_output=json_output,
         )
         return
+    if scenario.array is not None:
+        scheme_given = scheme if scheme is not SchemeName.OPTIMUM else None
+        refuse_with_array(
+            scheme=scheme_given,
+            null_jammer=null_jammer,
+            certificate=certificate,
+            geojson=geojson,
+            figure=figure,
+        )
+        solve_with_array(
+            scenario,
+            (combining or CombiningName.DIGITAL).value,
+            gap=gap,
+            certify=not fast,
+            seed=seed,
+            json_output=json_output,
+        )
+        return
     from nullpose.certificate import write_certificate
     from nullpose.errors import UsageError
     from nullpose.report.export import require_origin, write_geojson
@@ -111,6 +139,8 @@ def solve(
     from nullpose.solve import solve as solve_scenario
     from nullpose.study import prepare_folder
 
+    if combining is not None:
+        raise UsageError("--combining: given for a scenario without an [array]; add one, or leave it out")
     if fast and certificate is not None:
         raise UsageError("--certificate: given with --fast, which proves nothing; leave out one of the two")
     if geojson is not None:

@@ -72,6 +72,8 @@ def sweep(
     )
     with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
         table = plan.run(on_progress=ticker)
+    if plan.scenario.array is not None:
+        typer.echo("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
     files = write_sweep(table, plan.folder, log=log)

@@ -127,8 +127,8 @@ def _array_proof(comparison: AirframeComparison) -> list[str]:
     """Return how many values of arrays are certified, and why the others are not."""
     arrays = [result for result in comparison.arrays if result.objective is not None]
     others = [result for result in arrays if result.status is not Status.CERTIFIED]
-    if not arrays:
-        return []
+    if all(result.status is Status.BEST_FOUND for result in arrays):
+        return []  # without proofs, which is said of all values
     if not others:
         return ["The values of the arrays are certified as well."]
     share = f"{len(arrays) - len(others)} of {len(arrays)}"

@@ -52,8 +52,10 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     lines += not_applicable_lines(comparison.left_out)
     lines += _certainty(solutions)
     lines.append(f"* binding: the {quantity.smallest} is at this node")
-    if scenario.airframe is not None:
-        lines.append("Other vehicles in this scene: nullpose compare FILE --airframes")
+    if scenario.array is not None:
+        lines.append("These cases have one dipole. For the file's array: solve, or compare --airframes")
+    elif scenario.airframe is not None:
+        lines.append("Other vehicles in this scene: compare --airframes")
     return Group(Text(scenario.name or "scenario", style="bold"), table, Text("\n".join(lines)))
 
 

@@ -6,7 +6,7 @@ import math
 
 from nullpose.physics import FramePose, Geodetic, pose_frames
 from nullpose.scenario import Origin
-from nullpose.solve import Solution
+from nullpose.solve import ArraySolution, Solution
 
 __all__ = ["frame_rows", "place_words"]
 
@@ -21,7 +21,7 @@ def place_words(place: Geodetic | Origin) -> str:
     return f"lat {lat} deg, lon {lon} deg, alt {place.alt_m:z.3f} m over the WGS-84 ellipsoid"
 
 
-def frame_rows(solution: Solution) -> list[tuple[str, str]]:
+def frame_rows(solution: Solution | ArraySolution) -> list[tuple[str, str]]:
     """Return a solution's pose on the Earth, in NED and as quaternions: a name and words for each.
 
     Empty for a scenario without an origin.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from nullpose.physics import Link
-from nullpose.solve import Scheme, Solution
+from nullpose.solve import ArraySolution, Scheme, Solution
 
 __all__ = ["requirement_words"]
 
 
-def requirement_words(solution: Solution) -> str:
+def requirement_words(solution: Solution | ArraySolution) -> str:
     """Return whether the requirements are met and by how much, or which are missed; empty if there are none.
 
     That no pose meets them is said where the bound proves it.

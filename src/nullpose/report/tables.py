@@ -12,7 +12,7 @@ from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.report.quantity import Quantity, bound_words, value_words
 from nullpose.report.requirements import requirement_words
-from nullpose.solve import Scheme, Solution
+from nullpose.solve import ArraySolution, Scheme, Solution
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -37,7 +37,7 @@ BINDING_RTOL = 1e-6
 _UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth worth telling
 
 
-def binding_nodes(solution: Solution) -> frozenset[str]:
+def binding_nodes(solution: Solution | ArraySolution) -> frozenset[str]:
     """Return the names of the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``.
 
     Args:
@@ -50,7 +50,7 @@ def binding_nodes(solution: Solution) -> frozenset[str]:
     )
 
 
-def status_words(solution: Solution) -> str:
+def status_words(solution: Solution | ArraySolution) -> str:
     """Return how sure the answer is, in words, and the work behind it.
 
     Args:

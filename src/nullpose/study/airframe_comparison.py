@@ -10,9 +10,17 @@ from typing import Any
 from nullpose.errors import SolveError
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.solve import NODE_LIMIT, TIME_LIMIT_S, Objective, Solution, Status, default_gap_of, solve
-from nullpose.solve.array import solve_array
-from nullpose.solve.array_solution import ArraySolution
+from nullpose.solve import (
+    NODE_LIMIT,
+    TIME_LIMIT_S,
+    ArraySolution,
+    Objective,
+    Solution,
+    Status,
+    default_gap_of,
+    solve,
+    solve_array,
+)
 from nullpose.solve.limits import Limits
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust import guarantee, solve_robust
@@ -239,7 +247,7 @@ def compare_airframes(
         gap: relative gap at which each proof is done; without it, by the number of nodes.
         time_limit_s: seconds after which each proof stops.
         node_limit: boxes after which each proof stops.
-        certify: whether to prove anything about dipoles; of arrays, what can be is proved anyway.
+        certify: whether to prove anything.
         seed: the random seed of every solve.
         on_progress: called after each vehicle with how many are done and how many there are.
 
@@ -261,7 +269,9 @@ def compare_airframes(
                 interrupted = interrupted or solution.interrupted
                 results.append(_dipole_result(case, solution, None if interrupted else limits, certify))
             else:
-                found = solve_array(case.on(scenario), case.combining, gap=limits.gap, seed=seed)
+                found = solve_array(
+                    case.on(scenario), case.combining, gap=limits.gap, certify=proved is not None, seed=seed
+                )
                 results.append(_array_result(case, found))
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:

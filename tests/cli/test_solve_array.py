@@ -1,0 +1,85 @@
+"""The verb `solve` with an array: it is solved, not passed over."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def array(paper: str) -> str:
+    """The example with an array of four."""
+    return paper.replace("paper.toml", "array.toml")
+
+
+def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
+    """Digital unless told otherwise; value, proof, pose and array are shown."""
+    result = run("solve", array)
+    assert result.exit_code == 0
+    for words in (
+        "Array of 4, digital: smallest SINR 7.21",
+        "certified",
+        "level, yaw",
+        "4 upright dipoles, linear",
+    ):
+        assert words in result.stdout
+    assert "antenna axis" not in result.stdout
+
+
+def test_one_beam_has_phases(run: Run, array: str) -> None:
+    """An analogue beam is shown by the phase of each element."""
+    result = run("solve", array, "--combining", "analogue", "--fast")
+    assert result.exit_code == 0
+    assert "Array of 4, analogue: smallest SINR 7.09" in result.stdout
+    assert "Phase shifters" in result.stdout
+    assert "searches ended at this value" in result.stdout
+
+
+def test_json(run: Run, array: str) -> None:
+    """The JSON object is the array's."""
+    data = json.loads(run("solve", array, "--fast", "--json").stdout)
+    assert data["scheme"] == "array-digital"
+    assert data["array"]["elements"] == 4
+    assert data["status"] == "best-found"
+
+
+@pytest.mark.parametrize(
+    "option",
+    [("--scheme", "vertical"), ("--figure", "pose.png"), ("--certificate", "c.json"), ("--null-jammer", "M")],
+)
+def test_what_arrays_have_not_is_refused(
+    run: Run, array: str, option: tuple[str, str], tmp_path: Path
+) -> None:
+    """Options for one dipole are refused by name, not ignored."""
+    name, value = option
+    result = run("solve", array, name, tmp_path / value if "." in value else value)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert f"{name}: given for a scenario with an [array]" in result.stderr
+
+
+def test_combining_needs_an_array(run: Run, paper: str) -> None:
+    """One dipole has nothing to combine."""
+    result = run("solve", paper, "--combining", "digital")
+    assert result.exit_code == 2
+    assert "--combining: given for a scenario without an [array]" in result.stderr
+
+
+def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: Path) -> None:
+    """Cases of one dipole are solved without the array, and it is said."""
+    assert "These cases have one dipole" in run("compare", array, "--fast").stdout
+    settings = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--points", 2, "--scheme", "vertical")
+    result = run("sweep", array, *settings, "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert "the file's array is left out" in result.stderr
+
+
+def test_a_margin_of_an_array(run: Run, array: str) -> None:
+    """Requirements count for arrays too, and are judged."""
+    result = run("solve", array, "--fast", "--set", "nodes.S1.min_sinr_db=3")
+    assert result.exit_code == 0
+    assert "smallest margin" in result.stdout
+    assert "the requirement is met; node S1" in result.stdout
