@@ -37,8 +37,8 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
         "note",
     ]
     assert list(data["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
-    keys = ["position_m", "roll_rad", "pitch_rad", "yaw_rad", "antenna_axis", "frames"]
-    assert list(data["pose"]) == keys
+    angles = ["roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad"]
+    assert list(data["pose"]) == ["position_m", *angles, "antenna_axis", "frames"]
     assert [list(link) for link in data["links"]] == [["node", "sinr", "sinr_db"]] * 2
     assert list(data["stats"]) == ["wall_s", "starts", "evaluations", "boxes"]
     assert {"nullpose", "seed", "gap"} <= set(data["provenance"])

@@ -84,7 +84,7 @@ def test_without_jammers_nothing_turns(scene: Callable) -> None:
 
 
 def test_slacks_are_distances_to_the_constraints(paper: Callable) -> None:
-    """Faces by their distance, infinite where unbounded; balls and a band's ends by differences of squares."""
+    """Faces by their distance, infinite if unbounded; balls and a band's ends by differences of squares."""
     family = build_family(paper(1.0, keep_out_m=9.0))
     slacks = np.empty(slack_count(family.domain))
     p, u = np.array([3.0, 4.0, 12.0]), np.array([0.6, 0.0, 0.8])

@@ -67,7 +67,9 @@ def test_the_enclosure_tightens_with_the_box() -> None:
     jet = np.empty(JET)
     radii = []
     for scale in (1e-2, 5e-3):
-        link_jet(POINT, UNTURNED, 0, FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale), jet)
+        link_jet(
+            POINT, UNTURNED, 0, FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale), jet
+        )
         radii.append(jet[10:16].copy())
     np.testing.assert_allclose(radii[0] / radii[1], 2.0, rtol=0.05)
 
