@@ -103,6 +103,7 @@ def solve(
             certificate=certificate,
             geojson=geojson,
             figure=figure,
+            combining=combining,
         )
         solve_robustly(
             scenario,

@@ -9,7 +9,7 @@ from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import distance_m
 from nullpose.report.quantity import Quantity, bound_words, value_words
 from nullpose.report.requirements import requirement_words
-from nullpose.report.tables import binding_nodes, count_words, degrees_text, fixed, new_table, status_words
+from nullpose.report.tables import binding_nodes, degrees_text, fixed, new_table, status_words
 from nullpose.scenario import Array
 from nullpose.solve import ArraySolution
 
@@ -34,11 +34,14 @@ def array_view(solution: ArraySolution) -> RenderableType:
         (scenario.name or "scenario", "bold"), "\n", (_begun(solution.label), "bold blue"), ": "
     )
     head.append(value_words(solution.objective), style="bold")
-    agreeing = f"{solution.stats.agreeing} of {count_words(solution.stats.searches, 'search', 'searches')}"
+    stats = solution.stats
+    agreeing = (
+        f"{stats.agreeing} of {stats.searches} searches ended at this value" if stats.searches > 1 else ""
+    )
     lines = (
         bound_words(solution.objective),
         status_words(solution),
-        f"{agreeing} ended at this value",
+        agreeing,
         requirement_words(solution),
     )
     head.append("".join(f"\n{line}" for line in lines if line))
