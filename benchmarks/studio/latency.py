@@ -33,6 +33,12 @@ _WATCH = """() => {
   }).observe(document.body, {childList: true, subtree: true, attributes: true, characterData: true});
 }"""
 
+_FRAMES = """() => new Promise(resolve => {
+  const at = [];
+  const next = now => { at.push(now); at.length < 40 ? requestAnimationFrame(next) : resolve(at); };
+  requestAnimationFrame(next);
+})"""
+
 
 def latency(steps: int) -> dict[str, Any]:
     """Return the times of the paper's scene, and of ten nodes and three jammers, milliseconds.
@@ -42,7 +48,11 @@ def latency(steps: int) -> dict[str, Any]:
     """
     scenes = {"paper": load(_EXAMPLES / "paper.toml"), "ten nodes, three jammers": _ten_and_three()}
     return {
-        name: {"server": _server(scene, 3 * steps), "browser": _browser(scene, steps)}
+        name: {
+            "server": _server(scene, 3 * steps),
+            "browser": _browser(scene, steps, 0.5),
+            "browser, few pixels": _browser(scene, steps, 0.1),
+        }
         for name, scene in scenes.items()
     }
 
@@ -80,9 +90,13 @@ def _server(scene: Scenario, steps: int) -> dict[str, float]:
     return _summary(took)
 
 
-def _browser(scene: Scenario, steps: int) -> dict[str, float]:
-    """Return the times from a move of the mouse to the frame with the new answer, in the browser's clock."""
-    with studio(scene, port=0) as running, opened(running.port) as page:
+def _browser(scene: Scenario, steps: int, scale: float) -> dict[str, float]:
+    """Return the times from a move of the mouse to the frame with the new answer, in the browser's clock.
+
+    Beside them stands how long the browser takes from one frame to the next by itself: without a graphics
+    card that is most of the rest.
+    """
+    with studio(scene, port=0) as running, opened(running.port, scale=scale) as page:
         page.wait_for_timeout(6000)
         ours = next(iter(running.pages.values()))
         start = np.array(scene.jammers[0].position_m)
@@ -100,12 +114,14 @@ def _browser(scene: Scenario, steps: int) -> dict[str, float]:
             page.wait_for_timeout(1000 * _PAUSE_S)
         page.mouse.up()
         moves, news = page.evaluate("() => [moves, news]")
+        frames = page.evaluate(_FRAMES)
     took = []
     for began, version in moves:
         seen = [at for at, shown in news if at > began and shown > version]
         if seen:
             took.append(1e-3 * (seen[0] - began))
-    return _summary(took) | {"moves": len(moves)}
+    frame_ms = round(float(np.median(np.diff(frames))), 1)
+    return _summary(took) | {"moves": len(moves), "frame_ms": frame_ms}
 
 
 def _summary(seconds: list[float]) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme, not_applicable
@@ -70,7 +71,33 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     Args:
         scenario: as stated.
     """
-    return tuple(case for case in _CASES if case.missing(scenario) is None)
+    traits = (
+        scenario.objective,
+        scenario.airframe,
+        scenario.is_uncertain,
+        scenario.has_margins,
+        bool(scenario.jammers),
+        len(scenario.nodes),
+    )
+    return _cases_with(traits, _Unhashed(scenario))
+
+
+class _Unhashed:
+    """A scenario that a cache does not look at: what cases it has depends on its traits alone."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Unhashed)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+@lru_cache(maxsize=64)
+def _cases_with(traits: tuple[object, ...], of: _Unhashed) -> tuple[Case, ...]:
+    return tuple(case for case in _CASES if case.missing(of.scenario) is None)
 
 
 def case_named(label: str) -> Case:

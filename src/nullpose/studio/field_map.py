@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -55,7 +57,7 @@ def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray
     return middle - half, middle + half
 
 
-def field_map(answer: Answer) -> FieldMap:
+def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> FieldMap:
     """Return the two maps of an answer.
 
     The map of the best axes is exact, by enumeration, where every axis is allowed and a SINR or margin is
@@ -64,6 +66,7 @@ def field_map(answer: Answer) -> FieldMap:
 
     Args:
         answer: whose case, altitude and pose they are of.
+        go_on: called now and then; what it raises ends the work.
     """
     scenario, position_m = answer.scenario, answer.pose.position_m
     low_m, high_m = map_extent_m(scenario, position_m)
@@ -73,7 +76,7 @@ def field_map(answer: Answer) -> FieldMap:
     grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), altitude_m), axis=-1)
     usable = _usable(scenario, grid)
     values = np.full(usable.shape, np.nan)
-    values[usable] = _best_values(answer, grid[usable])
+    values[usable] = _best_values(answer, grid[usable], go_on)
     quantity = Quantity.of(scenario)
     if not quantity.is_rate:
         values = _db(values)
@@ -104,7 +107,7 @@ def _usable(scenario: Scenario, grid: FloatArray) -> NDArray[np.bool_]:
     return np.asarray(scenario.airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m))
 
 
-def _best_values(answer: Answer, positions_m: FloatArray) -> FloatArray:
+def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     scenario, scheme = answer.scenario, answer.case.scheme
     if scheme is Scheme.VERTICAL:
         return objective_value(scenario, positions_m, np.array([0.0, 0.0, 1.0]))
@@ -115,34 +118,37 @@ def _best_values(answer: Answer, positions_m: FloatArray) -> FloatArray:
         ]
         return np.asarray(np.max(each, axis=0))
     if scheme is Scheme.MAXIMUM_GAIN:
-        return objective_value(scenario, positions_m, _gain_axes(scenario, positions_m))
+        return objective_value(scenario, positions_m, _gain_axes(scenario, positions_m, go_on))
     if scenario.axis_band == (0.0, 1.0) and scenario.objective == "min-sinr":
-        return objective_value(scenario, positions_m, _exact_axes(scenario, positions_m))
+        return objective_value(scenario, positions_m, _exact_axes(scenario, positions_m, go_on))
     axes = _spread_axes(*scenario.axis_band)
     best = np.empty(len(positions_m))
     for start in range(0, len(positions_m), _CHUNK):
+        go_on()
         some = positions_m[start : start + _CHUNK]
         best[start : start + _CHUNK] = np.max(objective_value(scenario, some[:, None, :], axes), axis=1)
     return best
 
 
-def _exact_axes(scenario: Scenario, positions_m: FloatArray) -> FloatArray:
+def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     from nullpose.solve.kernels.axis import best_axis
 
     arrays = build_family(scenario).arrays
     axes = np.empty_like(positions_m)
     for position_m, axis in zip(np.ascontiguousarray(positions_m), axes, strict=True):
+        go_on()
         best_axis(arrays, position_m, axis)
     return axes
 
 
-def _gain_axes(scenario: Scenario, positions_m: FloatArray) -> FloatArray:
+def _gain_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     nodes = scenario.node_positions_m
     if len(nodes) == 2:
         return maximum_gain_axis(scenario, positions_m)
     axes = _spread_axes(0.0, 1.0)
     chosen = np.empty_like(positions_m)
     for i, position_m in enumerate(positions_m):
+        go_on()
         distance_sq = np.sum((nodes - position_m) ** 2, axis=-1)
         received = antenna_gain(position_m, axes, nodes) * scenario.node_powers_w / distance_sq
         chosen[i] = axes[np.argmax(np.min(received / scenario.node_required_sinr, axis=-1))]

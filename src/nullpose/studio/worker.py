@@ -112,7 +112,7 @@ class Worker:
         if best is not None:
             while not self._map_kernel.is_ready():
                 self._rest()
-            self._tell(request, field_map(best))
+            self._tell(request, field_map(best, self._go_on))
 
     def _answer_quickly(self, request: _Request, case: Case) -> None:
         self._publish(quick_answer(request.version, request.view, case))
