@@ -23,7 +23,6 @@ _LEAST_BOXES = 20_000
 _WORK = 3e7  # boxes times what one costs: nodes, jammers and elements
 _ROUNDING = 5e-10
 _INSIDE = 0.9  # the gap that is aimed at, of the gap that is asked for: bound and value are rounded
-_PROOF_S = 10.0
 _LEAST_GAP = 1e-8  # of the vertical case's proof
 
 
@@ -97,7 +96,7 @@ def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
     family = task.family
     if len(task.base) > 1:
         family = silent(family)
-    limits = Limits(gap=max(_INSIDE * gap, _LEAST_GAP), time_limit_s=_PROOF_S)
+    limits = Limits(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
     settled = settle(family, [AxisField.vertical()], Effort(limits=limits))
     assert settled.upper_bound is not None, "a proof was asked for"
     value = len(task.base) * settled.upper_bound * (1.0 + _ROUNDING)
