@@ -46,8 +46,9 @@ def kept_out_holds(family: Family, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     if np.any(in_ball):
         farthest2 = boxes.chosen(in_ball).farthest2(family.keep_out_points_m[which[in_ball]])
         holds[in_ball] = farthest2 < Interval(family.keep_out_m).squared().low
-    if not np.all(in_ball):
-        holds[~in_ball] = forbidden(family, which[~in_ball] - balls, boxes.chosen(~in_ball))
+    in_zone = ~in_ball & (which < balls + len(family.zone_kind))
+    if np.any(in_zone):
+        holds[in_zone] = forbidden(family, which[in_zone] - balls, boxes.chosen(in_zone))
     return holds
 
 
