@@ -42,6 +42,7 @@ def take(name: str) -> None:
         change(session)
         while session.field_map is None or session.status(session.view.case).startswith("solving"):
             page.wait_for_timeout(200)
+        page.mouse.move(300, 30)  # away from what would show its help
         page.wait_for_timeout(_QUIET_MS)
         page.screenshot(path=IMAGES / f"{name}.png")
 

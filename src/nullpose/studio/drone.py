@@ -31,6 +31,7 @@ LINK_RANGE_DB = (-6.0, 12.0)
 """Range of the links' colours, dB, while no map has set one."""
 
 _NULL = KIND_COLOURS["jammers"]
+_LABEL_AT = (np.array([0.0, 0.0, 0.17]), np.array([0.0, 0.14, 0.0]))  # above, and to the right at first
 _HULLS = ((60, 64, 72), (120, 124, 130))
 
 
@@ -67,7 +68,7 @@ class Drone:
         parts["antenna"].wxyz = antenna_wxyz(pose.mount_rad)
         self._set("pattern", pattern)
         label = parts["label"]
-        label.position = pose.position_m + np.array([0.0, 0.0, 0.17 * self._size_m])
+        label.position = pose.position_m + self._size_m * _LABEL_AT[self._slot]
         if self._shown.get("text") != text:
             label.text = self._shown["text"] = text
         parts["null"].points = null_line_m(pose, 0.16 * self._size_m, most_m=1.5 * self._size_m)[None].astype(
@@ -126,7 +127,10 @@ class Drone:
         add_mesh(scene, f"{root}/antenna/rod", rod_mesh(0.2 * size_m), _NULL)
         self._parts["pattern"] = self._add_pattern(f"{root}/antenna/pattern")
         self._parts["label"] = scene.add_label(
-            f"/labels{root}", "", anchor="bottom-center", font_screen_scale=1.0
+            f"/labels{root}",
+            "",
+            anchor="bottom-center" if self._slot == 0 else "center-left",
+            font_screen_scale=1.0,
         )
         none = np.zeros((1, 2, 3), dtype=np.float32)
         colours = np.zeros((1, 2, 3), dtype=np.uint8)
@@ -148,7 +152,7 @@ class Drone:
         radius_m = 0.11 * self._size_m
         if self._slot == 1:
             wires = doughnut_mesh(radius_m, 18, 24)
-            add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True, opacity=0.3)
+            add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True)
             return frame
         for i, (band, gain) in enumerate(gain_bands(doughnut_mesh(radius_m))):
             colour = tuple(int(c) for c in scale_colours(gain, 0.0, 1.0))

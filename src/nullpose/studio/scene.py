@@ -33,6 +33,8 @@ GIZMOS = "/points"
 """Where the handles of the ground points are in the scene's tree."""
 
 _ZONE = (160, 60, 60)
+_WIRE = (150, 150, 150)
+_CROWD = 6  # more points than this have smaller labels
 _SLAB = (86, 150, 190)
 _MARKS = {"nodes": box_mesh, "jammers": cone_mesh, "eavesdroppers": diamond_mesh}
 _NICE_M = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 1e4)
@@ -114,8 +116,9 @@ class Ground:
         size_m = scene_size_m(view.scenario)
         self._add_grid(view.scenario, size_m)
         self._add_airspace(view.scenario)
+        crowd = sum(1 for _ in view.points())
         for key, point in view.points():
-            self._add_point(key, point, size_m, view.scenario.airspace.keep_out_m)
+            self._add_point(key, point, size_m, view.scenario.airspace.keep_out_m, crowd)
 
     def _move(self, view: View) -> None:
         for key, point in view.points():
@@ -123,7 +126,9 @@ class Ground:
             if key != self.dragged and not np.allclose(handle.position, point.position_m, atol=1e-6):
                 handle.position = point.position_m
 
-    def _add_point(self, key: PointKey, point: GroundPoint, size_m: float, keep_out_m: float) -> None:
+    def _add_point(
+        self, key: PointKey, point: GroundPoint, size_m: float, keep_out_m: float, crowd: int
+    ) -> None:
         kind, index = key
         colour = KIND_COLOURS[kind]
         name = f"{GIZMOS}/{kind}-{index}"
@@ -132,25 +137,19 @@ class Ground:
         else:
             gizmo = self._add_gizmo(key, name, point, size_m, self._on_drag)
         add_mesh(self._scene, f"{name}/mark", _MARKS[kind](0.022 * size_m), colour, flat_shading=True)
-        add_mesh(
-            self._scene, f"{name}/keep-out", ellipsoid_mesh(keep_out_m * np.eye(3)), colour, opacity=0.12
-        )
+        # as wires: what is see-through below the map would be hidden by it
+        keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
+        add_mesh(self._scene, f"{name}/keep-out", keep_out, _WIRE, wireframe=True)
         matrix_m = getattr(point, "uncertainty_matrix_m", None)
         if matrix_m is not None and np.any(matrix_m):
-            add_mesh(
-                self._scene,
-                f"{name}/uncertainty",
-                ellipsoid_mesh(matrix_m),
-                colour,
-                opacity=0.28,
-                side="double",
-            )
+            reach = ellipsoid_mesh(matrix_m, 10, 16)
+            add_mesh(self._scene, f"{name}/uncertainty", reach, colour, wireframe=True)
         self._scene.add_label(
             f"{name}/label",
             point.name,
             position=(0.0, 0.0, 0.062 * size_m),
             anchor="bottom-center",
-            font_screen_scale=1.1,
+            font_screen_scale=1.1 if crowd <= _CROWD else 0.8,
         )
 
         self._handles[key] = gizmo
@@ -235,7 +234,7 @@ class Ground:
         else:
             outline = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
         slab = prism_mesh(outline, floor_m, max(ceiling_m, floor_m + 0.05))
-        self._around.append(add_mesh(self._scene, "/airspace/slab", slab, _SLAB, opacity=0.04, side="double"))
+        self._around.append(add_mesh(self._scene, "/airspace/slab", slab, _SLAB, opacity=0.06, side="back"))
         self._around.append(self._outline("/airspace/edges", outline, floor_m, ceiling_m, _SLAB))
         for i, zone in enumerate(airspace.no_fly):
             mesh = zone_mesh(zone, 0.0, ceiling_m)
