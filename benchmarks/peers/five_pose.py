@@ -178,7 +178,7 @@ class FivePose:
 
 def _pack(family: Family) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return the family as one array of floats and one of integers, in the order that `unpack` reads."""
-    points, n0, nw, npt, den, d0, start, dpt, dw = family.arrays
+    points, n0, nw, npt, den, d0, start, dpt, dw = family.arrays[:9]
     scratch = np.zeros(len(d0) + len(nw))
     reals = np.concatenate([points.ravel(), n0, nw, d0, dw, family.low_m, family.high_m, scratch])
     sizes = [0, len(points), len(nw), len(d0), len(dw)]

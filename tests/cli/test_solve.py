@@ -45,7 +45,8 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
         "note",
     ]
     assert list(answer["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
-    keys = ["position_m", "roll_rad", "pitch_rad", "yaw_rad", "antenna_axis", "frames"]
+    angles = ["roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad"]
+    keys = ["position_m", *angles, "antenna_axis", "frames"]
     assert list(answer["pose"]) == keys
     assert [link["node"] for link in answer["links"]] == ["S1", "S2"]
     assert set(answer["stats"]) == {"wall_s", "starts", "evaluations", "boxes"}

@@ -42,6 +42,7 @@ class GapBar:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
+            self._bar.refresh()  # not every release of rich draws the last state by itself
             self._bar.stop()
 
     def __call__(self, gap: float, boxes: int) -> None:

@@ -79,6 +79,7 @@ class Ticker:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
+            self._bar.refresh()  # not every release of rich draws the last state by itself
             self._bar.stop()
 
     def __call__(self, done: int, total: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -95,43 +95,21 @@ def solve(
     from nullpose.scenario import apply_overrides, load
 
     scenario = apply_overrides(load(file), overrides or [])
+    special = {
+        "scheme": scheme if scheme is not SchemeName.OPTIMUM else None,
+        "null_jammer": null_jammer,
+        "certificate": certificate,
+        "geojson": geojson,
+        "figure": figure,
+    }
+    common: dict[str, Any] = {"gap": gap, "certify": not fast, "seed": seed, "json_output": json_output}
     if robust:
-        scheme_given = scheme if scheme is not SchemeName.OPTIMUM else None
-        refuse_with_robust(
-            scheme=scheme_given,
-            null_jammer=null_jammer,
-            certificate=certificate,
-            geojson=geojson,
-            figure=figure,
-            combining=combining,
-        )
-        solve_robustly(
-            scenario,
-            gap=gap,
-            time_limit_s=time_limit,
-            node_limit=node_limit,
-            certify=not fast,
-            seed=seed,
-            json_output=json_output,
-        )
+        refuse_with_robust(**special, combining=combining)
+        solve_robustly(scenario, time_limit_s=time_limit, node_limit=node_limit, **common)
         return
     if scenario.array is not None:
-        scheme_given = scheme if scheme is not SchemeName.OPTIMUM else None
-        refuse_with_array(
-            scheme=scheme_given,
-            null_jammer=null_jammer,
-            certificate=certificate,
-            geojson=geojson,
-            figure=figure,
-        )
-        solve_with_array(
-            scenario,
-            (combining or CombiningName.DIGITAL).value,
-            gap=gap,
-            certify=not fast,
-            seed=seed,
-            json_output=json_output,
-        )
+        refuse_with_array(**special)
+        solve_with_array(scenario, (combining or CombiningName.DIGITAL).value, **common)
         return
     from nullpose.certificate import write_certificate
     from nullpose.errors import UsageError
