@@ -27,7 +27,9 @@ def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
         assert kind == (3 if least == greatest else 2)
         np.testing.assert_array_equal(ends, [least, greatest, 0.0])
         assert field.is_free
-    assert not ends.flags.writeable
+    ends[:] = 9.0  # a copy: the field itself does not change
+    assert field.band == ((least, greatest) if field.is_free else (0.0, 1.0))
+    assert not np.any(field.arrays[1] == 9.0)
 
 
 def test_bands_at_their_ends() -> None:

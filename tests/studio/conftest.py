@@ -1,8 +1,14 @@
 """Scenes that the studio's tests begin with."""
 
+from importlib.util import find_spec
+
 import pytest
 
 from nullpose.scenario import Airspace, Eavesdropper, Jammer, Node, Receiver, Scenario, Transmitter
+
+collect_ignore = (
+    [] if find_spec("playwright") else ["browser"]
+)  # the page's tests have an environment of their own
 
 
 @pytest.fixture
