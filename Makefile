@@ -39,6 +39,8 @@ bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
 figures: .venv/.with-core ## the pictures and the claims that README and pages show, made anew
 	$(BIN)/python docs/make_figures.py
 	$(BIN)/python docs/figures/certificate_boxes.py
+	$(BIN)/python docs/figures/airframes_data.py
+	$(BIN)/python docs/figures/airframes.py
 
 clean: ## take away .venv, out and docs/_build
 	rm -rf .venv out docs/_build

@@ -8,6 +8,7 @@ where they were stopped. Their files are kept: remove them to begin anew.
 from __future__ import annotations
 
 import csv
+import itertools
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 
 import nullpose
 from nullpose.physics.types import FloatArray
-from nullpose.solve.array import solve_array
+from nullpose.solve import solve_array
 from nullpose.solve.robust import guarantee, solve_robust
 from nullpose.study import AIRFRAME_CASES, AirframeCase, spaced
 
@@ -39,6 +40,7 @@ ERROR_CASES = ("tilt-10", "omnidirectional")
 NODES, JAMMERS, SCENES = (2, 5, 10), (1, 3), 16
 FIELD_GAP, FIELD_LIMIT_S = 1e-3, 120.0
 FIELD_SIZES = (2, 4, 8)
+ARRAY_FIELDS = 48  # the first of them
 
 Row = list[object]
 
@@ -73,16 +75,17 @@ def paper_rows() -> Iterator[Row]:
         yield [level, *(certified(case, at(level)).objective.value for case in AIRFRAME_CASES)]
 
 
-def array_value(scenario: nullpose.Scenario, elements: int, combining: str) -> float:
+def array_value(scenario: nullpose.Scenario, elements: int, combining: str, *, certify: bool = True) -> float:
     """Return what an array on a level vehicle reaches: a line of upright dipoles, half a wavelength apart.
 
     Args:
         scenario: what to solve.
         elements: how many dipoles.
         combining: digital or analogue.
+        certify: whether to prove what can be.
     """
     found = solve_array(
-        scenario, combining, elements=elements, layout="linear", spacing_wavelengths=0.5, gap=FIELD_GAP
+        scenario, combining, elements=elements, layout="linear", spacing_wavelengths=0.5, certify=certify
     )
     return found.objective.value
 
@@ -195,15 +198,15 @@ def field_rows(done: int) -> Iterator[Row]:
 
 
 def field_array_rows(done: int) -> Iterator[Row]:
-    """Yield what arrays reach in each random field.
+    """Yield what searches find that arrays reach in the first random fields.
 
     Args:
         done: how many fields to leave out.
     """
     kinds = [(size, combining) for combining in ("digital", "analogue") for size in FIELD_SIZES]
     yield ["nodes", "jammers", "index", *(f"array-{size}-{combining}" for size, combining in kinds)]
-    for head, scenario in fields(done):
-        yield [*head, *(array_value(scenario, size, combining) for size, combining in kinds)]
+    for head, scenario in itertools.islice(fields(done), ARRAY_FIELDS - done):
+        yield [*head, *(array_value(scenario, size, combining, certify=False) for size, combining in kinds)]
 
 
 TABLES: dict[str, Callable[[], Iterator[Row]]] = {
