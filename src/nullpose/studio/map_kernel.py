@@ -34,6 +34,9 @@ class MapKernel:
                 self._process = _begin()
             return self._process is None or self._process.poll() is not None
 
+    def __del__(self) -> None:
+        self.close()
+
     def close(self) -> None:
         """End a compilation that still runs."""
         with self._lock:
