@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
+from nullpose.certificate import verify
 from nullpose.physics.objective import objective_value
-from nullpose.solve import solve
+from nullpose.solve import Solution, Status, certificate_of, solve
 
 __all__ = ["Outcome", "check_scene"]
 
@@ -39,7 +40,9 @@ class Outcome:
 
 
 def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -> Outcome:
-    """Return whether a scene's value and bound withstand an independent search and a re-evaluation.
+    """Return whether a scene's value and bound withstand a search, a re-evaluation and the verifier.
+
+    The search and the verifier are independent of the solver; the verifier sees what was certified.
 
     Args:
         scene: what to solve.
@@ -70,6 +73,8 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     airframe = scene.scenario.airframe
     if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad:
         faults.append(f"the pose tilts by {pose.tilt_rad!r} rad, more than {airframe.tilt_max_rad!r}")
+    if reason := _refusal(solution):
+        faults.append(f"its certificate is {reason}")
     return Outcome(
         scene=scene,
         status=solution.status.value,
@@ -79,3 +84,11 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
         seconds=seconds,
         faults=tuple(faults),
     )
+
+
+def _refusal(solution: Solution) -> str:
+    """Return why the verifier refuses what is said to be certified; empty if it does not."""
+    if solution.status is not Status.CERTIFIED:
+        return ""
+    verdict = verify(certificate_of(solution))
+    return "" if verdict.proved else verdict.message

@@ -55,6 +55,7 @@ FENCED = Airspace(
         ([22, 15, 10], True),
         ([21.99, 15, 10], False),
         ([-15, 5, 10], False),
+        ([-15, 5, 8], False),  # the zone covers the airspace's floor
         ([-15, 5, 15], True),
         ([-15, 5, 16], True),
         ([-10, 5, 10], True),

@@ -34,6 +34,29 @@ def test_altitudes() -> None:
     assert tower.depth_m([1.0, 0.0, 1e6]) == 4.0
 
 
+@pytest.mark.parametrize(
+    ("allowed", "forbidden"),
+    [
+        ((8.0, 30.0), (10.0, 20.0)),
+        ((10.0, 30.0), (-math.inf, 20.0)),
+        ((12.0, 30.0), (-math.inf, 20.0)),
+        ((8.0, 20.0), (10.0, math.inf)),
+        ((12.0, 18.0), (-math.inf, math.inf)),
+        ((15.0, 15.0), (-math.inf, math.inf)),
+        ((20.0, 30.0), (10.0, 20.0)),  # these three touch, which is allowed
+        ((5.0, 10.0), (10.0, 20.0)),
+        ((10.0, 10.0), (10.0, 20.0)),
+    ],
+)
+def test_altitudes_where_not_all_are_allowed(
+    allowed: tuple[float, float], forbidden: tuple[float, float]
+) -> None:
+    """A zone that covers the airspace's floor or ceiling leaves no sheet of it allowed."""
+    assert BOX.forbidden_range_m(allowed) == forbidden
+    place = [0.0, 3.0, allowed[0]]
+    assert (BOX.depth_m(place, allowed) > 0.0) == (forbidden[0] < allowed[0] < forbidden[1])
+
+
 def test_depth_of_known_places() -> None:
     """Inside it is the distance to the nearest wall, floor or ceiling, on the border 0, outside negative."""
     places = [[0, 2, 15], [0, 3, 19.5], [0, 1, 15], [0, 3, 20], [3, 5, 10], [0, 3, 25], [-6, 3, 15]]

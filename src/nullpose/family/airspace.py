@@ -68,9 +68,9 @@ def airspace_zones(airspace: Airspace) -> Zones:
     gathered = _Gathered()
     lowest, highest = airspace.altitude_m
     for zone in airspace.no_fly:
-        low, high = zone.floor_m, zone.ceiling_m
-        if low >= highest or high <= lowest:
+        if zone.floor_m >= highest or zone.ceiling_m <= lowest:
             continue
+        low, high = zone.forbidden_range_m(airspace.altitude_m)
         if zone.centre_m is not None and zone.radius_m is not None:
             x, y = zone.centre_m
             gathered.zone(FORBIDDEN_CYLINDER, np.array([[x, y, zone.radius_m, 0.0]]), low, high)

@@ -123,7 +123,7 @@ class Airspace(Section):
         if self.geofence_m is not None:
             clearance = np.minimum(clearance, depth_m(position[..., :2], self.geofence_outline_m))
         for zone in self.no_fly:
-            clearance = np.minimum(clearance, -zone.depth_m(position))
+            clearance = np.minimum(clearance, -zone.depth_m(position, self.altitude_m))
         return np.asarray(clearance)
 
     def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:

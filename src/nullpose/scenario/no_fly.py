@@ -109,21 +109,41 @@ class NoFlyZone(Section):
         """Highest altitude of the zone [m]; infinity for all altitudes."""
         return math.inf if self.altitude_m is None else self.altitude_m[1]
 
-    def depth_m(self, position_m: ArrayLike) -> NDArray[np.float64]:
+    def forbidden_range_m(self, altitude_m: tuple[float, float]) -> tuple[float, float]:
+        """Returns the zone's lowest and highest altitude [m] where only some altitudes are allowed anyway.
+
+        An end that covers the lowest or highest allowed altitude is put at infinity: otherwise the airspace's
+        floor or ceiling, being a border of the zone too, would be allowed as a sheet of no thickness.
+
+        Args:
+            altitude_m: lowest and highest altitude allowed to the vehicle [m].
+        """
+        lowest, highest = altitude_m
+        low, high = self.floor_m, self.ceiling_m
+        if low >= highest or high <= lowest:
+            return low, high
+        return (-math.inf if low <= lowest else low), (math.inf if high >= highest else high)
+
+    def depth_m(
+        self, position_m: ArrayLike, altitude_m: tuple[float, float] = (-math.inf, math.inf)
+    ) -> NDArray[np.float64]:
         """Returns how far each position is inside the zone [m]; 0 on its border, below 0 outside.
 
         Inside it is the distance to the nearest wall, floor or ceiling.
 
         Args:
             position_m: positions [m], (..., 3).
+            altitude_m: lowest and highest altitude allowed to the vehicle [m], for a zone that covers one of
+                them (see :meth:`forbidden_range_m`).
         """
+        floor_m, ceiling_m = self.forbidden_range_m(altitude_m)
         position = np.asarray(position_m, dtype=np.float64)
         if self.centre_m is not None and self.radius_m is not None:
             sideways = self.radius_m - np.linalg.norm(position[..., :2] - self.centre_m, axis=-1)
         else:
             sideways = depth_m(position[..., :2], self.outline_m)
         height = position[..., 2]
-        return np.asarray(np.minimum(sideways, np.minimum(height - self.floor_m, self.ceiling_m - height)))
+        return np.asarray(np.minimum(sideways, np.minimum(height - floor_m, ceiling_m - height)))
 
     @classmethod
     def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:

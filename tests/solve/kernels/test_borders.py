@@ -159,3 +159,14 @@ def test_the_border_that_a_box_uses(centre: tuple, half: float, border: int, for
         assert borders_of(domain, row, sides, counts) == (0 if border < 0 else 1)
         if 0 <= border < 2:
             np.testing.assert_array_equal(sides[0, 0], [2.0, *BALLS_M[border], 5.0])
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_a_zone_that_forbids_all_of_a_box_is_found_behind_others(order: list[int]) -> None:
+    """Though the box's centre lies in another zone, whose border crosses the box."""
+    tower = {"centre_m": (0.0, 0.0), "radius_m": 5.0}
+    block = {"x_m": (-10.0, 20.0), "y_m": (-10.0, 10.0)}
+    zones = tuple((tower, block)[i] for i in order)
+    domain = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=zones), np.zeros((0, 3)), 1.0)
+    row = row_of(np.array([4.5, 0.0, 20.0]), np.ones(3))
+    assert chosen_border(domain, row) == order.index(1)

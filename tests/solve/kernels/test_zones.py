@@ -54,7 +54,7 @@ def clear_by(airspace: Airspace, positions: np.ndarray) -> np.ndarray:
     """Returns how far positions are from what the one zone or fence forbids, negative inside of it."""
     if airspace.geofence_m is not None:
         return depth_m(positions[:, :2], airspace.geofence_outline_m)
-    return -airspace.no_fly[0].depth_m(positions)
+    return -airspace.no_fly[0].depth_m(positions, airspace.altitude_m)
 
 
 def met_by(side: np.ndarray, positions: np.ndarray) -> np.ndarray:
@@ -168,6 +168,21 @@ def test_borders_on_the_faces_of_boxes(seed: int, name: str, is_fence: bool) -> 
         centre = half * rng.integers(-np.ceil(9 / half), np.ceil(9 / half) + 1)
         centre[2] += 16.0
         check_box(airspace, centre, half.astype(float), rng)
+
+
+@pytest.mark.parametrize("end", [-1.0, 1.0])
+def test_a_face_on_a_zones_top_or_bottom_is_allowed(end: float) -> None:
+    """A box inside a zone that reaches to its top or bottom, rounding aside, has that face to be looked at."""
+    zone = {"centre_m": (0.0, 0.0), "radius_m": 9.0, "altitude_m": (12.0, 30.1)}
+    domain = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=(zone,)))
+    face = 30.1 if end > 0.0 else 12.0
+    sides, counts = np.zeros((MOST_ALTERNATIVES, 2, 5)), np.zeros(MOST_ALTERNATIVES, np.int64)
+    for half in (0.1, 0.3, 1.0, 0.7):
+        row = row_of(np.array([1.0, 2.0, face - end * half]), np.full(3, half))
+        assert alternatives_of(domain, 0, row, sides, counts) == 1
+        np.testing.assert_array_equal(sides[0, 0], [0.0, 0.0, 0.0, end, end * face])
+        row[CENTRE + 2] -= end * 1e-3
+        assert alternatives_of(domain, 0, row, sides, counts) == FORBIDDEN
 
 
 @given(seed=SEEDS, kind=st.sampled_from(["fence", "polygon", "box", "cylinder"]))

@@ -34,17 +34,16 @@ def choose_border(domain, row):
     if zones == 0:
         return -1
     sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
-    chosen = -1
+    chosen, inside = -1, False
     for z in range(zones):
         count = zone_alternatives(domain, z, row, sides, counts)
         if count == FORBIDDEN:
             return balls + z
         if count != OUTSIDE and count != UNCLEAR:
-            if in_zone(domain, z, row[CENTRE:HALF]):
-                row[BALL] = balls + z
-                return -1
-            chosen = z
-    if chosen >= 0 and row[BALL] < 0.0:
+            if not inside:
+                inside = in_zone(domain, z, row[CENTRE:HALF])
+                chosen = z
+    if chosen >= 0 and (inside or row[BALL] < 0.0):
         row[BALL] = balls + chosen
     return -1
 

@@ -154,8 +154,9 @@ def zone_alternatives(domain, z, row, sides, counts):
         count = polygon_alternatives(domain, z, row, sides, counts)
         if count < 0:
             return count
+    slack = _HAIR * (1.0 + abs(bottom) + abs(top))
     for end in range(2):
-        if top > high if end == 1 else bottom < low:
+        if top > high - slack if end == 1 else bottom < low + slack:
             sides[count, 0, :] = 0.0
             sides[count, 0, 3] = 1.0 if end == 1 else -1.0
             sides[count, 0, 4] = high if end == 1 else -low
