@@ -172,7 +172,7 @@ def test_borders_on_the_faces_of_boxes(seed: int, name: str, is_fence: bool) -> 
 
 @pytest.mark.parametrize("end", [-1.0, 1.0])
 def test_a_face_on_a_zones_top_or_bottom_is_allowed(end: float) -> None:
-    """A box inside a zone that reaches to its top or bottom, rounding aside, has that face to be looked at."""
+    """A box in a zone that reaches to its top or bottom, rounding aside, has that face to be looked at."""
     zone = {"centre_m": (0.0, 0.0), "radius_m": 9.0, "altitude_m": (12.0, 30.1)}
     domain = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=(zone,)))
     face = 30.1 if end > 0.0 else 12.0

@@ -39,10 +39,9 @@ def choose_border(domain, row):
         count = zone_alternatives(domain, z, row, sides, counts)
         if count == FORBIDDEN:
             return balls + z
-        if count != OUTSIDE and count != UNCLEAR:
-            if not inside:
-                inside = in_zone(domain, z, row[CENTRE:HALF])
-                chosen = z
+        if count != OUTSIDE and count != UNCLEAR and not inside:
+            inside = in_zone(domain, z, row[CENTRE:HALF])
+            chosen = z
     if chosen >= 0 and (inside or row[BALL] < 0.0):
         row[BALL] = balls + chosen
     return -1
