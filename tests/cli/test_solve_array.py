@@ -49,7 +49,7 @@ def test_json(run: Run, array: str) -> None:
 
 @pytest.mark.parametrize(
     "option",
-    [("--scheme", "vertical"), ("--figure", "pose.png"), ("--certificate", "c.json"), ("--null-jammer", "M")],
+    [("--scheme", "vertical"), ("--certificate", "c.json"), ("--null-jammer", "M")],
 )
 def test_what_arrays_have_not_is_refused(
     run: Run, array: str, option: tuple[str, str], tmp_path: Path
@@ -59,6 +59,23 @@ def test_what_arrays_have_not_is_refused(
     result = run("solve", array, name, tmp_path / value if "." in value else value)
     assert (result.exit_code, result.stdout) == (2, "")
     assert f"{name}: given for a scenario with an [array]" in result.stderr
+
+
+@pytest.mark.parametrize("combining", ["digital", "analogue"])
+def test_a_figure_of_the_array(run: Run, array: str, combining: str, tmp_path: Path) -> None:
+    """It is drawn with either combining, beside what is printed."""
+    path = tmp_path / "new" / "array.png"
+    result = run("solve", array, "--fast", "--combining", combining, "--figure", path)
+    assert result.exit_code == 0
+    assert f"Array of 4, {combining}" in result.stdout
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_figure_of_another_kind_is_refused(run: Run, array: str, tmp_path: Path) -> None:
+    """Before anything is solved."""
+    result = run("solve", array, "--figure", tmp_path / "array.pdf")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "ends in .png or .svg" in result.stderr
 
 
 def test_combining_needs_an_array(run: Run, paper: str) -> None:

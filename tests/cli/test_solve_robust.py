@@ -57,7 +57,6 @@ def test_tables_say_what_is_guaranteed(run: Run) -> None:
         ("--null-jammer", "M"),
         ("--certificate", "c.json"),
         ("--geojson", "m.geojson"),
-        ("--figure", "f.png"),
     ],
     ids=lambda option: option[0],
 )
@@ -67,6 +66,22 @@ def test_options_without_meaning_are_refused(run: Run, option: tuple[str, str]) 
     assert result.exit_code == 2
     assert option[0] in result.stderr
     assert "--robust" in result.stderr
+
+
+def test_a_figure_of_both_poses(run: Run, tmp_path: Path) -> None:
+    """It is drawn, and the tables are printed as without it."""
+    path = tmp_path / "robust.svg"
+    result = run("solve", ROBUST, "--robust", "--fast", "--figure", path)
+    assert result.exit_code == 0
+    assert "smallest SINR guaranteed" in result.stdout
+    assert b"<svg" in path.read_bytes()
+
+
+def test_a_figure_of_another_kind_is_refused(run: Run, tmp_path: Path) -> None:
+    """Before anything is solved."""
+    result = run("solve", ROBUST, "--robust", "--figure", tmp_path / "robust.pdf")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "ends in .png or .svg" in result.stderr
 
 
 def test_a_scenario_without_errors_is_refused(run: Run, paper: str) -> None:

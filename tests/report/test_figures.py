@@ -14,7 +14,7 @@ from matplotlib.image import imread
 
 from nullpose import Pose, Scenario
 from nullpose.report.figures import draw_figure2, draw_poses, draw_sweep
-from nullpose.report.figures.poses import pattern_surface_m
+from nullpose.report.figures.pattern import pattern_surface_m
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.reproduce import Reproduction
 from nullpose.solve import Objective, Scheme

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nullpose.cli.figure import prepare_figure, write_figure
 from nullpose.cli.output import compiling_announced, show, show_json
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from nullpose.scenario import Scenario
+    from nullpose.solve import ArraySolution
 
 __all__ = ["refuse_with_array", "solve_with_array"]
 
@@ -32,7 +38,14 @@ def refuse_with_array(**given: object) -> None:
 
 
 def solve_with_array(
-    scenario: Scenario, combining: str, *, gap: float | None, certify: bool, seed: int, json_output: bool
+    scenario: Scenario,
+    combining: str,
+    *,
+    gap: float | None,
+    certify: bool,
+    seed: int,
+    json_output: bool,
+    figure: Path | None,
 ) -> None:
     """Find and show where a scenario's array reaches most.
 
@@ -43,14 +56,23 @@ def solve_with_array(
         certify: whether to prove anything.
         seed: of the searches.
         json_output: whether to print JSON.
+        figure: where to draw what was found, or None.
     """
     from nullpose.solve import solve_array
 
+    prepare_figure(figure)
     with compiling_announced():
         solution = solve_array(scenario, combining, gap=gap, certify=certify, seed=seed)
+    write_figure(figure, partial(_drawn, solution))
     if json_output:
         show_json(solution.to_dict())
         return
     from nullpose.report.array import array_view
 
     show(array_view(solution))
+
+
+def _drawn(solution: ArraySolution) -> Figure:
+    from nullpose.report.figures import draw_array
+
+    return draw_array(solution)

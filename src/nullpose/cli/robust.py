@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.figure import prepare_figure, write_figure
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.output import compiling_announced, show, show_json
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from nullpose.scenario import Scenario
+    from nullpose.solve.robust import RobustSolution
 
 __all__ = ["refuse_with_robust", "solve_robustly"]
 
@@ -42,6 +48,7 @@ def solve_robustly(
     certify: bool,
     seed: int,
     json_output: bool,
+    figure: Path | None,
 ) -> None:
     """Find and show the pose that guarantees most under the scenario's errors.
 
@@ -53,9 +60,10 @@ def solve_robustly(
         certify: whether to bound what any pose guarantees.
         seed: of the searches.
         json_output: whether to print JSON.
+        figure: where to draw what was found, or None.
 
     Raises:
-        UsageError: the scenario states no errors.
+        UsageError: the scenario states no errors, or the figure's name has another ending.
     """
     from nullpose.errors import UsageError
     from nullpose.solve.robust import ROBUST_GAP, solve_robust
@@ -66,6 +74,7 @@ def solve_robustly(
             "receiver.attitude_error_deg, receiver.position_error_m, or uncertainty_m of a jammer or "
             "an eavesdropper"
         )
+    prepare_figure(figure)
     target = ROBUST_GAP if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_robust(
@@ -77,6 +86,7 @@ def solve_robustly(
             seed=seed,
             on_progress=bar,
         )
+    write_figure(figure, partial(_drawn, solution))
     if json_output:
         show_json(solution.to_dict())
     else:
@@ -85,3 +95,9 @@ def solve_robustly(
         show(robust_view(solution))
     if solution.interrupted:
         raise typer.Exit(INTERRUPTED)
+
+
+def _drawn(solution: RobustSolution) -> Figure:
+    from nullpose.report.figures import draw_robust
+
+    return draw_robust(solution)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nullpose.cli.array import refuse_with_array, solve_with_array
 from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.figure import prepare_figure, write_figure
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
     CombiningName,
@@ -24,6 +26,11 @@ from nullpose.cli.options import (
 )
 from nullpose.cli.output import compiling_announced, show, show_json
 from nullpose.cli.robust import refuse_with_robust, solve_robustly
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nullpose.solve import Solution
 
 __all__ = ["solve"]
 
@@ -85,7 +92,7 @@ def solve(
         typer.Option(
             "--figure",
             metavar="FILE",
-            help="Draw the pose in its scene, with fence and no-fly zones, into a file named .png or .svg.",
+            help="Draw what was found in its scene into a file named .png or .svg.",
             show_default=False,
         ),
     ] = None,
@@ -100,9 +107,9 @@ def solve(
         "null_jammer": null_jammer,
         "certificate": certificate,
         "geojson": geojson,
-        "figure": figure,
     }
     common: dict[str, Any] = {"gap": gap, "certify": not fast, "seed": seed, "json_output": json_output}
+    common["figure"] = figure
     if robust:
         refuse_with_robust(**special, combining=combining)
         solve_robustly(scenario, time_limit_s=time_limit, node_limit=node_limit, **common)
@@ -125,10 +132,7 @@ def solve(
     if geojson is not None:
         require_origin(scenario)
         prepare_folder(geojson.parent)
-    if figure is not None:
-        from nullpose.report.figures.style import prepare_figure_file
-
-        prepare_figure_file(figure)
+    prepare_figure(figure)
     target = default_gap_of(scenario) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(
@@ -146,11 +150,7 @@ def solve(
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:
         write_geojson(solution, geojson)
-    if figure is not None:
-        from nullpose.report.figures import draw_pose
-        from nullpose.report.figures.style import write_figure_file
-
-        write_figure_file(draw_pose(solution), figure)
+    write_figure(figure, partial(_drawn, solution))
     if json_output:
         show_json(solution.to_dict())
     else:
@@ -159,3 +159,9 @@ def solve(
         show(solution_view(solution))
     if solution.interrupted:
         raise typer.Exit(INTERRUPTED)
+
+
+def _drawn(solution: Solution) -> Figure:
+    from nullpose.report.figures import draw_pose
+
+    return draw_pose(solution)

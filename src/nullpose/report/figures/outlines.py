@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from nullpose.physics.types import FloatArray
+from nullpose.report.figures.labels import Label
 from nullpose.scenario import Airspace, NoFlyZone
 
-__all__ = ["Outline", "draw_outlines", "outlines_of"]
+__all__ = ["Outline", "draw_outlines", "outline_labels", "outlines_of"]
 
 _ROUND = 48  # sides of the polygon that a cylinder is drawn as
 _FENCE = "#6b6b6b"
@@ -76,7 +77,7 @@ def draw_outlines(axes: Any, outlines: Sequence[Outline], colour: str) -> None:
             height = np.full(len(ring), bottom)
             axes.plot(*ring.T, height, color=_FENCE, linewidth=1.2, linestyle=(0, (6, 2)), label="geofence")
             continue
-        low, high = max(outline.floor_m, bottom), min(outline.ceiling_m, top)
+        low, high = _heights_m(outline, bottom, top)
         if not high > low:
             continue
         lower = np.column_stack([outline.vertices_m, np.full(len(outline.vertices_m), low)])
@@ -89,14 +90,27 @@ def draw_outlines(axes: Any, outlines: Sequence[Outline], colour: str) -> None:
             )
         for height_m in (low, high):
             axes.plot(*ring.T, np.full(len(ring), height_m), color=colour, linewidth=0.8, zorder=1.2)
-        axes.text(
-            *outline.vertices_m.mean(axis=0),
-            high,
-            outline.name,
-            color=colour,
-            ha="center",
-            fontsize=8,
-            zorder=1.4,
-        )
     if any(outline.name for outline in outlines):
         axes.plot([], [], [], color=colour, linewidth=0.8, label="no-fly zone")
+
+
+def outline_labels(axes: Any, outlines: Sequence[Outline], colour: str) -> list[Label]:
+    """Return the names of the zones that are drawn, on their upper ends.
+
+    Args:
+        axes: with its limits set.
+        outlines: fence and zones.
+        colour: of the zones.
+    """
+    labels = []
+    for outline in outlines:
+        low, high = _heights_m(outline, *axes.get_zlim())
+        if outline.name and high > low:
+            middle = np.append(outline.vertices_m.mean(axis=0), high)
+            labels.append(Label(outline.name, middle, colour, on=True, size_pt=8.0))
+    return labels
+
+
+def _heights_m(outline: Outline, bottom_m: float, top_m: float) -> tuple[float, float]:
+    """Return where a zone begins and ends within the heights drawn."""
+    return max(outline.floor_m, bottom_m), min(outline.ceiling_m, top_m)

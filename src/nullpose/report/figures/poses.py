@@ -1,119 +1,40 @@
-"""Poses in 3-D with the antenna's radiation pattern: of one solution, or at several jamming levels."""
+"""Poses in 3-D with the radiation pattern: of one solution, at several jamming levels, or robust."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullpose.physics import Pose
-from nullpose.physics.types import FloatArray
-from nullpose.report.figures.outlines import Outline, draw_outlines, outlines_of
-from nullpose.report.figures.style import GREY, house_style
+from nullpose.report.figures.pattern import draw_pattern
+from nullpose.report.figures.scene import (
+    ALONE,
+    DRONE,
+    PAIR,
+    PANELS,
+    SURFACE,
+    Stage,
+    draw_names,
+    draw_scene,
+)
+from nullpose.report.figures.style import house_style
 from nullpose.report.geometry import null_angle_rad
+from nullpose.report.quantity import Quantity
+from nullpose.report.robust import error_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution
+from nullpose.solve.robust import GuardedPose, RobustSolution
 from nullpose.study import SweepRow
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_pose", "draw_poses", "pattern_surface_m"]
+__all__ = ["draw_pose", "draw_poses", "draw_robust"]
 
-# Lengths drawn, as shares of the scene's extent.
-_MARGIN = 0.12  # free ground around the scene
-_ABOVE = 0.044  # from a point to its name
-_FAR = 3.0  # zones that reach farther from the scene's middle are left out
-_LEAST_M = 1.0
-_CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
-_AZIMUTH_DEG = -32.0  # where the camera looks from
-_LOW_DEG, _HIGH_DEG = 20.0, 38.0  # its elevation, for panels and for a figure of one pose
-_NODE, _JAMMER, _DRONE = "#0a6f3c", "#d40000", "#0a3fd6"
-_EAVESDROPPER, _FORBIDDEN = "#9a4fb0", "#b36b00"
-_SURFACE = "#8fb0ff"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _View:
-    """How a figure looks: its size, its camera, and lengths as shares of the scene's extent."""
-
-    width_inch: float
-    height_inch: float
-    bottom: float
-    top: float
-    columns: int
-    elevation_deg: float
-    zoom: float
-    pattern: float  # radius drawn where the gain is 1; the pattern has no size of its own
-    axis: float  # half-length of the antenna axis
-    aside: tuple[float, float, float]  # from a jammer to its name
-
-
-_PANELS = _View(
-    width_inch=4.6,
-    height_inch=3.7,
-    bottom=0.08,
-    top=0.98,
-    columns=6,
-    elevation_deg=_LOW_DEG,
-    zoom=1.13,
-    pattern=0.15,
-    axis=0.22,
-    aside=(0.06, 0.0, -0.07),
-)
-_ALONE = _View(
-    width_inch=7.0,
-    height_inch=5.4,
-    bottom=0.13,
-    top=0.97,
-    columns=3,
-    elevation_deg=_HIGH_DEG,
-    zoom=1.17,
-    pattern=0.11,
-    axis=0.17,
-    aside=(0.021, 0.034, -0.015),
-)
-
-
-def _to_camera(elevation_deg: float) -> FloatArray:
-    elevation, azimuth = math.radians(elevation_deg), math.radians(_AZIMUTH_DEG)
-    return np.array(
-        [
-            math.cos(elevation) * math.cos(azimuth),
-            math.cos(elevation) * math.sin(azimuth),
-            math.sin(elevation),
-        ]
-    )
-
-
-def pattern_surface_m(
-    pose: Pose, radius_m: float, around_rad: FloatArray, elevation_deg: float = _LOW_DEG
-) -> FloatArray:
-    """Return points on the dipole's radiation pattern drawn around a pose, a doughnut about its axis.
-
-    In each direction the distance from the drone is ``radius_m * sin^2(gamma)`` (paper eq. 1.2).
-
-    Args:
-        pose: where the drone is and how it is turned.
-        radius_m: distance drawn where the gain is 1, metres.
-        around_rad: the turns about the axis to draw, shape ``(m,)``, radians; 0 faces the camera.
-        elevation_deg: how high the camera stands, degrees.
-
-    Returns:
-        Array of shape ``(3, n, m)``, world frame, metres.
-    """
-    axis = pose.antenna_axis
-    camera = _to_camera(elevation_deg)
-    facing = camera - axis * (camera @ axis)
-    facing = facing / np.linalg.norm(facing)
-    frame = np.stack([facing, np.cross(axis, facing), axis])
-    gamma, around = np.meshgrid(np.linspace(0.0, math.pi, 61), around_rad, indexing="ij")
-    local = np.stack([np.sin(gamma) * np.cos(around), np.sin(gamma) * np.sin(around), np.cos(gamma)])
-    points = np.einsum("kij,kc->cij", radius_m * np.sin(gamma) ** 2 * local, frame)
-    return np.asarray(points + pose.position_m[:, None, None])
+_MINUS = "\N{MINUS SIGN}"
 
 
 def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
@@ -125,7 +46,8 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
     """
     words = [f"{_value_words(row.objective)}, {_angle_words(scenario, row.pose, first=True)}" for row in rows]
     titles = [f"$P_M/P$ = {row.value:g}\n{each}" for row, each in zip(rows, words, strict=True)]
-    return _draw(scenario, [row.pose for row in rows], titles, _PANELS)
+    poses = [row.pose for row in rows]
+    return _draw([Stage(scenario=scenario, poses=(pose,), view=PANELS) for pose in poses], poses, titles)
 
 
 def draw_pose(solution: Solution) -> Figure:
@@ -136,15 +58,61 @@ def draw_pose(solution: Solution) -> Figure:
     """
     scenario, pose = solution.scenario, solution.pose
     angles = _angle_words(scenario, pose)
-    name = scenario.name.replace("$", r"\$")
-    title = f"{name}\n{_value_words(solution.objective)}{f', {angles}' if angles else ''}".strip()
-    return _draw(scenario, [pose], [title], _ALONE)
+    head = f"{plain_name(scenario)}\n{_value_words(solution.objective)}{f', {angles}' if angles else ''}"
+    return _draw([Stage(scenario=scenario, poses=(pose,), view=ALONE)], [pose], [], head.strip())
+
+
+def draw_robust(solution: RobustSolution) -> Figure:
+    """Return the figure of a robust solution: its pose, and beside it the one that is best as stated.
+
+    Both panels show the same space, with the sets that jammers and eavesdroppers may be anywhere in.
+
+    Args:
+        solution: what was found.
+    """
+    scenario, both = solution.scenario, (solution.robust, solution.nominal)
+    poses = [one.pose for one in both]
+    stage = Stage(scenario=scenario, poses=tuple(poses), view=PAIR, uncertain=True)
+    titles = [
+        f"{name}\n{_guarantee_words(scenario, one)}"
+        for name, one in zip(("robust pose", "best pose as stated"), both, strict=True)
+    ]
+    head = f"{plain_name(scenario)}\nerrors: {escaped(error_words(scenario))}".strip()
+    return _draw([stage, stage], poses, titles, head)
+
+
+def escaped(text: str) -> str:
+    """Return a text that Matplotlib writes as it is, and does not take for a formula.
+
+    Args:
+        text: any.
+    """
+    return text.replace("$", r"\$")
+
+
+def plain_name(scenario: Scenario) -> str:
+    """Return a scenario's name as Matplotlib writes it.
+
+    Args:
+        scenario: any.
+    """
+    return escaped(scenario.name)
 
 
 def _value_words(objective: Objective) -> str:
     if objective.is_rate:
         return f"{objective.words} {objective.value:.3f} bits/s/Hz"
-    return f"{objective.words} {objective.value_db:.2f} dB".replace("-", "\N{MINUS SIGN}")
+    return f"{objective.words} {objective.value_db:.2f} dB".replace("-", _MINUS)
+
+
+def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:
+    """Return what a pose guarantees, and what it gives without errors, in the quantity's unit."""
+    quantity = Quantity.of(scenario)
+    digits = 3 if quantity.is_rate else 2
+    shown = [f"{quantity.in_unit(value):.{digits}f}" for value in (one.guaranteed, one.nominal)]
+    unit = quantity.unit
+    words = f"{quantity.smallest} {shown[0]} {unit} guaranteed, {shown[1]} {unit} without errors"
+    return words.replace("-inf", f"{_MINUS}\N{INFINITY}").replace("-", _MINUS)
 
 
 def _angle_words(scenario: Scenario, pose: Pose, *, first: bool = False) -> str:
@@ -158,22 +126,27 @@ def _angle_words(scenario: Scenario, pose: Pose, *, first: bool = False) -> str:
     angles = [f"{math.degrees(null_angle_rad(pose, point)):.1f}°" for point in points_m]
     if first or len(angles) == 1:
         return f"null {angles[0]} off the {kind}"
-    return f"null {', '.join(f'{angle} off {name}' for angle, name in zip(angles, names, strict=True))}"
+    each = (f"{angle} off {escaped(name)}" for angle, name in zip(angles, names, strict=True))
+    return f"null {', '.join(each)}"
 
 
-def _draw(scenario: Scenario, poses: Sequence[Pose], titles: Sequence[str], view: _View) -> Figure:
+def _draw(stages: Sequence[Stage], poses: Sequence[Pose], titles: Sequence[str], head: str = "") -> Figure:
+    """Return a figure with a panel for each pose; the titles are theirs, the head is the figure's."""
     from matplotlib.figure import Figure
 
+    view = stages[0].view
     with house_style():
         figure = Figure(figsize=(view.width_inch * len(poses), view.height_inch))
-        for index, (pose, title) in enumerate(zip(poses, titles, strict=True)):
+        figure.subplots_adjust(left=0.016, right=0.962, bottom=view.bottom, top=view.top, wspace=view.between)
+        for index, (stage, pose) in enumerate(zip(stages, poses, strict=True)):
             axes: Any = figure.add_subplot(1, len(poses), index + 1, projection="3d", computed_zorder=False)
-            _draw_panel(axes, scenario, pose, view)
-            if len(poses) > 1:
-                axes.set_title(title, fontsize=10, y=0.96)
-        figure.subplots_adjust(left=0.016, right=0.962, bottom=view.bottom, top=view.top, wspace=0.06)
-        if len(poses) == 1:
-            figure.suptitle(titles[0], fontsize=10)
+            draw_scene(axes, stage, pose)
+            _draw_vehicle(axes, stage, pose)
+            draw_names(axes, stage, pose, view.pattern * stage.extent_m)
+            if titles:
+                axes.set_title(titles[index], fontsize=10, y=0.96)
+        if head:
+            figure.suptitle(head, fontsize=10)
         handles = _legend(figure.axes[0])
         columns = min(len(handles), view.columns)
         figure.legend(handles=handles, loc="lower center", ncols=columns, frameon=False, handlelength=2.6)
@@ -185,126 +158,18 @@ def _legend(axes: Any) -> list[Any]:
 
     handles, labels = axes.get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
-    return [*once.values(), Patch(color=_SURFACE, alpha=0.8, label="radiation pattern, near side cut away")]
+    return [*once.values(), Patch(color=SURFACE, alpha=0.8, label="radiation pattern, near side cut away")]
 
 
-def _extent_m(scenario: Scenario, pose: Pose) -> float:
-    """Return how wide the scene is, of which all drawn lengths are shares."""
-    points = _points_m(scenario, pose)
-    return max(_LEAST_M, float(np.max(np.ptp(points[:, :2], axis=0))))
-
-
-def _points_m(scenario: Scenario, pose: Pose) -> FloatArray:
-    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
-    return np.vstack([*groups, pose.position_m])
-
-
-def _draw_panel(axes: Any, scenario: Scenario, pose: Pose, view: _View) -> None:
-    extent_m = _extent_m(scenario, pose)
-    position = pose.position_m
-    outlines = outlines_of(scenario.airspace, _points_m(scenario, pose), _FAR * extent_m)
-    _frame_scene(axes, scenario, pose, view, outlines)
-    draw_outlines(axes, outlines, _FORBIDDEN)
-    _ground_points(axes, scenario, extent_m, view)
-    for node in scenario.node_positions_m:
-        _line(axes, node, position, color=_NODE, linewidth=0.8, alpha=0.7, zorder=2)
-    ground = np.array([position[0], position[1], axes.get_zlim()[0]])
-    _line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
-    axes.scatter(*ground, color=GREY, marker="+", s=30, zorder=2)
-    for name, colour, points in (
-        ("jammer", _JAMMER, scenario.jammer_positions_m),
-        ("eavesdropper", _EAVESDROPPER, scenario.eavesdropper_positions_m),
-    ):
-        for point in points:
-            _line(
-                axes, position, point, color=colour, linewidth=1.5, linestyle=(0, (3, 1.5)), zorder=6.6,
-                label=f"line to the {name}",
-            )  # fmt: skip
+def _draw_vehicle(axes: Any, stage: Stage, pose: Pose) -> None:
+    view, extent_m, position = stage.view, stage.extent_m, pose.position_m
     reach = view.axis * extent_m * pose.antenna_axis
     axes.plot(
         *np.stack([position - reach, position + reach]).T,
-        color=_DRONE,
+        color=DRONE,
         linewidth=1.8,
         zorder=6.5,
         label="antenna axis (null)",
     )
-    _draw_pattern(axes, pose, view.pattern * extent_m, view.elevation_deg)
-    axes.scatter(*position, color=_DRONE, s=26, zorder=7, depthshade=False, label="drone")
-
-
-def _draw_pattern(axes: Any, pose: Pose, radius_m: float, elevation_deg: float) -> None:
-    """Draw the doughnut with its near side cut away, so that the null on its axis can be seen."""
-    half = 0.5 * _CUT_RAD
-    around = np.linspace(half, math.tau - half, 49)
-    surface = pattern_surface_m(pose, radius_m, around, elevation_deg)
-    axes.plot_surface(
-        *surface,
-        color=_SURFACE,
-        alpha=0.45,
-        linewidth=0.0,
-        antialiased=False,
-        rcount=61,
-        ccount=49,
-        zorder=5,
-    )
-    for edge in (surface[:, :, 0], surface[:, :, -1]):
-        axes.plot(*edge, color=_DRONE, linewidth=0.9, zorder=6)
-
-
-def _line(axes: Any, start: FloatArray, stop: FloatArray, **style: Any) -> None:
-    axes.plot(*np.stack([start, stop]).T, **style)
-
-
-def _ground_points(axes: Any, scenario: Scenario, extent_m: float, view: _View) -> None:
-    from matplotlib.patheffects import withStroke
-
-    halo = [withStroke(linewidth=2.0, foreground="white")]
-    above = np.array([0.0, 0.0, _ABOVE * extent_m])
-    beside = np.array(view.aside) * extent_m
-    floor = axes.get_zlim()[0]
-    kinds: tuple[tuple[str, str, str, float, tuple[str, ...], FloatArray, FloatArray], ...] = (
-        ("node", _NODE, "s", 3.0, scenario.node_names, scenario.node_positions_m, above),
-        ("jammer", _JAMMER, "X", 6.0, scenario.jammer_names, scenario.jammer_positions_m, beside),
-        (
-            "eavesdropper", _EAVESDROPPER, "D", 6.0, scenario.eavesdropper_names,
-            scenario.eavesdropper_positions_m, beside,
-        ),
-    )  # fmt: skip
-    for label, colour, marker, order, names, points, offset in kinds:
-        if not len(points):
-            continue
-        axes.scatter(
-            *points.T, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=label
-        )
-        side = "left" if view is _ALONE and label != "node" else "center"
-        for name, point in zip(names, points, strict=True):
-            text = name.replace("$", r"\$")
-            axes.text(*(point + offset), text, color=colour, ha=side, fontsize=9, zorder=8, path_effects=halo)
-            if label != "node":
-                foot = np.array([point[0], point[1], floor])
-                _line(axes, point, foot, color=colour, linewidth=0.8, linestyle=":")
-
-
-def _frame_scene(axes: Any, scenario: Scenario, pose: Pose, view: _View, outlines: Sequence[Outline]) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    points, position, extent_m = _points_m(scenario, pose), pose.position_m, _extent_m(scenario, pose)
-    low, high = points.min(axis=0) - _MARGIN * extent_m, points.max(axis=0) + _MARGIN * extent_m
-    for side in (0, 1):  # room for the pattern, whatever the scene's extent
-        low[side] = min(low[side], position[side] - view.axis * extent_m)
-        high[side] = max(high[side], position[side] + view.axis * extent_m)
-        for outline in outlines:
-            low[side] = min(low[side], outline.vertices_m[:, side].min())
-            high[side] = max(high[side], outline.vertices_m[:, side].max())
-    low[2], high[2] = min(0.0, float(points[:, 2].min())), float(position[2]) + 1.3 * view.pattern * extent_m
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(tuple(high - low), zoom=view.zoom)  # one metre is as long along every axis
-    axes.set_xlabel("x (east)  m", labelpad=-3)
-    axes.set_ylabel("y (north)  m", labelpad=-1)
-    axes.set_zlabel("z (up)  m", labelpad=-8)
-    axes.tick_params(pad=-2, labelsize=7.5)
-    for axis, ticks in ((axes.xaxis, 4), (axes.yaxis, 6), (axes.zaxis, 3)):
-        axis.set_major_locator(MaxNLocator(ticks, steps=(1, 2, 5, 10)))
-    axes.view_init(elev=view.elevation_deg, azim=_AZIMUTH_DEG)
-    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_pane_color((0.97, 0.97, 0.97, 1.0))
+    draw_pattern(axes, pose, view.pattern * extent_m, view)
+    axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")

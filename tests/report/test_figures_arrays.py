@@ -1,0 +1,92 @@
+"""The figure of an array: its elements, its heading, and a beam that looks where it should."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose import load
+from nullpose.physics.array import element_positions
+from nullpose.report.figures import draw_array
+from nullpose.report.figures.pattern import beam_surface_m
+from nullpose.report.figures.style import write_figure_file
+from nullpose.solve import ArraySolution, solve_array
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "array.toml"
+
+
+@pytest.fixture(scope="module", params=["digital", "analogue"])
+def solution(request: pytest.FixtureRequest) -> ArraySolution:
+    """The example with either combining."""
+    return solve_array(load(EXAMPLE), request.param, certify=False)
+
+
+def _elements(solution: ArraySolution) -> np.ndarray:
+    return element_positions(
+        solution.elements, solution.layout, solution.spacing_wavelengths, solution.yaw_rad
+    )
+
+
+def _drawn_elements(solution: ArraySolution) -> np.ndarray:
+    (axes,) = draw_array(solution).axes
+    (dots,) = [
+        each for each in axes.collections if str(each.get_label()).startswith("elements, larger than life")
+    ]
+    return np.transpose(dots._offsets3d) - solution.position_m
+
+
+def test_elements_stand_as_they_are_laid_out(solution: ArraySolution) -> None:
+    """The dots are the elements, turned by the yaw, all enlarged by one factor."""
+    drawn, real = _drawn_elements(solution), _elements(solution)
+    factor = np.linalg.norm(drawn) / np.linalg.norm(real)
+    assert drawn == pytest.approx(factor * real, abs=1e-9)
+    assert len(drawn) == 4
+
+
+def test_a_circle_is_drawn_as_one() -> None:
+    """Elements of a circular array are as far from the vehicle as each other."""
+    found = solve_array(load(EXAMPLE), "digital", elements=5, layout="circular", certify=False)
+    distances = np.linalg.norm(_drawn_elements(found), axis=1)
+    assert distances == pytest.approx([distances[0]] * 5)
+
+
+def test_one_element_stands_at_the_vehicle() -> None:
+    """An array of one has no size to enlarge."""
+    found = solve_array(load(EXAMPLE), "digital", elements=1, certify=False)
+    assert _drawn_elements(found) == pytest.approx(np.zeros((1, 3)), abs=1e-9)
+
+
+def test_title_and_legend_tell_the_array(solution: ArraySolution, tmp_path: Path) -> None:
+    """Combining, value and yaw; digital, whose beam it is; the file is not blank."""
+    figure = draw_array(solution)
+    title = figure.get_suptitle().replace("\N{MINUS SIGN}", "-")
+    assert f"array of 4, {solution.combining}: smallest SINR {solution.objective.value_db:.2f} dB" in title
+    assert f"yaw {np.degrees(solution.yaw_rad):.1f}" in title
+    legend = " ".join(text.get_text() for text in figure.legends[0].get_texts())
+    assert "heading (yaw)" in legend
+    assert (f"beam for {solution.binding_node}" in legend) == (solution.combining == "digital")
+    assert write_figure_file(figure, tmp_path / "array.png").stat().st_size > 10_000
+
+
+def test_the_beam_has_its_null_on_the_jammer(solution: ArraySolution) -> None:
+    """Towards the jammer the surface drawn comes close to the vehicle, towards the node it does not."""
+    scenario, position = solution.scenario, solution.position_m
+    node = [link.node for link in solution.links].index(solution.binding_node)
+    weights = solution.weights if solution.combining == "analogue" else solution.weights[node]
+    surface = beam_surface_m(position, _elements(solution), weights, 1.0).reshape(3, -1).T - position
+    reach = np.linalg.norm(surface, axis=1)
+    assert reach.max() == pytest.approx(1.0)
+
+    def towards(point_m: np.ndarray) -> float:
+        ahead = (point_m - position) / np.linalg.norm(point_m - position)
+        directions = surface / np.maximum(reach, 1e-12)[:, None]
+        return float(reach[np.argmax(np.where(reach > 1e-9, directions @ ahead, -1.0))])
+
+    assert towards(scenario.jammer_positions_m[0]) < 0.02
+    assert towards(scenario.node_positions_m[node]) > 0.5
+
+
+def test_the_array_is_not_seen_end_on(solution: ArraySolution) -> None:
+    """The camera stands where the heading crosses its line of sight."""
+    (axes,) = draw_array(solution).axes
+    assert abs(np.sin(solution.yaw_rad - np.radians(axes.azim))) > 0.3
