@@ -1,0 +1,24 @@
+"""Studies: many random scenes, each solved in several cases over swept values, here or on a cluster."""
+
+from nullpose.study.monte_carlo.case import StudyCase
+from nullpose.study.monte_carlo.draw import draw_scene, scene_at
+from nullpose.study.monte_carlo.loading import load_spec
+from nullpose.study.monte_carlo.progress import StudyProgress
+from nullpose.study.monte_carlo.reading import StudyTable, read_study
+from nullpose.study.monte_carlo.run import run_study
+from nullpose.study.monte_carlo.spec import StudySpec
+from nullpose.study.monte_carlo.status import StudyStatus, study_status
+
+__all__ = [
+    "StudyCase",
+    "StudyProgress",
+    "StudySpec",
+    "StudyStatus",
+    "StudyTable",
+    "draw_scene",
+    "load_spec",
+    "read_study",
+    "run_study",
+    "scene_at",
+    "study_status",
+]

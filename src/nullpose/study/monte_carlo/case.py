@@ -1,0 +1,227 @@
+"""What is solved for in every scene: a scheme, a vehicle, and how."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from nullpose.physics import Pose
+from nullpose.scenario import Airframe, Array, Scenario
+from nullpose.scenario.airframe import PRESET_TILTS_DEG
+from nullpose.scenario.choice import Choice
+from nullpose.scenario.faults import Place, rejection
+from nullpose.scenario.names import Label
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import AttitudeDegrees, Count, Position, Quantity
+from nullpose.scenario.wording import described, listed, nearest
+from nullpose.solve.scheme import Scheme
+from nullpose.study.airframe_cases import AIRFRAME_CASES
+
+__all__ = ["CaseArray", "FixedPose", "Gap", "NodeLimit", "Seconds", "StudyCase"]
+
+Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
+Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
+NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
+
+_SCHEMES = tuple(scheme.value for scheme in Scheme)
+_SchemeName = Annotated[
+    Literal["optimum", "zero-interference", "maximum-gain", "vertical", "maximum-gain-printed"],
+    Choice("a scheme", _SCHEMES),
+]
+_Combining = Annotated[
+    Literal["digital", "analogue"], Choice("a way to combine elements", ("digital", "analogue"))
+]
+
+_BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_CASES} | {
+    preset: Airframe.from_dict({"preset": preset})
+    for preset in PRESET_TILTS_DEG
+    if preset not in {case.name for case in AIRFRAME_CASES}
+}
+
+
+class _AirframeByName:
+    """An airframe by its name or as a table, as metadata of an annotated Airframe."""
+
+    def read(self, value: object) -> Airframe:
+        if not isinstance(value, str):
+            return Airframe.model_validate(value)
+        if value in _BY_NAME:
+            return _BY_NAME[value]
+        guess = nearest(value, _BY_NAME)
+        hint = f'; did you mean "{guess}"?' if guess else ""
+        names = listed([f'"{name}"' for name in _BY_NAME])
+        raise rejection(
+            f"got {described(value)}, must be {names}, or a table with tilt_max_deg and mount_deg{hint}"
+        )
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+
+@dataclass(frozen=True, slots=True)
+class _Truth:
+    """True or false, and nothing that merely resembles it; as metadata of an annotated bool."""
+
+    def read(self, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise rejection(f"got {described(value)}, must be true or false, without quotes")
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+
+_Bool = Annotated[bool, _Truth()]
+
+
+class CaseArray(Array):
+    """Several dipoles on a level vehicle, and how they are combined.
+
+    Args:
+        combining: digital or analogue.
+    """
+
+    header: ClassVar[str] = "a table such as { elements = 4, layout = ..., spacing_wavelengths = 0.5 }"
+
+    combining: _Combining = Field(
+        default="digital",
+        description="How the elements are combined: digital or analogue.",
+        examples=["digital"],
+    )
+
+    @property
+    def array(self) -> Array:
+        """The array without its combining, as a scenario states it."""
+        values = self.to_dict()
+        del values["combining"]
+        return Array.from_dict(values)
+
+
+class FixedPose(Section):
+    """A pose that is evaluated in every scene, with nothing searched and nothing proved.
+
+    Args:
+        position_m: where the drone hovers.
+        roll_deg, pitch_deg, yaw_deg: how it is turned.
+    """
+
+    header: ClassVar[str] = "a table such as { position_m = [0, 0, 20], roll_deg = 90 }"
+    unstated: ClassVar[frozenset[str]] = frozenset({"roll_deg", "pitch_deg", "yaw_deg"})
+
+    position_m: Position = Field(
+        description="Where the drone hovers: [east, north, up].", examples=[[0.0, 25.0, 8.0]]
+    )
+    roll_deg: AttitudeDegrees = Field(default=0.0, description="Roll in degrees.", examples=[90.0])
+    pitch_deg: AttitudeDegrees = Field(default=0.0, description="Pitch in degrees.", examples=[0.0])
+    yaw_deg: AttitudeDegrees = Field(default=0.0, description="Yaw in degrees.", examples=[0.0])
+
+    def on(self, scenario: Scenario) -> Pose:
+        """Return the pose on the scenario's vehicle.
+
+        Args:
+            scenario: with its airframe, which says how the dipole is mounted.
+        """
+        roll, pitch, yaw = (math.radians(angle) for angle in (self.roll_deg, self.pitch_deg, self.yaw_deg))
+        mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
+        return Pose(np.array(self.position_m), roll, pitch, yaw, mount_rad)
+
+
+class StudyCase(Section):
+    """One of the things that are solved for in every scene.
+
+    Args:
+        name: what tables and figures call it.
+        scheme: how the pose is chosen.
+        airframe: the vehicle in place of the scene's.
+        array: several dipoles in place of the one.
+        robust: whether the pose that guarantees most under the scene's errors is asked for.
+        pose: a pose to evaluate, in place of a search.
+        certify: whether to prove anything.
+        gap: relative gap in place of the study's.
+        time_limit_s: seconds of one solve in place of the study's.
+    """
+
+    header: ClassVar[str] = "a case, in a table of its own headed [[cases]]"
+    letter: ClassVar[str] = "C"
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("airframe", "array"),
+        ("robust", "array"),
+        ("robust", "pose"),
+        ("array", "pose"),
+        ("scheme", "robust"),
+        ("scheme", "array"),
+        ("scheme", "pose"),
+    )
+
+    name: Label = Field(
+        default="",
+        description="What tables and figures call it. Left out: C1, C2, ... by its place in the file.",
+        examples=["tilt-10"],
+    )
+    scheme: _SchemeName | None = Field(
+        default=None, description="How the pose is chosen. Left out: optimum.", examples=["zero-interference"]
+    )
+    airframe: Annotated[Airframe, _AirframeByName()] | None = Field(
+        default=None,
+        description="The vehicle in place of the scene's: level-vertical, level-horizontal, tilt-10, "
+        "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg.",
+        examples=["tilt-10"],
+    )
+    array: CaseArray | None = Field(
+        default=None,
+        description="An array on a level vehicle: elements, layout, spacing_wavelengths and combining.",
+        examples=[{"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}],
+    )
+    robust: _Bool | None = Field(
+        default=None,
+        description="True: the pose that guarantees most under the scene's errors.",
+        examples=[True],
+    )
+    pose: FixedPose | None = Field(
+        default=None,
+        description="A pose to evaluate in every scene, with nothing searched or proved.",
+        examples=[{"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0}],
+    )
+    certify: _Bool | None = Field(
+        default=None, description="False: search only, and prove nothing.", examples=[False]
+    )
+    gap: Gap | None = Field(
+        default=None, description="Relative gap of this case, in place of the study's.", examples=[1e-2]
+    )
+    time_limit_s: Seconds | None = Field(
+        default=None,
+        description="Seconds of one solve of this case, in place of the study's.",
+        examples=[30.0],
+    )
+
+    @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Returns the raw table without what says no more than leaving it out would."""
+        return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table, as far as they can be judged."""
+        yield from super().cross_faults(data)
+        if data.get("pose") is not None:
+            for key in ("certify", "gap", "time_limit_s"):
+                if data.get(key) is not None:
+                    yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
+
+    def on(self, scenario: Scenario) -> Scenario:
+        """Return the scene with this case's vehicle in place of its own.
+
+        Args:
+            scenario: a scene.
+        """
+        if self.array is not None:
+            return scenario.model_copy(update={"airframe": None, "array": self.array.array})
+        if self.airframe is not None:
+            return scenario.model_copy(update={"airframe": self.airframe, "array": None})
+        return scenario if scenario.array is None else scenario.model_copy(update={"array": None})

@@ -1,0 +1,247 @@
+"""From a study's spec and a number to a scene: the same everywhere, whatever else is drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.study.monte_carlo.distribution import Distribution
+from nullpose.study.monte_carlo.layout import Points
+from nullpose.study.monte_carlo.scene import POINT_LISTS
+from nullpose.study.monte_carlo.spec import StudySpec
+
+__all__ = ["MOST_DRAWS", "Draws", "draw_scene", "scene_at"]
+
+FloatArray = NDArray[np.float64]
+
+MOST_DRAWS = 100
+"""How often the points of one kind are drawn before their scene is given up."""
+
+# The streams of chance. Their numbers are part of what a seed means: never change one.
+_KINDS = {kind: number for number, kind in enumerate(POINT_LISTS)}
+_STREAMS = {
+    "count": 0,
+    "parents": 1,
+    "place": 2,
+    "height_m": 3,
+    "power_w": 4,
+    "power_dbm": 4,
+    "weight": 5,
+    "min_sinr_db": 5,
+    "uncertainty_m": 6,
+}
+_EMITTED = ("power_w", "power_dbm", "weight", "min_sinr_db", "uncertainty_m")
+
+
+def draw_scene(spec: StudySpec, index: int) -> Scenario:
+    """Return a scene before anything is swept.
+
+    Every draw depends on the study's seed, the scene's number and what is drawn, and on nothing else: other
+    jammers leave the nodes as they are, other powers the places, and more scenes the earlier ones.
+
+    Args:
+        spec: the study.
+        index: the scene's number, from 0.
+
+    Raises:
+        UsageError: there is no such scene.
+        ScenarioError: no valid scene was drawn.
+    """
+    return Draws(spec).base(_known("scene", index, spec.n_scenes))
+
+
+def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
+    """Return a scene at one combination of swept values.
+
+    Args:
+        spec: the study.
+        index: the scene's number, from 0.
+        point: the combination's number, from 0.
+
+    Raises:
+        UsageError: there is no such scene or combination.
+        ScenarioError: no valid scene was drawn, or a swept value makes it invalid.
+    """
+    known = _known("scene", index, spec.n_scenes), _known("point", point, len(spec.points))
+    return Draws(spec).at(*known)
+
+
+def _known(noun: str, number: int, count: int) -> int:
+    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < count:
+        raise UsageError(f"{noun}: given {number!r}; allowed: 0 to {count - 1}")
+    return number
+
+
+class Draws:
+    """The scenes of a study; the one drawn last is kept, since it is asked for at every swept value.
+
+    Args:
+        spec: the study.
+    """
+
+    def __init__(self, spec: StudySpec) -> None:
+        self._spec = spec
+        self._swept = [_of_point(spec, values) for values in spec.points]
+        self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
+
+    def base(self, index: int) -> Scenario:
+        """Return a scene before anything is swept.
+
+        Args:
+            index: the scene's number, from 0.
+        """
+        return self._drawn(index, self._spec.drawn)
+
+    def at(self, index: int, point: int) -> Scenario:
+        """Return a scene at one combination of swept values.
+
+        Args:
+            index: the scene's number, from 0.
+            point: the combination's number, from 0.
+        """
+        drawn, settings = self._swept[point]
+        scene = self._drawn(index, drawn)
+        overrides = [each for path, value in settings for each in _settings(scene, path, value)]
+        return apply_overrides(scene, overrides) if overrides else scene
+
+    def _drawn(self, index: int, drawn: Mapping[str, Points]) -> Scenario:
+        if self._last is None or self._last[0] != index or self._last[1] != drawn:
+            self._last = index, drawn, _scene(self._spec, index, drawn)
+        return self._last[2]
+
+
+def generator_key(spec: StudySpec, path: str) -> tuple[str, str] | None:
+    """Return the kind and key that a swept path means if it is one of what draws, as in ``nodes.count``.
+
+    Args:
+        spec: the study.
+        path: the swept path.
+    """
+    kind, _, key = path.partition(".")
+    points = spec.drawn.get(kind)
+    return (kind, key) if points is not None and key in type(points).model_fields else None
+
+
+def _of_point(
+    spec: StudySpec, values: Mapping[str, float]
+) -> tuple[dict[str, Points], list[tuple[str, float]]]:
+    """Return what is drawn at a combination of swept values, and what is set in the scene after that."""
+    drawn, settings = dict(spec.drawn), []
+    for path, value in values.items():
+        key = generator_key(spec, path)
+        if key is None:
+            settings.append((path, value))
+        else:
+            drawn[key[0]] = drawn[key[0]].model_copy(update=_replacing(drawn[key[0]], key[1], value))
+    return drawn, settings
+
+
+def _replacing(points: Points, key: str, value: float) -> dict[str, object]:
+    """Return the update that sets a key and drops the one that states the same in another unit."""
+    pairs = (*points.pairs, *points.alternatives)
+    others = {one if key == other else other for one, other in pairs if key in (one, other)}
+    return {**dict.fromkeys(others), key: value}
+
+
+def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
+    """Return the overrides of a path; one for each point where it names all of a kind by a star."""
+    kind, star, rest = path.partition(".*.")
+    if not star or kind not in POINT_LISTS:
+        return [Override(path, value)]
+    return [Override(f"{kind}[{place}].{rest}", value) for place in range(len(getattr(scene, kind)))]
+
+
+def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario:
+    """Return a scene, drawing those points again that make it invalid."""
+    tables = spec.scene.drawn_tables(index, drawn)
+    attempts = dict.fromkeys(drawn, 0)
+    points = {kind: _draw(spec.seed, index, kind, drawn[kind], 0) for kind in drawn}
+    while True:
+        try:
+            return Scenario.from_dict(tables | {"name": f"scene {index}"} | points)
+        except ScenarioError as error:
+            again = _at_fault(error.faults, attempts)
+            if again is None or attempts[again] + 1 >= MOST_DRAWS:
+                raise _given_up(error, attempts) from None
+            attempts[again] += 1
+            points[again] = _draw(spec.seed, index, again, drawn[again], attempts[again])
+
+
+def _at_fault(faults: tuple[Fault, ...], attempts: Mapping[str, int]) -> str | None:
+    """Return the kind to draw again: the last that a fault is about, or else the least often drawn."""
+    blamed = [kind for kind in attempts if any(fault.path.startswith(kind) for fault in faults)]
+    return blamed[-1] if blamed else min(attempts, key=lambda kind: attempts[kind], default=None)
+
+
+def _given_up(error: ScenarioError, attempts: Mapping[str, int]) -> ScenarioError:
+    if not any(attempts.values()):
+        return error
+    first = error.faults[0]
+    return ScenarioError([Fault(first.path, f"{first.message} (after {MOST_DRAWS} draws)")])
+
+
+def _draw(seed: int, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:
+    """Return the points of one kind as plain data."""
+
+    def chance(stream: str) -> np.random.Generator:
+        key = (index, _KINDS[kind], _STREAMS[stream], attempt)
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
+
+    plane_m = _places(points, chance("count"), chance("parents"), chance("place"))
+    count = len(plane_m)
+    heights_m = points.height_m.draw(chance("height_m"), count)
+    members: list[dict[str, Any]] = [
+        {"name": name, "position_m": [float(east), float(north), float(up)]}
+        for name, (east, north), up in zip(points.names(count), plane_m, heights_m, strict=True)
+    ]
+    for key in _EMITTED:
+        distribution = getattr(points, key, None)
+        if isinstance(distribution, Distribution):
+            for member, value in zip(members, distribution.draw(chance(key), count), strict=True):
+                member[key] = float(value)
+    return members
+
+
+def _places(
+    points: Points, counting: np.random.Generator, parents: np.random.Generator, placing: np.random.Generator
+) -> FloatArray:
+    """Return positions seen from above [m], (n, 2)."""
+    if points.layout == "poisson":
+        count = int(counting.poisson((points.density_per_m2 or 0.0) * _area_m2(points)))
+        return _evenly(points, placing, count)
+    if points.layout != "clusters":
+        return _evenly(points, placing, _between(counting, points.count))
+    centres_m = _evenly(points, parents, _between(counting, points.parents))
+    sizes = [_between(counting, points.count) for _ in centres_m]
+    around_m = (points.spread_m or 0.0) * placing.standard_normal((sum(sizes), 2))
+    return np.asarray(np.repeat(centres_m, sizes, axis=0) + around_m)
+
+
+def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int:
+    low, high = ends or (0, 0)
+    return int(counting.integers(low, high, endpoint=True))
+
+
+def _area_m2(points: Points) -> float:
+    if points.radius_m is not None:
+        return math.pi * points.radius_m**2
+    (west, east), (south, north) = points.x_m or (0.0, 0.0), points.y_m or (0.0, 0.0)
+    return (east - west) * (north - south)
+
+
+def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatArray:
+    """Return positions drawn evenly in a disc or a rectangle: the first few are the same for any count."""
+    shares = placing.random((count, 2))
+    if points.radius_m is not None and points.centre_m is not None:
+        radii_m = points.radius_m * np.sqrt(shares[:, 0])
+        angles = 2.0 * np.pi * shares[:, 1]
+        around_m = radii_m[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        return np.asarray(points.centre_m + around_m)
+    (west, east), (south, north) = points.x_m or (0.0, 0.0), points.y_m or (0.0, 0.0)
+    return np.asarray([west, south] + shares * [east - west, north - south])

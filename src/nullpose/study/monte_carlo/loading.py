@@ -1,0 +1,97 @@
+"""From a file to the spec of a study, with every fault that it has."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import load
+
+# The reading of TOML and its words are those of scenario files.
+from nullpose.scenario.loading import _Kind, _tables, _text, _UnusableFileError
+from nullpose.scenario.wording import described
+from nullpose.study.monte_carlo.checking import spec_faults
+from nullpose.study.monte_carlo.spec import StudySpec
+
+__all__ = ["load_spec"]
+
+_SPEC_FILE = _Kind("the spec of a study", "study.toml", (".toml",))
+
+
+def load_spec(path: str | os.PathLike[str]) -> StudySpec:
+    """Return the spec that a TOML file states, with what the scenario files hold that it names.
+
+    The first scene is drawn, and its swept values and cases are tried on it without solving anything.
+
+    Args:
+        path: the file.
+
+    Raises:
+        ScenarioError: when the file, or one that it names, cannot be read or is faulty; with every fault.
+    """
+    source = os.fspath(path)
+    try:
+        tables = _tables(_text(source, _SPEC_FILE))
+    except _UnusableFileError as error:
+        raise ScenarioError([error.fault], source) from None
+    faults = _read_scenarios(tables, Path(source).parent)
+    try:
+        spec = StudySpec.from_dict(tables, source)
+    except ScenarioError as error:
+        raise ScenarioError([*faults, *error.faults], source) from None
+    faults = faults or spec_faults(spec)
+    if faults:
+        raise ScenarioError(faults, source)
+    return spec
+
+
+def _read_scenarios(tables: dict[str, Any], folder: Path) -> list[Fault]:
+    """Put what the named scenario files hold into the raw spec; return their faults."""
+    scene = tables.get("scene")
+    if not isinstance(scene, Mapping):
+        return []
+    if "scenarios" in scene:
+        return [Fault("scene.scenarios", "cannot be stated in a file; name scenario files by file or files")]
+    names, faults = _named_files(scene)
+    held = []
+    for name in names:
+        try:
+            held.append(load(folder / name).to_dict())
+        except ScenarioError as error:
+            faults += [Fault(_in_file(name, fault), fault.message) for fault in error.faults]
+    if held and not faults:
+        tables["scene"] = {**scene, "scenarios": held}
+    elif faults:
+        # Whatever else is faulty is told too; a stand-in keeps that free of what only follows.
+        tables["scene"] = {**scene, "scenarios": [_STAND_IN]}
+        for key in ("file", "files"):
+            tables["scene"].pop(key, None)
+        tables.setdefault("scenes", 1)
+    return faults
+
+
+def _named_files(scene: Mapping[str, object]) -> tuple[list[str], list[Fault]]:
+    file, files = scene.get("file"), scene.get("files")
+    if file is not None and not isinstance(file, str):
+        return [], [Fault("scene.file", f'got {described(file)}, must be a file name, as in "paper.toml"')]
+    if files is None:
+        return ([] if file is None else [file]), []
+    if not isinstance(files, list) or not files or not all(isinstance(name, str) for name in files):
+        return [], [
+            Fault("scene.files", f"got {described(files)}, must be a list of names of scenario files")
+        ]
+    return files, []
+
+
+def _in_file(name: str, fault: Fault) -> str:
+    return f"{name}: {fault.path}" if fault.path else name
+
+
+_STAND_IN = {
+    "airspace": {"altitude_m": [10.0, 20.0]},
+    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+    "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
+}

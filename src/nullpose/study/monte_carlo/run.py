@@ -1,0 +1,105 @@
+"""A study run from its spec into its folder: in this process, on this machine or on a cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from nullpose.errors import UsageError
+from nullpose.study.files import prepare_folder
+from nullpose.study.monte_carlo.checking import require_sound
+from nullpose.study.monte_carlo.chunk import seconds_per_scene, solve_chunk
+from nullpose.study.monte_carlo.extra import require_extra
+from nullpose.study.monte_carlo.ledger import Ledger
+from nullpose.study.monte_carlo.lock import locked
+from nullpose.study.monte_carlo.progress import StudyProgress
+from nullpose.study.monte_carlo.spec import StudySpec
+from nullpose.study.monte_carlo.status import StudyStatus, study_status
+
+__all__ = ["MOST_IN_A_PART", "run_study"]
+
+MOST_IN_A_PART = 5000
+"""The most scenes of a part, however quick they are: a part is held in memory whole."""
+
+_PART_S = 1.0
+
+
+def run_study(
+    spec: StudySpec,
+    out: str | os.PathLike[str],
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    chunk: int | None = None,
+    on_progress: Callable[[StudyProgress], None] | None = None,
+) -> StudyStatus:
+    """Solve all scenes of a study that its folder does not hold yet, and return how far it is then.
+
+    The rows depend on the spec alone: not on the workers, nor on the size of parts. A run that was ended, in
+    whatever way, is taken up by the next.
+
+    Args:
+        spec: the study.
+        out: its folder; made if it is missing.
+        scheduler: address of a running Dask scheduler, as in ``tcp://host:8786``; without it an embedded
+            cluster on this machine.
+        workers: processes of the embedded cluster; without it one for each processor; 0 for none, which
+            solves everything in this process.
+        chunk: scenes of a part; without it so many as take about a second. A study that is resumed keeps
+            the size it was begun with.
+        on_progress: called after every part.
+
+    Raises:
+        UsageError: another study is in the folder, a bad option, an extra is missing, or workers with
+            another nullpose.
+        ScenarioError: the parts of the spec do not fit together.
+        OutputError: the folder cannot be written, or another client writes it.
+        ClusterError: the scheduler is not there, or went away.
+    """
+    require_extra()
+    from nullpose.study.monte_carlo.store import Store
+
+    _require_options(scheduler, workers, chunk)
+    folder = Path(out)
+    store = Store(folder)
+    if store.is_begun():
+        store.require_same(spec)
+    else:
+        require_sound(spec)
+    with locked(prepare_folder(folder)):
+        ledger = Ledger(spec, store, on_progress)
+
+        def begin(calibrated: Callable[[], float]) -> None:
+            if not store.is_begun():
+                size = chunk or _size(spec, calibrated())
+                store.begin(spec, size)
+            ledger.open(int(store.manifest()["chunk"]))
+
+        _run_here(ledger, begin)
+    return study_status(folder)
+
+
+def _run_here(ledger: Ledger, begin: Callable[[Callable[[], float]], None]) -> None:
+    """Solve what is to do in this process."""
+    ledger.workers = 1
+    begin(lambda: seconds_per_scene(ledger.json))
+    for first, last in ledger.to_do():
+        ledger.add(solve_chunk(ledger.json, ledger.fingerprint, first, last))
+
+
+def _size(spec: StudySpec, seconds: float) -> int:
+    """Return the scenes of a part that takes about a second, given how long one takes."""
+    return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))
+
+
+def _require_options(scheduler: str | None, workers: int | None, chunk: int | None) -> None:
+    if scheduler is not None and workers is not None:
+        raise UsageError(
+            "workers: given together with a scheduler, whose cluster has workers of its own; leave out "
+            "one of the two"
+        )
+    if workers is not None and (isinstance(workers, bool) or not 0 <= workers <= 1024):
+        raise UsageError(f"workers: given {workers!r}; allowed: 0 (no cluster) to 1024")
+    if chunk is not None and (isinstance(chunk, bool) or not 1 <= chunk <= MOST_IN_A_PART):
+        raise UsageError(f"chunk: given {chunk!r}; allowed: 1 to {MOST_IN_A_PART} scenes")

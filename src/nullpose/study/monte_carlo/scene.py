@@ -1,0 +1,165 @@
+"""What is the same in all scenes of a study: a scenario file, several, or the tables of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from nullpose.scenario import (
+    Airframe,
+    Airspace,
+    Array,
+    Eavesdropper,
+    Jammer,
+    Node,
+    Origin,
+    Receiver,
+    Scenario,
+    Transmitter,
+)
+from nullpose.scenario.choice import Choice
+from nullpose.scenario.faults import Place
+from nullpose.scenario.members import Members
+from nullpose.scenario.names import Label
+from nullpose.scenario.origin import GEODETIC_KEYS, located
+from nullpose.scenario.section import Section
+
+__all__ = ["POINT_LISTS", "SceneBase"]
+
+POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
+"""The kinds of points that a study may draw."""
+
+_Objective = Annotated[
+    Literal["min-sinr", "secrecy-rate"], Choice("an objective", ("min-sinr", "secrecy-rate"))
+]
+
+
+@dataclass(frozen=True, slots=True)
+class _Scenarios(Members):
+    """A list of whole scenarios, which are not named by their place."""
+
+    def read(self, value: object) -> list[object]:
+        super(_Scenarios, self).read(value)
+        return list(value) if isinstance(value, list | tuple) else []
+
+
+class SceneBase(Section):
+    """The part of every scene that is not drawn.
+
+    Args:
+        file: a scenario file.
+        files: several, which are the scenes in turn.
+        scenarios: what the files hold; read together with the spec.
+        objective, origin, airspace, airframe, array, receiver, transmitter: as in a scenario file.
+        nodes, jammers, eavesdroppers: points that are not drawn, as in a scenario file.
+    """
+
+    header: ClassVar[str] = "a table headed [scene]"
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("file", "files"),)
+    unstated: ClassVar[frozenset[str]] = frozenset(
+        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers"}
+    )
+
+    file: Label | None = Field(
+        default=None,
+        description="A scenario file, relative to this file's folder; what is drawn replaces its own.",
+        examples=["paper.toml"],
+    )
+    files: tuple[Label, ...] | None = Field(
+        default=None,
+        description="Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
+        examples=[["north.toml", "south.toml"]],
+    )
+    scenarios: Annotated[tuple[Scenario, ...], _Scenarios("scene.scenarios", "")] = Field(
+        default=(), description="What file or files hold. Filled in when the spec is read."
+    )
+    objective: _Objective = Field(
+        default="min-sinr", description="As in a scenario file.", examples=["secrecy-rate"]
+    )
+    origin: Origin | None = Field(default=None, description="A table headed [scene.origin].")
+    airspace: Airspace | None = Field(default=None, description="A table headed [scene.airspace].")
+    airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
+    array: Array | None = Field(default=None, description="A table headed [scene.array].")
+    receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
+    transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
+    nodes: Annotated[tuple[Node, ...], Members("scene.nodes", Node.letter)] = Field(
+        default=(), description="Tables headed [[scene.nodes]], where they are not drawn."
+    )
+    jammers: Annotated[tuple[Jammer, ...], Members("scene.jammers", Jammer.letter)] = Field(
+        default=(), description="Tables headed [[scene.jammers]], where they are not drawn."
+    )
+    eavesdroppers: Annotated[
+        tuple[Eavesdropper, ...], Members("scene.eavesdroppers", Eavesdropper.letter)
+    ] = Field(default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn.")
+
+    @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Returns the raw table with the positions of points that are stated by latitude and longitude."""
+        return located(data, unknown_m=(0.0, 0.0, 0.0))
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table, as far as they can be judged."""
+        yield from super().cross_faults(data)
+        own = [key for key in _TABLES if data.get(key)]
+        if any(data.get(key) for key in ("file", "files", "scenarios")):
+            for key in own:
+                yield (
+                    (key,),
+                    "given together with a file, which states it; remove one, or state it in the file",
+                )
+            return
+        for key in ("airspace", "receiver"):
+            if key not in own:
+                yield (key,), f"missing; add a table headed [scene.{key}], or name a scenario file (file)"
+
+    @property
+    def size(self) -> int:
+        """How many scenarios take turns."""
+        return max(1, len(self.scenarios))
+
+    def tables(self, index: int) -> dict[str, Any]:
+        """Return the tables of a scene as plain data, before anything is drawn.
+
+        Args:
+            index: the scene.
+        """
+        if self.scenarios:
+            return self.scenarios[index % len(self.scenarios)].to_dict()
+        return {key: value for key, value in self.to_dict().items() if key in _TABLES}
+
+    def drawn_tables(self, index: int, drawn: Iterable[str]) -> dict[str, Any]:
+        """Return the tables of a scene without the points that are to be drawn.
+
+        Points that stay are stated in metres alone: all points of a scenario are stated in one way.
+
+        Args:
+            index: the scene.
+            drawn: the kinds of points that are drawn.
+        """
+        tables = self.tables(index)
+        kinds = list(drawn)
+        if not kinds:
+            return tables
+        for kind in POINT_LISTS:
+            if kind in kinds:
+                tables.pop(kind, None)
+            for point in tables.get(kind, ()):
+                for key in GEODETIC_KEYS:
+                    point.pop(key, None)
+        return tables
+
+
+_TABLES = (
+    "objective",
+    "origin",
+    "airspace",
+    "airframe",
+    "array",
+    "receiver",
+    "transmitter",
+    *POINT_LISTS,
+)

@@ -1,0 +1,160 @@
+"""The spec of a study: which scenes are drawn, what is solved in each, and what is swept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from nullpose.scenario.faults import Place
+from nullpose.scenario.members import Members
+from nullpose.scenario.names import Title
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import Count
+from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
+from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
+from nullpose.study.monte_carlo.scene import POINT_LISTS, SceneBase
+from nullpose.study.monte_carlo.sweep_axes import SweepAxes, points_of
+
+__all__ = ["MOST_SCENES", "StudySpec"]
+
+MOST_SCENES = 999_999_999
+"""The most scenes of a study: their numbers have nine digits in the names of parts."""
+
+_Seed = Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")]
+_Scenes = Annotated[int, Count("a number of scenes", 1, MOST_SCENES, "each is solved in every case")]
+
+
+class StudySpec(Section):
+    """Everything that decides the rows of a study.
+
+    Args:
+        name: a title.
+        seed: of every draw, together with a scene's number.
+        scenes: how many.
+        gap: relative gap at which a proof is done; None for one by the number of nodes.
+        time_limit_s: seconds after which a proof stops.
+        node_limit: boxes after which a proof stops; None for the solver's own.
+        scene: what is the same in all scenes.
+        nodes, jammers, eavesdroppers: how they are drawn; None for those of the scene.
+        cases: what is solved in every scene.
+        sweep: paths and the values that they are set to.
+
+    Raises:
+        ScenarioError: with every fault of the values together.
+    """
+
+    header: ClassVar[str] = "a table with the keys of a study's spec"
+
+    name: Title = Field(default="", description="Title of the study.", examples=["Do we need to tilt?"])
+    seed: _Seed = Field(
+        default=0, description="Seed of every draw: scene i is the same for equal seeds.", examples=[1]
+    )
+    scenes: _Scenes | None = Field(
+        default=None, description="Number of scenes. Left out with files: one for each.", examples=[2000]
+    )
+    gap: Gap | None = Field(
+        default=None,
+        description="Relative gap between bound and value at which a proof is done. Left out: by the number "
+        "of nodes, 1e-6 to 3, 1e-4 to 20, else 1e-3.",
+        examples=[1e-3],
+    )
+    time_limit_s: Seconds = Field(
+        default=60.0, description="Seconds after which a proof stops, its gap not reached.", examples=[10.0]
+    )
+    node_limit: NodeLimit | None = Field(
+        default=None,
+        description="Boxes after which a proof stops; unlike time, the same on every machine.",
+        examples=[1_000_000],
+    )
+    scene: SceneBase = Field(
+        description="A table headed [scene]: what is the same in all scenes, a file or tables."
+    )
+    nodes: Nodes | None = Field(
+        default=None, description="A table headed [nodes]: how they are drawn. Left out: those of the scene."
+    )
+    jammers: Jammers | None = Field(
+        default=None,
+        description="A table headed [jammers]: how they are drawn. Left out: those of the scene.",
+    )
+    eavesdroppers: Eavesdroppers | None = Field(
+        default=None,
+        description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
+    )
+    cases: Annotated[tuple[StudyCase, ...], Members("cases", StudyCase.letter, at_least=1)] = Field(
+        default=(StudyCase(name="optimum"),),
+        description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
+        "the optimum with the scene's own vehicle.",
+    )
+    sweep: SweepAxes = Field(
+        default=(),
+        description="A table headed [sweep]: paths, each with a list of values or from, to, points and "
+        "spacing. Several make a grid.",
+        examples=[{"jammers.M.power_w": [0.1, 1.0, 10.0]}],
+    )
+
+    @classmethod
+    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of the raw table, as far as they can be judged."""
+        scene, cases = data.get("scene"), data.get("cases")
+        if data.get("scenes") is None and isinstance(scene, Mapping) and not scene.get("files"):
+            yield ("scenes",), "missing; it must be given: how many scenes"
+        names: dict[str, int] = {}
+        for index, case in enumerate(cases if isinstance(cases, list | tuple) else ()):
+            name = case.get("name") if isinstance(case, Mapping) else getattr(case, "name", None)
+            if isinstance(name, str) and names.setdefault(name, index) != index:
+                message = (
+                    f'got "{name}", the name of cases[{names[name]}] already; every name may be used once'
+                )
+                yield ("cases", index, "name"), message
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
+        values = super().to_dict()
+        values["sweep"] = {path: list(numbers) for path, numbers in self.sweep}
+        return values
+
+    @property
+    def n_scenes(self) -> int:
+        """How many scenes there are, stated or by the number of files."""
+        return self.scene.size if self.scenes is None else self.scenes
+
+    @cached_property
+    def points(self) -> tuple[dict[str, float], ...]:
+        """The combinations of swept values by path, the last varying fastest; one empty if none is swept."""
+        return points_of(self.sweep)
+
+    @property
+    def swept(self) -> tuple[str, ...]:
+        """The paths that are swept."""
+        return tuple(path for path, _ in self.sweep)
+
+    @property
+    def case_names(self) -> tuple[str, ...]:
+        """Names of the cases, in order."""
+        return tuple(case.name for case in self.cases)
+
+    @property
+    def rows_per_scene(self) -> int:
+        """How many rows a scene has: one for each case at each combination of swept values."""
+        return len(self.points) * len(self.cases)
+
+    @property
+    def drawn(self) -> dict[str, Points]:
+        """What is drawn, by kind, in the order in which it is drawn."""
+        given = ((kind, getattr(self, kind)) for kind in POINT_LISTS)
+        return {kind: points for kind, points in given if points is not None}
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all that decides a row; titles and the names of files are left out."""
+        values = self.to_dict() | {"name": "", "scenes": self.n_scenes}
+        values["scene"] = {
+            key: value for key, value in values["scene"].items() if key not in ("file", "files")
+        }
+        text = json.dumps(values, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,108 @@
+"""The parameters that a study sweeps: paths into a scene, or keys of what draws it, with their values."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+
+from nullpose.errors import UsageError
+from nullpose.scenario.choice import Choice
+from nullpose.scenario.faults import as_error_details, collected, rejection
+from nullpose.scenario.units import Count, Quantity
+from nullpose.scenario.wording import described, listed, nearest, plain
+from nullpose.study.spacing import spaced
+
+__all__ = ["MOST_POINTS", "SweepAxes", "points_of"]
+
+MOST_POINTS = 1_000_000
+"""The most combinations of swept values."""
+
+_KEYS = ("from", "to", "points", "spacing")
+_VALUE = Quantity("a number", -1e30, 1e30, "in the unit that the path ends in")
+_POINTS = Count("a number of values", 2, 100_000, "both ends included")
+_SPACING = Choice("a spacing", ("linear", "log"))
+
+Axis = tuple[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Axes:
+    """Swept values by path, as metadata of an annotated tuple of pairs."""
+
+    def read(self, value: object) -> tuple[Axis, ...]:
+        if isinstance(value, tuple):
+            value = dict(value)
+        if not isinstance(value, Mapping):
+            raise rejection(f"got {described(value)}, must be a table headed [sweep]")
+        axes: list[Axis] = []
+        details: list[InitErrorDetails] = []
+        for path, given in value.items():
+            try:
+                axes.append((str(path), _values(plain(given))))
+            except PydanticCustomError as error:
+                details.append(as_error_details((str(path),), error.message()))
+            except UsageError as error:
+                details.append(as_error_details((str(path),), str(error).replace("\n  ", "; ")))
+        if details:
+            raise collected("sweep", details)
+        if len(axes) and _size(axes) > MOST_POINTS:
+            raise rejection(
+                f"the grid has {_size(axes)} combinations of values, at most {MOST_POINTS} are allowed"
+            )
+        return tuple(axes)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+
+SweepAxes = Annotated[tuple[Axis, ...], _Axes()]
+"""Pairs of a path and the values that it is set to."""
+
+
+def points_of(axes: tuple[Axis, ...]) -> tuple[dict[str, float], ...]:
+    """Return every combination of the swept values, the last varying fastest; one empty if none is swept.
+
+    Args:
+        axes: paths and values.
+    """
+    paths = [path for path, _ in axes]
+    return tuple(
+        dict(zip(paths, values, strict=True)) for values in itertools.product(*(values for _, values in axes))
+    )
+
+
+def _size(axes: list[Axis]) -> int:
+    size = 1
+    for _, values in axes:
+        size *= len(values)
+    return size
+
+
+def _values(given: object) -> tuple[float, ...]:
+    """Return the values that a list or a table of from, to, points and spacing states."""
+    if isinstance(given, list | tuple) and len(given) > 0:
+        values = tuple(_VALUE.read(value) for value in given)
+        if len(set(values)) < len(values):
+            raise rejection("a value is given twice; keep one")
+        return values
+    if not isinstance(given, Mapping):
+        raise rejection(
+            f"got {described(given)}, must be a list of numbers or a table such as "
+            '{ from = 0.1, to = 100, points = 4, spacing = "log" }'
+        )
+    for key in given:
+        if key not in _KEYS:
+            guess = nearest(str(key), _KEYS)
+            meant = f'; did you mean "{guess}"?' if guess else ";"
+            raise rejection(f"unknown key {key}{meant} the keys here are {listed(_KEYS)}")
+    missing = [key for key in _KEYS[:3] if key not in given]
+    if missing:
+        raise rejection(f"{listed(missing)} missing; a table here has from, to, points and perhaps spacing")
+    log = _SPACING.read(given.get("spacing", "linear")) == "log"
+    start, stop = _VALUE.read(given["from"]), _VALUE.read(given["to"])
+    return spaced(start, stop, _POINTS.read(given["points"]), log=log)

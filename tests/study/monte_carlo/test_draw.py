@@ -1,0 +1,193 @@
+"""Scene i is the same anywhere, and drawn as the spec says."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from nullpose import Scenario, ScenarioError, UsageError
+from nullpose.study.monte_carlo import StudySpec, draw_scene, scene_at
+
+Spec = Callable[..., StudySpec]
+
+
+def _drawn(spec: StudySpec, kind: str, count: int = 400) -> list[Any]:
+    return [point for index in range(count) for point in getattr(draw_scene(spec, index), kind)]
+
+
+def _plane_m(points: list[Any]) -> np.ndarray[Any, Any]:
+    return np.array([point.position_m[:2] for point in points])
+
+
+@given(seed=st.integers(0, 10**15), index=st.integers(0, 10**6), scenes=st.integers(1, 10**8))
+def test_a_scene_depends_on_seed_and_number_alone(spec: Spec, seed: int, index: int, scenes: int) -> None:
+    """Neither the number of scenes, nor cases, nor what is swept changes a scene."""
+    one = spec(seed=seed, scenes=index + 1)
+    cases, sweep = [{"scheme": "vertical"}], {"jammers.M.power_w": [1.0, 2.0]}
+    other = spec(seed=seed, scenes=index + scenes, gap=1e-3, cases=cases, sweep=sweep)
+    assert draw_scene(one, index) == draw_scene(other, index)
+    swept = scene_at(other, index, 1)
+    assert swept.jammers[0].power_w == 2.0
+    assert swept.jammers[0].position_m == draw_scene(one, index).jammers[0].position_m
+
+
+@given(index=st.integers(0, 10**6))
+def test_one_kind_leaves_the_others(spec: Spec, index: int) -> None:
+    """Other jammers leave the nodes as they are, and other powers the places."""
+    scene = draw_scene(spec(scenes=10**7), index)
+    farther = draw_scene(spec(scenes=10**7, jammers__radius_m=90.0, jammers__count=3), index)
+    stronger = draw_scene(spec(scenes=10**7, jammers__power_w=5.0), index)
+    assert farther.nodes == stronger.nodes == scene.nodes
+    assert stronger.jammers[0].position_m == scene.jammers[0].position_m
+
+
+@given(index=st.integers(0, 10**6), count=st.integers(1, 20))
+def test_more_points_keep_the_first(spec: Spec, index: int, count: int) -> None:
+    """A scene with more nodes has those of the one with fewer, in the same places with the same powers."""
+    changes = {"nodes__power_w": {"uniform": [1.0, 2.0]}, "nodes__height_m": {"normal": [0.0, 1.0]}}
+    drawn = spec(scenes=10**7, sweep={"nodes.count": [count, count + 5]}, **changes)
+    few, many = scene_at(drawn, index, 0), scene_at(drawn, index, 1)
+    assert (len(few.nodes), len(many.nodes)) == (count, count + 5)
+    assert many.nodes[:count] == few.nodes
+
+
+def test_a_known_scene_stays_what_it_is(spec: Spec) -> None:
+    """The numbers behind a seed are those of the first release: a study can be told by its spec."""
+    scene = draw_scene(spec(), 5)
+    assert scene.nodes[0].position_m == pytest.approx(KNOWN_NODE_M, abs=1e-12)
+    assert scene.jammers[0].position_m == pytest.approx(KNOWN_JAMMER_M, abs=1e-12)
+    assert scene.jammers[0].power_w == pytest.approx(KNOWN_POWER_W, abs=1e-12)
+
+
+def test_a_disc_is_filled_evenly(spec: Spec) -> None:
+    """Squared distances from the centre and bearings are uniform."""
+    offsets_m = _plane_m(_drawn(spec(scenes=10**6), "jammers", 1000)) - [0.0, 25.0]
+    shares = np.sum(offsets_m**2, axis=1) / 60.0**2
+    bearings = np.arctan2(offsets_m[:, 1], offsets_m[:, 0]) / (2.0 * math.pi) + 0.5
+    assert shares.max() <= 1.0
+    assert stats.kstest(shares, "uniform").pvalue > 0.01
+    assert stats.kstest(bearings, "uniform").pvalue > 0.01
+    assert abs(stats.spearmanr(shares, bearings).statistic) < 0.1
+
+
+def test_a_rectangle_is_filled_evenly(spec: Spec) -> None:
+    """Both coordinates are uniform, and do not go together."""
+    places_m = _plane_m(_drawn(spec(scenes=10**6), "nodes"))
+    shares = (places_m - [-20.0, 0.0]) / [40.0, 50.0]
+    assert stats.kstest(shares[:, 0], "uniform").pvalue > 0.01
+    assert stats.kstest(shares[:, 1], "uniform").pvalue > 0.01
+    assert abs(stats.spearmanr(shares[:, 0], shares[:, 1]).statistic) < 0.1
+
+
+def test_a_poisson_process_has_its_mean_and_variance(spec: Spec) -> None:
+    """The number of jammers has the variance of its mean, and the names count them."""
+    density = 4.0 / (math.pi * 3600.0)
+    drawn = spec(
+        scenes=10**6, jammers__layout="poisson", jammers__count=None, jammers__density_per_m2=density
+    )
+    counts = np.array([len(draw_scene(drawn, index).jammers) for index in range(800)])
+    assert counts.mean() == pytest.approx(4.0, abs=0.25)
+    assert counts.var() == pytest.approx(4.0, rel=0.2)
+    assert (counts == 0).any()
+    assert draw_scene(drawn, int(counts.argmax())).jammer_names[-1] == f"M{counts.max()}"
+
+
+def test_a_scene_without_nodes_is_drawn_again(spec: Spec) -> None:
+    """A Poisson process of nodes is one of at least one node."""
+    nodes = {"layout": "poisson", "density_per_m2": 1e-3, "x_m": [0, 20], "y_m": [0, 40], "power_w": 1.0}
+    counts = [len(draw_scene(spec(scenes=10**6, nodes=nodes), index).nodes) for index in range(500)]
+    assert min(counts) == 1
+    truncated = 0.8 / -math.expm1(-0.8)
+    assert np.mean(counts) == pytest.approx(truncated, abs=0.1)
+
+
+def test_clusters_spread_about_their_centres(spec: Spec) -> None:
+    """Each cluster has its number of points, with the spread stated."""
+    nodes = {
+        "layout": "clusters",
+        "parents": [2, 3],
+        "count": 40,
+        "spread_m": 2.0,
+        "x_m": [-500, 500],
+        "y_m": [-500, 500],
+        "power_w": 1.0,
+    }
+    drawn = spec(scenes=10**6, nodes=nodes)
+    spreads, sizes = [], set()
+    for index in range(20):
+        places_m = _plane_m(list(draw_scene(drawn, index).nodes)).reshape(-1, 40, 2)
+        sizes.add(len(places_m))
+        spreads += list(places_m.std(axis=1).ravel())
+    assert sizes == {2, 3}
+    assert np.mean(spreads) == pytest.approx(2.0, rel=0.05)
+
+
+def test_counts_are_drawn_evenly(spec: Spec) -> None:
+    """Each number of a range is as likely as another, both ends included."""
+    drawn = spec(scenes=10**6, jammers__count=[0, 3])
+    counts = np.bincount([len(draw_scene(drawn, index).jammers) for index in range(800)])
+    assert len(counts) == 4
+    assert stats.chisquare(counts).pvalue > 0.01
+
+
+def test_no_valid_scene_is_an_error(spec: Spec) -> None:
+    """Where every draw is refused, the drawing ends, and says how often it was tried."""
+    cramped = spec(
+        scene__airspace={"altitude_m": [1, 2], "x_m": [0, 1], "y_m": [0, 1], "keep_out_m": 500.0},
+    )
+    with pytest.raises(ScenarioError, match=r"no room for the vehicle.*after 100 draws"):
+        draw_scene(cramped, 0)
+
+
+def test_points_that_meet_the_vehicle_are_drawn_again(spec: Spec) -> None:
+    """Jammers whose uncertainty reaches into the airspace are drawn elsewhere; the nodes stay."""
+    heights = {"uniform": [0.0, 7.0]}
+    drawn = spec(scenes=10**6, jammers__uncertainty_m=5.0, jammers__height_m=heights)
+    heights_m = [draw_scene(drawn, index).jammers[0].position_m[2] for index in range(200)]
+    assert max(heights_m) < 3.0
+    assert [draw_scene(drawn, index).nodes for index in range(20)] == [
+        draw_scene(spec(scenes=10**6), index).nodes for index in range(20)
+    ]
+
+
+def test_a_star_sets_every_point_of_a_kind(spec: Spec) -> None:
+    """A swept path with a star reaches all, however many there are; none is no fault."""
+    drawn = spec(scenes=50, jammers__count=[0, 3], sweep={"jammers.*.power_w": [7.0]})
+    for index in range(50):
+        assert {jammer.power_w for jammer in scene_at(drawn, index, 0).jammers} <= {7.0}
+
+
+def test_a_swept_key_takes_the_place_of_its_other_unit(spec: Spec) -> None:
+    """Sweeping the power of what draws in dBm drops the one in W."""
+    scene = scene_at(spec(sweep={"jammers.power_dbm": [20.0]}), 0, 0)
+    assert (scene.jammers[0].power_w, scene.jammers[0].power_dbm) == (None, 20.0)
+
+
+def test_files_take_turns(spec: Spec, paper: Scenario) -> None:
+    """With several files scene i is the i-th of them, begun anew after the last; the rest is drawn."""
+    other = paper.model_copy(update={"receiver": {"noise_w": 2e-3, "reference_gain_db": 0.0}})
+    scene = {"scenarios": [paper.to_dict(), other.to_dict()]}
+    drawn = spec(scene=scene, nodes=None, scenes=4)
+    noises = [draw_scene(drawn, index).receiver.noise_w for index in range(4)]
+    assert noises == [1e-3, 2e-3, 1e-3, 2e-3]
+    assert draw_scene(drawn, 0).node_names == paper.node_names
+    assert draw_scene(drawn, 0).jammers[0].position_m != draw_scene(drawn, 2).jammers[0].position_m
+
+
+@pytest.mark.parametrize("index", [-1, 12, 1.5, True])
+def test_a_scene_that_is_not_there(spec: Spec, index: Any) -> None:
+    """Numbers outside the study are refused, with those that are in it."""
+    with pytest.raises(UsageError, match="allowed: 0 to 11"):
+        draw_scene(spec(), index)
+    with pytest.raises(UsageError, match="allowed: 0 to 0"):
+        scene_at(spec(), 0, 1)
+
+
+KNOWN_NODE_M = (10.829712729719212, 0.5433872580263732, 0.0)
+KNOWN_JAMMER_M = (19.44788720350625, 59.64147457992614, 4.0)
+KNOWN_POWER_W = 0.12169329644213805
