@@ -156,7 +156,8 @@ class Drone:
             return frame
         for i, (band, gain) in enumerate(gain_bands(doughnut_mesh(radius_m))):
             colour = tuple(int(c) for c in scale_colours(gain, 0.0, 1.0))
-            add_mesh(self._scene, f"{name}/band-{i}", band, colour, opacity=0.5, side="double")  # type: ignore[arg-type]
+            # its near side only: both of them, finely meshed, took a quarter of the time of a picture
+            add_mesh(self._scene, f"{name}/band-{i}", band, colour, opacity=0.5)  # type: ignore[arg-type]
         return frame
 
 

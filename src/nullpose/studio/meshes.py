@@ -71,7 +71,7 @@ class Mesh:
         return Mesh(self.vertices @ np.asarray(rotation, dtype=float).T, self.faces, self.values)
 
 
-def doughnut_mesh(radius_m: float, rings: int = 40, around: int = 48) -> Mesh:
+def doughnut_mesh(radius_m: float, rings: int = 24, around: int = 32) -> Mesh:
     """Return the dipole's pattern about the z axis: the distance is ``radius sin^2(gamma)`` (paper eq. 1.2).
 
     Its values are the gain, 1 broadside and 0 at the null.

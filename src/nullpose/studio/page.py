@@ -31,6 +31,8 @@ __all__ = ["Page", "camera_m"]
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
+_LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+
 _log = logging.getLogger("nullpose.studio")
 
 
@@ -62,6 +64,7 @@ class Page:
         self._open = True
         self._gesture = 0
         self._slid_at = 0.0
+        self._late: threading.Timer | None = None
         self._size_m = 0.0
         self._map_shown: tuple[FieldMap | None, str] = (None, NO_MAP)
         self._link_range_db = LINK_RANGE_DB
@@ -83,6 +86,7 @@ class Page:
         """
         with self._lock:
             self._open = False
+            self._not_late()
         return self.session.close(timeout_s)
 
     def _listen(self) -> None:
@@ -134,6 +138,7 @@ class Page:
             self._ground.dragged = None
             if not moved:
                 self._ground.restore(self.session.view)
+            self._refresh()
 
     def _load(self, file: Any) -> None:
         if self._do(lambda: self.session.load(file.content, file.name), file.name):
@@ -158,9 +163,29 @@ class Page:
             self._client.camera.look_at = look_at
 
     def _view_changed(self) -> None:
-        self._refresh()
+        if self._ground.dragged is None:
+            self._refresh()
+            return
+        with self._lock:  # one picture for each step of a drag, that with its answer
+            if self._late is None and self._open:
+                self._late = threading.Timer(_LATE_S, self._draw_late)
+                self._late.daemon = True
+                self._late.start()
+
+    def _draw_late(self) -> None:
+        with self._lock:
+            self._late = None
+            self._refresh()
+
+    def _not_late(self) -> None:
+        with self._lock:
+            if self._late is not None:
+                self._late.cancel()
+                self._late = None
 
     def _found(self, event: Event) -> None:
+        if event.version == self.session.version:
+            self._not_late()
         if isinstance(event, FieldMap) and event.version == self.session.version:
             self._map_shown = (None, NO_MAP)
         self._refresh()
@@ -224,11 +249,12 @@ class Page:
         answer = session.answer(view.case)
         current = session.is_current(answer)
         panel.readout.content = readout_html(session)
+        at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
         panel.plot.content = power_plot_svg(
             session.curve,
             version=session.version,
             power_db=view.power_db,
-            value=answer.shown_value if answer is not None and current else None,
+            value=answer.shown_value if answer is not None and current and at_rest else None,
             unit="dB" if answer is None else answer.quantity.unit,
         )
         panel.show_power(view.power_db, POWER_DB)

@@ -74,7 +74,10 @@ def _case_html(session: Session, slot: int) -> str:
     if answer is None or tone == "failed":
         return head
     shade = "" if session.is_current(answer) else "opacity:.4;"
-    return f'{head}<div data-np="numbers-{slot}" style="{shade}">{_numbers(answer, slot)}</div>'
+    return (
+        f'{head}<div data-np="numbers-{slot}" data-version="{answer.version}" style="{shade}">'
+        f"{_numbers(answer, slot)}</div>"
+    )
 
 
 def _numbers(answer: Answer, slot: int) -> str:

@@ -17,7 +17,6 @@ from nullpose.studio.meshes import (
     cone_mesh,
     diamond_mesh,
     ellipsoid_mesh,
-    prism_mesh,
     zone_mesh,
 )
 from nullpose.studio.view import PointKey, View
@@ -35,7 +34,7 @@ GIZMOS = "/points"
 _ZONE = (160, 60, 60)
 _WIRE = (150, 150, 150)
 _CROWD = 6  # more points than this have smaller labels
-_SLAB = (86, 150, 190)
+_AIRSPACE = (86, 150, 190)
 _MARKS = {"nodes": box_mesh, "jammers": cone_mesh, "eavesdroppers": diamond_mesh}
 _NICE_M = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 1e4)
 _FLAT = {"cast_shadow": False, "receive_shadow": False}
@@ -233,9 +232,7 @@ class Ground:
             outline = airspace.geofence_outline_m
         else:
             outline = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
-        slab = prism_mesh(outline, floor_m, max(ceiling_m, floor_m + 0.05))
-        self._around.append(add_mesh(self._scene, "/airspace/slab", slab, _SLAB, opacity=0.06, side="back"))
-        self._around.append(self._outline("/airspace/edges", outline, floor_m, ceiling_m, _SLAB))
+        self._around.append(self._outline("/airspace/edges", outline, floor_m, ceiling_m, _AIRSPACE))
         for i, zone in enumerate(airspace.no_fly):
             mesh = zone_mesh(zone, 0.0, ceiling_m)
             self._around.append(

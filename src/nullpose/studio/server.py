@@ -15,7 +15,7 @@ from nullpose.scenario import Scenario
 from nullpose.studio.map_kernel import MapKernel
 
 if TYPE_CHECKING:
-    from viser import ClientHandle, ViserServer
+    from viser import ClientHandle, SceneApi, ViserServer
 
 __all__ = ["LOOPBACK", "Studio", "open_server", "require_viser", "studio"]
 
@@ -57,7 +57,15 @@ def open_server(host: str, port: int) -> ViserServer:
     if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
         server.stop()
         raise UsageError(_port_in_use(port))
+    _light(server.scene)
     return server
+
+
+def _light(scene: SceneApi) -> None:
+    # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture
+    scene.configure_default_lights(cast_shadow=False)
+    scene.configure_environment_map(hdri=None)
+    scene.add_light_ambient("/light", intensity=1.6)
 
 
 def _port_in_use(port: int) -> str:
