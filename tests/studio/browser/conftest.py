@@ -73,6 +73,7 @@ def session(first_page: tuple[Page, Session]) -> Session:
     session.choose(OPTIMUM)
     session.compare(None)
     session.load(PAPER.to_toml().encode(), "paper.toml")
+    page.bring_to_front()  # one behind another draws nothing, and waits of it never end
     page.wait_for_function(
         f"+document.querySelector('[data-np=readout]').dataset.version == {session.version}"
     )
