@@ -14,12 +14,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, INK, VEHICLES, Curve, house_style
+from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"
 DIPOLES = ("level-vertical", "level-horizontal", "tilt-10", "tilt-30", "omnidirectional")
 LEAST_LOSS_DB = -12.0
+COMBININGS = {"digital": "-", "analogue": (0, (4, 2))}  # and their lines
+FIELD_SIZES, SIZE_SHADES = (2, 4, 8), ("#00204d", "#7c7b78", "#d8a800")
 MINUS = "\N{MINUS SIGN}"
 
 # Dark to light, each with a marker of its own: jamming powers and sizes of arrays.
@@ -131,64 +133,65 @@ def draw_arrays() -> None:
     """Draw how many elements a tilted dipole is worth: in the paper's scene, and over the random fields."""
     table = read("arrays")
     figure = Figure(figsize=(7.6, 3.9), layout="constrained")
-    axes, *panels = figure.subplots(1, 3, width_ratios=[1.15, 1.0, 1.0])
+    axes, *panels = figure.subplots(1, 3, width_ratios=[1.1, 1.0, 1.0])
     shown = table["jamming_ratio"] == 100.0
-    elements, look = table["elements"][shown], VEHICLES["array"]
-    axes.plot(elements, table["digital"][shown], color=INK, marker="P", linewidth=1.5, label="array, digital")
-    axes.plot(
-        elements,
-        table["analogue"][shown],
-        color=look.colour,
-        marker="x",
-        linestyle=(0, (4, 2)),
-        linewidth=1.5,
-        label="array, analogue",
-    )
-    whole = VEHICLES["omnidirectional"]
-    axes.axhline(
-        table["omnidirectional"][shown][0], color=whole.colour, linewidth=2.0, label="omnidirectional dipole"
-    )
+    for (combining, style), marker in zip(COMBININGS.items(), ("o", "x"), strict=True):
+        values = table[combining][shown]
+        axes.plot(table["elements"][shown], values, color=GREY, marker=marker, linestyle=style, linewidth=1.5)
+    whole = VEHICLES["omnidirectional"].colour
+    axes.axhline(table["omnidirectional"][shown][0], color=whole, linewidth=1.5)
     axes.set_xscale("log", base=2)
     axes.set_yscale("log", base=2)
-    axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
-    axes.set_yticks([0.5, 1, 2, 4, 8], ["0.5", "1", "2", "4", "8"])
+    axes.set_xlim(0.9, 8.9)
+    axes.set_ylim(0.5, 16.0)
+    axes.set_xticks([1, 2, 3, 4, 6, 8], ["1", "2", "3", "4", "6", "8"])
+    axes.set_yticks([0.5, 1, 2, 4, 8, 16], ["0.5", "1", "2", "4", "8", "16"])
     axes.minorticks_off()
     axes.set_xlabel("elements of the array")
     axes.set_ylabel("smallest SINR  (power ratio)")
     axes.set_title("paper's scene, $P_M/P$ = 100", fontsize=9.0)
-    axes.legend(frameon=False, fontsize=8.0, loc="upper left")
     draw_array_shares(panels)
+    handles = [Line2D([], [], color=whole, linewidth=1.5, label="omnidirectional dipole")]
+    for (combining, style), marker in zip(COMBININGS.items(), ("o", "x"), strict=True):
+        handles.append(Line2D([], [], color=GREY, linestyle=style, marker=marker, label=f"{combining} array"))
+    handles += [
+        Line2D([], [], color=shade, linewidth=1.8, label=f"{size} elements")
+        for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True)
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, handlelength=3.0)
     write(figure, "arrays")
 
 
 def draw_array_shares(panels: list[Axes]) -> None:
-    """Draw in how many random fields an array gives so much of what the omnidirectional dipole does.
+    """Draw in how many random fields an array gains so much, or less, over the omnidirectional dipole.
 
     Args:
         panels: one for each number of jammers.
     """
     arrays = read("field-arrays")
-    fields = {key: column[: len(arrays["nodes"])] for key, column in read("fields").items()}
-    handles = []
+    whole = dict(zip(field_names(read("fields")), read("fields")["omnidirectional"], strict=True))
+    dipole = np.array([whole[name] for name in field_names(arrays)])
     for axes, jammers in zip(panels, (1, 3), strict=True):
-        chosen = fields["jammers"] == jammers
-        for size, shade, marker in zip((2, 4, 8), SHADES, MARKERS, strict=False):
-            for combining, style in (("digital", "-"), ("analogue", (0, (4, 2)))):
-                gain = arrays[f"array-{size}-{combining}"][chosen] / fields["omnidirectional"][chosen]
-                (drawn,) = steps(axes, 10.0 * np.log10(gain), color=shade, linestyle=style, linewidth=1.5)
-                if combining == "digital" and jammers == 1:
-                    handles.append(Line2D([], [], color=shade, linewidth=1.5, label=f"{size} elements"))
-                drawn.set_marker(marker)
-                drawn.set_markevery(8)
-                drawn.set_markersize(3.6)
-        axes.axvline(0.0, color=VEHICLES["omnidirectional"].colour, linewidth=1.2, zorder=0.5)
+        chosen = arrays["jammers"] == jammers
+        for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True):
+            for combining, style in COMBININGS.items():
+                gain_db = 10.0 * np.log10(arrays[f"array-{size}-{combining}"][chosen] / dipole[chosen])
+                steps(axes, gain_db, color=shade, linestyle=style, linewidth=1.5)
+        axes.axvline(0.0, color=VEHICLES["omnidirectional"].colour, linewidth=1.5)
         axes.set_xlabel("gain over the\nomnidirectional dipole  (dB)")
-        axes.set_title(f"random fields, {jammers} jammer{'s' * (jammers > 1)}", fontsize=9.0)
-        axes.set_ylim(0.0, 1.0)
+        axes.set_title(f"{chosen.sum()} fields, {jammers} jammer{'s' * (jammers > 1)}", fontsize=9.0)
+        axes.set_ylim(0.0, 1.02)
         axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
     panels[0].set_ylabel("fields with no more")
-    handles.append(Line2D([], [], color=GREY, linestyle=(0, (4, 2)), linewidth=1.5, label="analogue"))
-    panels[0].figure.legend(handles=handles, loc="outside lower right", ncols=4, frameon=False, fontsize=8.0)
+
+
+def field_names(table: Table) -> list[tuple[float, ...]]:
+    """Return what tells each field of a table from the others: its nodes, its jammers and its number.
+
+    Args:
+        table: with a row for each field.
+    """
+    return list(zip(table["nodes"], table["jammers"], table["index"], strict=True))
 
 
 def steps(axes: Axes, values: FloatArray, **style: object) -> list[Line2D]:
