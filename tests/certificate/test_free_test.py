@@ -9,8 +9,15 @@ from hypothesis import strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.frames import Frames, frames_of
-from nullpose.certificate.free_test import Sum, add_band, add_cells, free_holds, negative_definite
+from nullpose.certificate.frames import Frames, expansion, frames_of
+from nullpose.certificate.free_test import (
+    Sum,
+    add_band,
+    add_cells,
+    free_holds,
+    negative_definite,
+    sharper,
+)
 from nullpose.certificate.interval import Interval
 from nullpose.family import AxisField
 
@@ -176,6 +183,36 @@ def test_constant_forms_are_enclosed(
         assert np.abs(np.linalg.eigvalsh(error)).max() <= float(total.rest.high[0]) + 1e-11
         if not turning:
             assert float(total.rest.high[0]) <= 1e-300
+
+
+def test_the_remainder_near_a_null_is_a_bound(
+    random_family: Callable, make_leaves: Callable, link_matrix: Callable
+) -> None:
+    """Along any axis a link is at least what the smaller remainder leaves of its expansion."""
+    rng = np.random.default_rng(7)
+    used = 0
+    for _ in range(150):
+        family, boxes = random_family(rng, 2, 2), one_box(rng)
+        centre, half = boxes.centre[0], boxes.half[0]
+        point = np.array([int(rng.integers(len(family.points_m)))])
+        away = family.points_m[point[0]] - centre
+        near_null = away / np.linalg.norm(away) + rng.normal(size=3) * 10.0 ** rng.uniform(-4.0, 0.0)
+        vector = near_null / np.linalg.norm(near_null)
+        frames = frames_of(family, make_leaves(1, test=np.array([WORLD])), boxes)
+        form, slopes, _, down = expansion(family, frames, boxes, point)
+        plain = down * boxes.half2 * 0.5
+        share, rest = sharper(form, vector[None], boxes, family.points_m[point], plain)
+        used += share[0] > 0.0
+        assert 0.0 <= share[0] < 1.0
+        here = vector @ full(form) @ vector
+        assert share[0] * here + rest.high[0] <= plain.high[0] * (1.0 + 1e-12)
+        corners = rng.choice([-1.0, 1.0], (20, 3)) * rng.choice([1.0, rng.uniform()], (20, 1))
+        for x in corners * half:
+            bound = full(form) + sum(h * full(each) for h, each in zip(x, slopes, strict=True))
+            exact = link_matrix(family.points_m[point[0]] - centre - x)
+            excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]
+            assert excess >= -1e-12 * np.trace(exact)
+    assert 20 < used < 150
 
 
 def mixes_of(rng: np.random.Generator, ratios: int, count: int) -> tuple[dict[int, float], ...]:

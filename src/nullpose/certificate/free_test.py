@@ -9,7 +9,7 @@ import numpy as np
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes, group_shares, mix_slots
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
 from nullpose.certificate.frames import (
     PAIRS,
     SWING,
@@ -26,6 +26,7 @@ from nullpose.family import AxisField, Family
 
 __all__ = ["Sum", "free_holds", "negative_definite"]
 
+_LARGEST_ETA = 0.5
 _DIAGONAL = np.sqrt(2.0) * (1.0 + 1e-12)  # a form's spread of eigenvalues over its Frobenius norm, rounded up
 
 
@@ -83,13 +84,26 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
         leaves: with frame, multipliers and level.
         boxes: to be tested.
     """
+    holds, vectors = _holds(family, field, leaves, boxes, None)
+    # near a null the denominators' remainders may be had smaller, in a frame at rest
+    left = np.flatnonzero(~holds & (leaves.test[boxes.leaf] != TOWARDS))
+    if len(left):
+        holds[left], _ = _holds(family, field, leaves, boxes.chosen(left), vectors[left])
+    return holds
+
+
+def _holds(
+    family: Family, field: AxisField, leaves: Leaves, boxes: Boxes, vectors: FloatArray | None
+) -> tuple[np.ndarray, FloatArray]:
+    """Return which boxes are excluded, and about the largest eigenvalues' vectors at their centres."""
     frames = frames_of(family, leaves, boxes)
     total = Sum.empty(boxes)
-    add_ratios(total, family, leaves, boxes, frames)
+    add_ratios(total, family, leaves, boxes, frames, vectors)
     add_cells(total, leaves, boxes, frames)
     add_band(total, field, leaves, boxes, frames)
     total.closed(frames)
     level_axes = ~frames.turning & (field.is_free and field.band[1] == 0.0)
+    top = top_vectors(total, level_axes)
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
         matrix = [m[rows] for m in total.matrix]
@@ -105,11 +119,17 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
                 slopes[e] = [m + g * slope for m, g in zip(slopes[e], gram, strict=True)]
         return at_corners(half, matrix, slopes, level_axes[rows])
 
-    return negative_where_allowed(family, leaves, boxes, test, lambda: steepest(total, level_axes))
+    return negative_where_allowed(family, leaves, boxes, test, lambda: steepest(total, top)), top
 
 
-def add_ratios(total: Sum, family: Family, leaves: Leaves, boxes: Boxes, frames: Frames) -> None:
-    """Add ``sum_k lambda_k (N_k - t D_g(k))``, denominators gathered by group."""
+def add_ratios(
+    total: Sum, family: Family, leaves: Leaves, boxes: Boxes, frames: Frames, vectors: FloatArray | None
+) -> None:
+    """Add ``sum_k lambda_k (N_k - t D_g(k))``, denominators gathered by group.
+
+    With vectors, (b, 3), along which the sums are largest, denominators that are small there get the
+    remainder that is sharp near a null if it is the smaller one; that asks for frames at rest.
+    """
     ratio, weight = mix_slots(leaves, boxes)
     half2 = boxes.half2 * 0.5
     zero = Interval(np.zeros(len(boxes)))
@@ -127,17 +147,64 @@ def add_ratios(total: Sum, family: Family, leaves: Leaves, boxes: Boxes, frames:
         # a numerator's remainder is bounded by the identity, anchored or not
         total.rest = total.rest + np.where(w > 0.0, (scale * up * half2).high, 0.0)
     for g, level in enumerate(levels):
-        if not np.any(shares[g].high > 0.0):
-            continue
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            where = np.full(len(boxes), family.denominator_point[e])
-            scale = level * family.denominator_weight[e]
-            form, slopes, _, down = expansion(family, frames, boxes, where)
+        if np.any(shares[g].high > 0.0):
+            add_denominator(total, family, g, level, boxes, frames, vectors)
+
+
+def add_denominator(
+    total: Sum,
+    family: Family,
+    g: int,
+    level: Interval,
+    boxes: Boxes,
+    frames: Frames,
+    vectors: FloatArray | None,
+) -> None:
+    """Add ``-level`` times what the points give to one denominator; a level of zero has no effect."""
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        where = np.full(len(boxes), family.denominator_point[e])
+        scale = level * family.denominator_weight[e]
+        form, slopes, _, down = expansion(family, frames, boxes, where)
+        rest = down * boxes.half2 * 0.5
+        if vectors is not None:
+            share, rest = sharper(form, vectors, boxes, family.points_m[where], rest)
+            total.add(-(scale * (1.0 - Interval(share))), form, slopes)
+        else:
             total.add(-scale, form, slopes)
-            used = np.where(shares[g].high > 0.0, (scale * down * half2).high, 0.0)
-            anchored = frames.turning & (where == frames.anchor)
-            total.rest = total.rest + np.where(anchored, 0.0, used)
-            total.across = total.across + np.where(anchored, used, 0.0)
+        used = np.where(level.high > 0.0, (scale * rest).high, 0.0)
+        anchored = frames.turning & (where == frames.anchor)
+        total.rest = total.rest + np.where(anchored, 0.0, used)
+        total.across = total.across + np.where(anchored, used, 0.0)
+
+
+def sharper(
+    form: list[Interval], vectors: FloatArray, boxes: Boxes, points: FloatArray, plain: Interval
+) -> tuple[FloatArray, Interval]:
+    """Return each box's eta and the remainder near a null, or zero and the plain one where that is smaller.
+
+    Args:
+        form: of one point, at the centres, in the world.
+        vectors: (b, 3) where it counts.
+        boxes: whose remainders they are.
+        points: (b, 3) the point.
+        plain: lemma 2's remainder, positive.
+    """
+    here = sum(
+        (1.0 if i == j else 2.0) * f.middle() * vectors[:, i] * vectors[:, j]
+        for f, (i, j) in zip(form, PAIRS, strict=True)
+    )
+    near = Interval(boxes.nearest2(points))
+    # (|x|^2 / a^3)^2, a being the least distance
+    square = boxes.half2.squared() / (near.squared() * near)
+    least = 1e-12 * sum(f.middle() for f in form[:3])
+    eta = np.sqrt(square.high / np.maximum(np.asarray(here), least))
+    use = (eta > 0.0) & (eta < _LARGEST_ETA)
+    eta = np.where(use, eta, _LARGEST_ETA)
+    rest = square / eta
+    use &= eta * np.asarray(here) + rest.high < plain.high
+    return np.where(use, eta, 0.0), Interval(
+        np.where(use, finite(rest.low), plain.low), np.where(use, finite(rest.high), plain.high)
+    )
 
 
 def add_cells(total: Sum, leaves: Leaves, boxes: Boxes, frames: Frames) -> None:
@@ -180,24 +247,33 @@ def add_constant(
     total.add(Interval(weight), congruent(frames, q), slopes)
 
 
-def steepest(total: Sum, level_axes: np.ndarray) -> FloatArray:
-    """Return about the gradient of the largest eigenvalue at the centres, (b, 3).
+def top_vectors(total: Sum, level_axes: np.ndarray) -> FloatArray:
+    """Return about the vectors of the largest eigenvalues at the centres, (b, 3).
 
     Args:
         total: the sums.
         level_axes: (b,) whether the level plane is all that counts.
     """
     full = np.zeros((len(level_axes), 3, 3))
-    slope = np.zeros((3, *full.shape))
     for m, (i, j) in enumerate(PAIRS):
         full[:, i, j] = full[:, j, i] = total.matrix[m].middle()
-        for e in range(3):
-            slope[e, :, i, j] = slope[e, :, j, i] = total.slopes[e][m].middle()
     full[level_axes, 2, :] = full[level_axes, :, 2] = 0.0
     full[level_axes, 2, 2] = -np.linalg.norm(full[level_axes], axis=(1, 2)) - 1.0
-    known = np.all(np.isfinite(full), axis=(1, 2))
-    full[~known] = 0.0
-    top = np.linalg.eigh(full)[1][:, :, -1]
+    full[~np.all(np.isfinite(full), axis=(1, 2))] = 0.0
+    return np.asarray(np.linalg.eigh(full)[1][:, :, -1])
+
+
+def steepest(total: Sum, top: FloatArray) -> FloatArray:
+    """Return about the gradient of the largest eigenvalue at the centres, (b, 3).
+
+    Args:
+        total: the sums.
+        top: (b, 3) the vectors of those eigenvalues.
+    """
+    slope = np.zeros((3, len(top), 3, 3))
+    for e in range(3):
+        for m, (i, j) in enumerate(PAIRS):
+            slope[e, :, i, j] = slope[e, :, j, i] = total.slopes[e][m].middle()
     gradient = np.einsum("bi,ebij,bj->be", top, slope, top)
     return np.where(np.isfinite(gradient), gradient, 0.0)
 

@@ -170,13 +170,12 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
         rests = expand_denominator(family, first, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    sharp = family[9].shape[0] > 0  # certificates do not know the sharper remainder
-    if excludes(family, domain, axis_field, view, row, below, sharp):
+    if excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
         for m in range(BAND, BALL):
             row[m] = favourite[m]
-        if excludes(family, domain, axis_field, view, row, below, sharp):
+        if excludes(family, domain, axis_field, view, row, below):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached = free_multipliers(family, axis_field, basis, row, denominator, coarseness, weights, axis)
@@ -190,7 +189,7 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
-    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below, sharp):
+    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)

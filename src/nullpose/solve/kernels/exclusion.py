@@ -65,6 +65,14 @@ def is_level(axis_field):
 
 
 @inner_kernel
+def negative_at_centre(matrix, level_axes):
+    """Return whether a matrix is negative definite, perhaps for level axes."""
+    if level_axes:
+        return matrix[0] < 0.0 and matrix[0] * matrix[1] - matrix[3] ** 2 > 0.0
+    return negative_definite(matrix[0], matrix[1], matrix[2], matrix[3], matrix[4], matrix[5])
+
+
+@inner_kernel
 def negative_at_corners(matrix, slopes, half, level_axes):
     """Return whether the linear matrix is negative definite at all eight corners, perhaps for level axes."""
     if level_axes:
@@ -161,7 +169,7 @@ def add_numerators(family, axis_field, view, row, matrix, slopes):
 
 
 @inner_kernel
-def excludes(family, domain, axis_field, view, row, below, sharp):
+def excludes(family, domain, axis_field, view, row, below):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
@@ -172,7 +180,6 @@ def excludes(family, domain, axis_field, view, row, below, sharp):
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
             denominator for all.
-        sharp: whether to try the sharper remainder too, which costs as much again.
     """
     if not row[COUNT] > 0.0:
         return False
@@ -186,14 +193,19 @@ def excludes(family, domain, axis_field, view, row, below, sharp):
         matrix[:], slopes[:, :] = 0.0, 0.0
         everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
     everywhere += add_numerators(family, axis_field, view, row, matrix, slopes)
+    row[NU] = 0.0
+    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
+    if row[BALL] < 0.0 and not negative_at_centre(matrix, level_axes):
+        return False
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
-    row[NU] = 0.0
-    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
     if negative_at_corners(matrix, slopes, half, level_axes):
         return True
-    if sharp and view[0] == WORLD and not level_axes:
+    if view[0] == WORLD:
+        if level_axes:  # what is off the level plane does not count
+            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+            matrix[4] = matrix[5] = 0.0
         sharpen(family, view, row, matrix, slopes)
         if negative_at_corners(matrix, slopes, half, level_axes):
             return True

@@ -284,6 +284,41 @@ def two_multipliers(first, second, v):
 
 
 @inner_kernel
+def axis_of(basis, back, w, axis):
+    """Fill the axis of the world, of any length, that whitened coordinates stand for."""
+    v = np.empty(3)
+    for i in range(3):
+        v[i] = back[i, 0] * w[0] + back[i, 1] * w[1] + back[i, 2] * w[2]
+    for i in range(3):
+        axis[i] = basis[i, 0] * v[0] + basis[i, 1] * v[1] + basis[i, 2] * v[2]
+
+
+@inner_kernel
+def pair_multipliers(axis_field, basis, back, forms, sides, weights, v):
+    """Fill the multipliers of two ratios and the axis that they leave; return the primal value.
+
+    Infinity if that axis is outside of the band, which has no multiplier then but should have one. Two forms
+    have no duality gap; nor do they on the level plane, where their values lie on an ellipse, of which a
+    largest minimum is a point wherever it may lie inside.
+    """
+    weights[0] = two_multipliers(forms[0], forms[1], v)
+    weights[1] = 1.0 - weights[0]
+    mix = np.empty(6)
+    for m in range(6):
+        mix[m] = weights[0] * forms[0, m] + weights[1] * forms[1, m]
+    primal = top_eigenvector(mix, v)
+    if axis_field[0] >= 2 and not is_level(axis_field):
+        axis_of(basis, back, v, mix)
+        upright = mix[2] ** 2
+        square = mix[0] ** 2 + mix[1] ** 2 + upright
+        if not axis_field[1][0] * square <= upright <= axis_field[1][1] * square:
+            return math.inf
+    for side in range(sides):
+        weights[2 + side] = 0.0
+    return primal
+
+
+@inner_kernel
 def smallest_form(forms, count, v):
     """Return the smallest of the first ``count`` forms at a vector."""
     smallest = math.inf
@@ -388,15 +423,10 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, we
     matrix, start = np.empty(6), np.empty(6)
     v = np.empty(3)
     sides = centre_forms(family, axis_field, basis, row, denominator, forms, back)
-    is_band = axis_field[0] >= 2
-    if ratios == 2 and sides == 0 and not is_band:
-        weights[0] = two_multipliers(forms[0], forms[1], v)
-        weights[1] = 1.0 - weights[0]
-        primal = 0.0
-        for m in range(6):
-            matrix[m] = weights[0] * forms[0, m] + weights[1] * forms[1, m]
-        primal = top_eigenvector(matrix, v)
-    else:
+    primal = math.inf
+    if ratios == 2 and row[FACE] < 0.0:
+        primal = pair_multipliers(axis_field, basis, back, forms, sides, weights, v)
+    if primal == math.inf:
         if not cell_start(axis_field, basis, back, row, start):
             return math.inf, 0.0
         accuracy = 1e-5 if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
@@ -408,11 +438,8 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, we
             top_eigenvector(matrix, v)
     keep_sides(axis_field, row, weights, ratios)
     keep_largest(weights, ratios, row)
-    for i in range(3):
-        matrix[i] = back[i, 0] * v[0] + back[i, 1] * v[1] + back[i, 2] * v[2]
-    for i in range(3):
-        axis[i] = basis[i, 0] * matrix[0] + basis[i, 1] * matrix[1] + basis[i, 2] * matrix[2]
-    if is_band:
+    axis_of(basis, back, v, axis)
+    if axis_field[0] >= 2:
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
         norm = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
