@@ -38,7 +38,26 @@ def test_both_poses_with_what_they_guarantee(solution: RobustSolution) -> None:
         assert f"{10 * np.log10(one.nominal):.2f} dB without errors" in title
         drones = [line.get_data_3d() for line in axes.lines if line.get_label() == "antenna axis (null)"]
         assert np.mean(drones[0], axis=1) == pytest.approx(one.pose.position_m)
-    assert "M up to 3 m" in figure.get_suptitle()
+    assert "smallest SINR; errors: axis 2 deg, position 0.5 m, M up to 3 m" in figure.get_suptitle()
+
+
+def test_titles_have_room(solution: RobustSolution) -> None:
+    """Neither panel's title reaches into the other's, in dB or in bits/s/Hz; many errors are cut short."""
+    data = load(EXAMPLE.with_name("eavesdropper.toml")).to_dict()
+    data["eavesdroppers"][0]["uncertainty_m"] = [6.0, 3.0, 1.5]
+    data["receiver"]["attitude_error_deg"] = 1.0
+    data["eavesdroppers"] += [
+        {"name": f"listener {index}", "position_m": [200.0, 10.0 * index, 0.0], "uncertainty_m": 2.0}
+        for index in range(12)
+    ]
+    rate = solve_robust(Scenario.from_dict(data), certify=False)
+    for figure in (draw_robust(solution), draw_robust(rate)):
+        figure.canvas.draw()
+        first, second = (axes.title.get_window_extent() for axes in figure.axes)
+        assert 0.0 < first.x0 < first.x1 < second.x0 < second.x1 < figure.bbox.x1
+        assert figure.get_suptitle().count("\n") == 1
+        assert figure._suptitle.get_window_extent().y0 > first.y1
+    assert figure.get_suptitle().endswith(" ...")
 
 
 def test_both_panels_show_the_same_space(solution: RobustSolution) -> None:

@@ -67,7 +67,9 @@ def draw_array(solution: ArraySolution) -> Figure:
 
 
 def _view(solution: ArraySolution) -> View:
-    """Return the camera that sees the array's heading more from the side."""
+    """Return the camera, for a row of elements the one that sees it more from the side."""
+    if solution.layout != "linear":
+        return ALONE
 
     def across(azimuth_deg: float) -> float:
         return abs(math.sin(solution.yaw_rad - math.radians(azimuth_deg)))

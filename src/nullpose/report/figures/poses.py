@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_pose", "draw_poses", "draw_robust"]
 
+_LETTERS = 100  # in a line of a title
 _MINUS = "\N{MINUS SIGN}"
 
 
@@ -58,7 +60,8 @@ def draw_pose(solution: Solution) -> Figure:
     """
     scenario, pose = solution.scenario, solution.pose
     angles = _angle_words(scenario, pose)
-    head = f"{plain_name(scenario)}\n{_value_words(solution.objective)}{f', {angles}' if angles else ''}"
+    words = f"{_value_words(solution.objective)}{f', {angles}' if angles else ''}"
+    head = f"{plain_name(scenario)}\n{textwrap.fill(words, _LETTERS)}"
     return _draw([Stage(scenario=scenario, poses=(pose,), view=ALONE)], [pose], [], head.strip())
 
 
@@ -77,7 +80,10 @@ def draw_robust(solution: RobustSolution) -> Figure:
         f"{name}\n{_guarantee_words(scenario, one)}"
         for name, one in zip(("robust pose", "best pose as stated"), both, strict=True)
     ]
-    head = f"{plain_name(scenario)}\nerrors: {escaped(error_words(scenario))}".strip()
+    errors = f"{Quantity.of(scenario).smallest}; errors: {error_words(scenario)}"
+    head = (
+        f"{plain_name(scenario)}\n{escaped(textwrap.shorten(errors, _LETTERS, placeholder=' ...'))}".strip()
+    )
     return _draw([stage, stage], poses, titles, head)
 
 
@@ -109,10 +115,11 @@ def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:
     """Return what a pose guarantees, and what it gives without errors, in the quantity's unit."""
     quantity = Quantity.of(scenario)
     digits = 3 if quantity.is_rate else 2
-    shown = [f"{quantity.in_unit(value):.{digits}f}" for value in (one.guaranteed, one.nominal)]
-    unit = quantity.unit
-    words = f"{quantity.smallest} {shown[0]} {unit} guaranteed, {shown[1]} {unit} without errors"
-    return words.replace("-inf", f"{_MINUS}\N{INFINITY}").replace("-", _MINUS)
+    guaranteed, stated = (
+        f"{quantity.in_unit(value):.{digits}f}".replace("inf", "\N{INFINITY}").replace("-", _MINUS)
+        for value in (one.guaranteed, one.nominal)
+    )
+    return f"{guaranteed} {quantity.unit} guaranteed, {stated} {quantity.unit} without errors"
 
 
 def _angle_words(scenario: Scenario, pose: Pose, *, first: bool = False) -> str:
