@@ -175,11 +175,15 @@ def draw_array_shares(panels: list[Axes]) -> None:
         chosen = arrays["jammers"] == jammers
         for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True):
             for combining, style in COMBININGS.items():
-                gain_db = 10.0 * np.log10(arrays[f"array-{size}-{combining}"][chosen] / dipole[chosen])
+                reached = arrays[f"array-{size}-{combining}"]
+                if combining == "digital":  # what one beam reaches it reaches too, whatever its search found
+                    reached = np.maximum(reached, arrays[f"array-{size}-analogue"])
+                gain_db = 10.0 * np.log10(reached[chosen] / dipole[chosen])
                 steps(axes, gain_db, color=shade, linestyle=style, linewidth=1.5)
         axes.axvline(0.0, color=VEHICLES["omnidirectional"].colour, linewidth=1.5)
         axes.set_xlabel("gain over the\nomnidirectional dipole  (dB)")
         axes.set_title(f"{chosen.sum()} fields, {jammers} jammer{'s' * (jammers > 1)}", fontsize=9.0)
+        axes.set_xlim(left=-0.06 * axes.get_xlim()[1])  # the dipole's line stands off the axis
         axes.set_ylim(0.0, 1.02)
         axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
     panels[0].set_ylabel("fields with no more")

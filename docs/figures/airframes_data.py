@@ -40,7 +40,7 @@ ERROR_CASES = ("tilt-10", "omnidirectional")
 NODES, JAMMERS, SCENES = (2, 5, 10), (1, 3), 16
 FIELD_GAP, FIELD_LIMIT_S = 1e-3, 120.0
 FIELD_SIZES = (2, 4, 8)
-ARRAY_FIELDS = 30  # the first of them
+ARRAY_FIELDS = 48  # the first of them
 
 Row = list[object]
 

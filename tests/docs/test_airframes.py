@@ -34,6 +34,9 @@ def _joined() -> tuple[Table, Table]:
     arrays, dipoles = _table("field-arrays"), _table("fields")
     rows = {key: index for index, key in enumerate(_names(dipoles))}
     order = [rows[key] for key in _names(arrays)]
+    for size in (2, 4, 8):  # what one beam reaches, weights for each node do too
+        both = [arrays[f"array-{size}-{combining}"] for combining in COMBININGS]
+        arrays[f"array-{size}-digital"] = np.maximum(*both)
     return arrays, {key: column[order] for key, column in dipoles.items()}
 
 
