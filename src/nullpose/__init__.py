@@ -40,7 +40,17 @@ if TYPE_CHECKING:
         json_schema,
         load,
     )
-    from nullpose.solve import Scheme, Solution, Status, compare, solve
+    from nullpose.solve import (
+        ArraySolution,
+        ManySolutions,
+        Scheme,
+        Solution,
+        Status,
+        compare,
+        solve,
+        solve_array,
+        solve_many,
+    )
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
     from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
 
@@ -51,10 +61,12 @@ __all__ = [
     "AirframeComparison",
     "Airspace",
     "Array",
+    "ArraySolution",
     "Eavesdropper",
     "Fault",
     "Jammer",
     "Link",
+    "ManySolutions",
     "NoFlyZone",
     "Node",
     "NullposeError",
@@ -85,6 +97,8 @@ __all__ = [
     "min_sinr",
     "pose_frames",
     "solve",
+    "solve_array",
+    "solve_many",
     "solve_robust",
     "sweep",
 ]
@@ -123,7 +137,17 @@ _ROOMS = {
         "json_schema",
         "load",
     ),
-    "nullpose.solve": ("Scheme", "Solution", "Status", "compare", "solve"),
+    "nullpose.solve": (
+        "ArraySolution",
+        "ManySolutions",
+        "Scheme",
+        "Solution",
+        "Status",
+        "compare",
+        "solve",
+        "solve_array",
+        "solve_many",
+    ),
     "nullpose.solve.robust": ("RobustSolution", "guarantee", "solve_robust"),
     "nullpose.study": ("AirframeComparison", "SweepTable", "compare_airframes", "sweep"),
 }

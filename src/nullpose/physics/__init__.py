@@ -31,6 +31,7 @@ from nullpose.physics.frames import (
     pose_frames,
 )
 from nullpose.physics.gain import antenna_gain, elevation_cosine
+from nullpose.physics.many import margins_of_many
 from nullpose.physics.maximum_gain import (
     maximum_gain_axis,
     maximum_gain_sinr,
@@ -38,7 +39,12 @@ from nullpose.physics.maximum_gain import (
 )
 from nullpose.physics.objective import margin, objective_value
 from nullpose.physics.pose import Pose
-from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
+from nullpose.physics.rotation import (
+    antenna_axis,
+    attitude_from_axis,
+    attitude_within_tilt,
+    rotation_world_from_body,
+)
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
@@ -56,6 +62,7 @@ __all__ = [
     "antenna_gain",
     "array_channels",
     "attitude_from_axis",
+    "attitude_within_tilt",
     "beam_sinr",
     "digital_sinr",
     "digital_weights",
@@ -67,6 +74,7 @@ __all__ = [
     "frd_from_flu",
     "from_db",
     "margin",
+    "margins_of_many",
     "maximum_gain_axis",
     "maximum_gain_sinr",
     "maximum_gain_sinr_as_printed",

@@ -17,7 +17,7 @@ def received_power_w(
     axis: ArrayLike,
     points_m: ArrayLike,
     powers_w: ArrayLike,
-    reference_gain: float,
+    reference_gain: ArrayLike,
 ) -> FloatArray:
     """Return the power that the drone receives from each ground transmitter.
 
@@ -29,8 +29,8 @@ def received_power_w(
     Args:
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
-        points_m: transmitters, shape ``(m, 3)``, metres.
-        powers_w: their powers, shape ``(m,)``, watts.
+        points_m: transmitters, shape ``(m, 3)``, metres, or ``(..., m, 3)`` where they differ.
+        powers_w: their powers, shape ``(m,)``, watts; likewise.
         reference_gain: path gain at 1 m, a power ratio.
 
     Returns:
@@ -39,7 +39,9 @@ def received_power_w(
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     distance_sq = np.sum(to_points**2, axis=-1)  # m^2
     gain = antenna_gain(position_m, axis, points_m)
-    return np.asarray(reference_gain * gain * np.asarray(powers_w, dtype=float) / distance_sq)
+    return np.asarray(
+        np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
+    )
 
 
 def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:

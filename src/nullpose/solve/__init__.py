@@ -6,6 +6,7 @@ from nullpose.solve.array_solution import ArraySolution, ArrayStats
 from nullpose.solve.compiling import announce_compiling
 from nullpose.solve.evidence import certificate_of
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
+from nullpose.solve.many import ManySolutions, solve_many
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
@@ -15,6 +16,7 @@ __all__ = [
     "TIME_LIMIT_S",
     "ArraySolution",
     "ArrayStats",
+    "ManySolutions",
     "Objective",
     "Scheme",
     "Solution",
@@ -30,4 +32,5 @@ __all__ = [
     "not_applicable",
     "solve",
     "solve_array",
+    "solve_many",
 ]

@@ -34,6 +34,7 @@ def solve(
     gap: float | None = None,
     time_limit_s: float = TIME_LIMIT_S,
     node_limit: int = NODE_LIMIT,
+    threads: int | None = None,
     certify: bool = True,
     seed: int = 0,
     null_jammer: str | None = None,
@@ -55,6 +56,8 @@ def solve(
             below 1 bit/s/Hz is proved to so much of itself, one beyond to so many bits/s/Hz.
         time_limit_s: seconds after which the proof stops.
         node_limit: boxes after which the proof stops.
+        threads: of a long proof at most; None for one for each processor. With one, and no time limit in the
+            way, the answer is the same on every machine.
         certify: whether to prove anything; without it the search alone is run, more thoroughly.
         seed: seed of the multistart, a whole number of at least 0; equal seeds give equal answers.
         null_jammer: zero interference only: the jammer to null; without it, each is tried.
@@ -78,6 +81,7 @@ def solve(
         gap=target,
         time_limit_s=time_limit_s,
         node_limit=node_limit,
+        threads=threads,
         of_rate=scenario.objective == "secrecy-rate",
     )
     effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)

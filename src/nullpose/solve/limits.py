@@ -45,6 +45,8 @@ class Limits:
         gap: relative gap between bound and value at which it is done; of a rate, see ``of_rate``.
         time_limit_s: seconds after which it stops with the bound reached.
         node_limit: nodes after which it stops.
+        threads: threads of a long proof at most; None for one for each processor. One thread gives the same
+            bounds and poses on any machine, as long as no time limit ends it.
         of_rate: whether the gap is one of the rate, ``log2`` of the ratio: relative to a rate between
             ``LEAST_RATE_BPS_HZ`` and 1 bit/s/Hz, and to those beyond.
 
@@ -55,6 +57,7 @@ class Limits:
     gap: float
     time_limit_s: float = TIME_LIMIT_S
     node_limit: int = NODE_LIMIT
+    threads: int | None = None
     of_rate: bool = False
 
     def __post_init__(self) -> None:
@@ -64,6 +67,11 @@ class Limits:
             raise UsageError(f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds")
         if isinstance(self.node_limit, bool) or not isinstance(self.node_limit, int) or self.node_limit < 1:
             raise UsageError(f"node limit: given {self.node_limit!r}; allowed: a whole number of at least 1")
+        whole = isinstance(self.threads, int) and not isinstance(self.threads, bool)
+        if self.threads is not None and not (whole and self.threads >= 1):
+            raise UsageError(
+                f"threads: given {self.threads!r}; allowed: a whole number of at least 1, or None"
+            )
 
     def ratio_gap(self, value: float) -> float:
         """Return the relative gap of the smallest ratio that closes the gap asked for.

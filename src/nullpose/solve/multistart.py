@@ -15,12 +15,13 @@ from nullpose.family import AxisField, Family
 from nullpose.solve.found import Found
 from nullpose.solve.warming import warm_kernels
 
-__all__ = ["SearchSettings", "landmarks", "multistart"]
+__all__ = ["CLIMBS", "SearchSettings", "landmarks", "multistart", "shift_of"]
 
 FloatArray = NDArray[np.float64]
 
 
-_CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)  # barrier weights
+CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
+"""Barrier weights of the climbs after a search."""
 _CLIMB_STEPS = 300
 _SAME = 1e-12
 _PAIRED = 4  # interferers whose lines are looked at
@@ -72,7 +73,12 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
 
 
 @cache
-def _shift(seed: int) -> FloatArray:
+def shift_of(seed: int) -> FloatArray:
+    """Return the offset of the low-discrepancy sequence, (3,), that a seed stands for.
+
+    Args:
+        seed: a whole number of at least 0.
+    """
     return np.random.default_rng(seed).uniform(size=3)
 
 
@@ -99,7 +105,7 @@ def multistart(
     warm_kernels(family, axis_field)
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
     multipliers = np.empty(len(family.numerator_point))
-    shift = _shift(seed)
+    shift = shift_of(seed)
     log_value, starts, evaluations = search(
         family.arrays,
         family.domain,
@@ -118,7 +124,7 @@ def multistart(
         raise SolveError(
             "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
         )
-    for mu in _CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
+    for mu in CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
         before = log_value
         log_value, steps = polish(
             family.arrays,

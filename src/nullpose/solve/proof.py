@@ -17,16 +17,18 @@ from nullpose.solve.crew import Crew, Task, processors
 from nullpose.solve.found import Found
 from nullpose.solve.limits import Limits
 
-__all__ = ["INTERRUPT", "Proof", "Spent", "prove"]
+__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "Proof", "Spent", "prove"]
 
 FloatArray = NDArray[np.float64]
 
-_DIRECT_NODES = 20_000  # a first try at the target; most problems of the paper's size need a few hundred
+DIRECT_NODES = 20_000
+"""Nodes of a first try at the target; most problems of the paper's size need a few hundred."""
 _STAGE = 0.25  # each stage's gap, as a share of the one before
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
 _MOST_LEAVES = 500_000
 _WIDEST_GAP = 1e6
-_INSIDE = 1.0 - 1e-4  # the gap that is aimed at, of the gap that is asked for: value and bound are rounded
+INSIDE = 1.0 - 1e-4
+"""The gap that is aimed at, of the gap that is asked for: value and bound are rounded."""
 
 INTERRUPT = "an interrupt"
 """The reason of a run that was ended by Ctrl-C."""
@@ -60,10 +62,12 @@ class Spent:
     Args:
         seconds: time.
         nodes: nodes examined.
+        direct: whether the target was tried directly, in vain.
     """
 
     seconds: float = 0.0
     nodes: int = 0
+    direct: bool = False
 
 
 class _Run:
@@ -90,7 +94,7 @@ class _Run:
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
         self.doubt = 0.0
-        self.target = _INSIDE * limits.ratio_gap(self.value)
+        self.target = INSIDE * limits.ratio_gap(self.value)
         self.favourite = self._favourite()
 
     @property
@@ -231,7 +235,8 @@ def prove(
             KeyboardInterrupt during the run ends it with the bound reached.
         spent: what was spent of the limits before.
     """
-    run = _Run(family, axis_field, found, limits, on_progress, spent or Spent())
+    spent = spent or Spent()
+    run = _Run(family, axis_field, found, limits, on_progress, spent)
     root = run.root()
     leaves = run.by_distance(root)
     target = run.target
@@ -239,11 +244,13 @@ def prove(
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result(root, leaves, "")
-        done, reason = run.stage(target, root, min(_DIRECT_NODES, run.node_limit))
+        done, reason = root, "tried before"
+        if not spent.direct:
+            done, reason = run.stage(target, root, min(DIRECT_NODES, run.node_limit))
         if not reason:
             leaves = run.shown(done, leaves)
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
-            threads = processors()
+            threads = limits.threads or processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = max(target, _STAGE * gap)
