@@ -31,7 +31,10 @@ autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray")}
 python_use_unqualified_type_names = True
 # Types of other packages have no pages here, and the build asks no network for theirs.
 nitpick_ignore_regex = [
-    (r"py:.*", r"(numpy|np|pydantic|typing|collections|matplotlib|rich|pathlib|os|enum|abc)(\..*)?"),
+    (
+        r"py:.*",
+        r"(numpy|np|pydantic|typing|collections|matplotlib|rich|pandas|pd|xarray|xr|pyarrow|pa|pathlib|os|enum|abc)(\..*)?",
+    ),
     (r"py:.*", r".*(ArrayLike|NDArray|FloatArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)"),
 ]
 

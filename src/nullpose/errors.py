@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 __all__ = [
     "CertificateError",
+    "ClusterError",
     "Fault",
     "NullposeError",
     "OutputError",
@@ -63,6 +64,10 @@ class UsageError(NullposeError, ValueError):
 
 class CertificateError(NullposeError, ValueError):
     """A file that is no certificate, or one made for another scenario than the one inside."""
+
+
+class ClusterError(NullposeError, RuntimeError):
+    """A cluster that is not there, went away, or whose workers cannot do the work."""
 
 
 class OutputError(NullposeError, OSError):

@@ -11,6 +11,15 @@ from nullpose.solve import Scheme
 
 PAGE = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
 VERBS = typer.main.get_command(app).commands
+COMMANDS = {
+    " ".join((verb, *rest)): command
+    for verb, group in VERBS.items()
+    for rest, command in (
+        {(name,): inner for name, inner in group.commands.items()}
+        if hasattr(group, "commands")
+        else {(): group}
+    ).items()
+}
 SHARED = PAGE.split("## Options that several verbs share")[1].split("\n## ")[0]
 
 
@@ -21,13 +30,13 @@ def _section(verb: str) -> str:
 def _options(verb: str) -> set[str]:
     return {
         name
-        for parameter in VERBS[verb].params
+        for parameter in COMMANDS[verb].params
         for name in (*parameter.opts, *parameter.secondary_opts)
         if name.startswith("--") and name != "--help"
     }
 
 
-@pytest.mark.parametrize("verb", sorted(VERBS))
+@pytest.mark.parametrize("verb", sorted(COMMANDS))
 def test_every_option_is_on_the_page(verb: str) -> None:
     """An option of a verb is in the verb's own section, or in a row of the shared table that names it."""
     rows = [row for row in SHARED.splitlines() if f"`{verb}`" in row or "| all but" in row]
@@ -37,7 +46,7 @@ def test_every_option_is_on_the_page(verb: str) -> None:
 
 def test_nothing_else_is_on_the_page() -> None:
     """Every option that the page names belongs to a verb or to the program."""
-    known = {"--help", "--version"}.union(*(_options(verb) for verb in VERBS))
+    known = {"--help", "--version"}.union(*(_options(verb) for verb in COMMANDS))
     assert set(re.findall(r"(?<![-\w])--[a-z][a-z-]*", PAGE)) <= known
 
 

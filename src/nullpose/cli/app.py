@@ -14,6 +14,7 @@ from nullpose.cli.reproduce import reproduce
 from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
+from nullpose.cli.study import study
 from nullpose.cli.sweep import sweep
 from nullpose.cli.verify import verify
 
@@ -55,6 +56,7 @@ def nullpose(
 
 for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema):
     app.command()(_verb)
+app.add_typer(study)
 
 
 def main() -> None:

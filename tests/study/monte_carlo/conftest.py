@@ -1,13 +1,22 @@
 """Specs small enough to be run many times."""
 
+import contextlib
 import copy
-from collections.abc import Callable
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 
-from nullpose.study.monte_carlo import StudySpec
+from nullpose.scenario.toml_text import toml_text
+from nullpose.study.monte_carlo import StudySpec, read_study
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "study.toml"
@@ -73,3 +82,92 @@ def quick(spec: Callable[..., StudySpec]) -> Callable[..., StudySpec]:
     """A study whose scenes take less than a millisecond: a pose that is given."""
     pose = {"name": "hover", "pose": {"position_m": [0.0, 25.0, 10.0], "roll_deg": 90.0}}
     return lambda **changes: spec(**{"cases": [pose], **changes})
+
+
+class Farm:
+    """Processes that a test starts, all of which end with it.
+
+    Args:
+        folder: where they leave their files.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.started: list[subprocess.Popen[str]] = []
+        self.address = ""
+        self.environment = os.environ | {"COLUMNS": "200"}
+
+    def start(self, *arguments: object) -> subprocess.Popen[str]:
+        """Starts a Python module as a program, in a group of its own."""
+        process = subprocess.Popen(
+            [sys.executable, "-m", *(str(argument) for argument in arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env=self.environment,
+            start_new_session=True,
+        )
+        self.started.append(process)
+        return process
+
+    def scheduler(self) -> subprocess.Popen[str]:
+        """Starts a scheduler on a free port of this machine, and waits until it can be reached."""
+        file = self.folder / f"scheduler-{len(self.started)}.json"
+        options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file)
+        process = self.start("dask", "scheduler", *options)
+        self.until(lambda: file.exists() and file.read_text(encoding="utf-8").strip().endswith("}"))
+        self.address = json.loads(file.read_text(encoding="utf-8"))["address"]
+        return process
+
+    def worker(self, *options: object) -> subprocess.Popen[str]:
+        """Starts a worker of the scheduler; killed, it stays away."""
+        usual = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", self.folder)
+        return self.start("dask", "worker", self.address, *usual, *options)
+
+    def client(self, spec: Path, out: Path, *options: object) -> subprocess.Popen[str]:
+        """Starts `nullpose study run` on the scheduler."""
+        return self.start(
+            "nullpose", "study", "run", spec, "--out", out, "--scheduler", self.address, *options
+        )
+
+    @staticmethod
+    def until(met: Callable[[], object], seconds: float = 60.0) -> None:
+        """Waits until something holds."""
+        deadline = time.monotonic() + seconds
+        while not met():
+            assert time.monotonic() < deadline, "it did not happen in time"
+            time.sleep(0.02)
+
+    def end(self) -> None:
+        """Kills what is still there, with what it started."""
+        for process in self.started:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+
+
+@pytest.fixture
+def farm(tmp_path: Path) -> Iterator[Farm]:
+    """Processes that end with the test."""
+    farm = Farm(tmp_path)
+    yield farm
+    farm.end()
+
+
+@pytest.fixture(scope="session")
+def spec_file(tables: Tables) -> Callable[..., Path]:
+    """Writes the quick study, with changes, to a file of a folder."""
+
+    def written(folder: Path, **changes: Any) -> Path:
+        pose = {"name": "hover", "pose": {"position_m": [0.0, 25.0, 10.0], "roll_deg": 90.0}}
+        path = folder / "spec.toml"
+        path.write_text(toml_text(tables(**{"cases": [pose], **changes})), encoding="utf-8")
+        return path
+
+    return written
+
+
+@pytest.fixture(scope="session")
+def rows() -> Callable[[Path], pd.DataFrame]:
+    """The rows of a study's folder, without what differs from run to run."""
+    return lambda folder: read_study(folder).frame().drop(columns="seconds")

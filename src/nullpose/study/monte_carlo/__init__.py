@@ -7,7 +7,7 @@ from nullpose.study.monte_carlo.progress import StudyProgress
 from nullpose.study.monte_carlo.reading import StudyTable, read_study
 from nullpose.study.monte_carlo.run import run_study
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.status import StudyStatus, study_status
+from nullpose.study.monte_carlo.status import StudyStatus, study_spec, study_status
 
 __all__ = [
     "StudyCase",
@@ -20,5 +20,6 @@ __all__ = [
     "read_study",
     "run_study",
     "scene_at",
+    "study_spec",
     "study_status",
 ]

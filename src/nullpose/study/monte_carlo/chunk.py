@@ -14,7 +14,7 @@ from nullpose.study.monte_carlo.solving import reason_of, solved_row
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import fingerprint
 
-__all__ = ["Done", "failed_rows", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
+__all__ = ["Done", "failed_rows", "joined", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
 
 _CALIBRATED_S = 0.3  # so much work tells how long a scene takes
 _MOST_CALIBRATED = 1000
@@ -30,8 +30,9 @@ class Done:
         rows: how many rows there are.
         failed: how many of them are failures.
         seconds: how long the work took.
-        content: the rows as a Parquet file; empty if the worker's nullpose is not the client's.
-        fingerprint: which nullpose did it.
+        content: the rows as a Parquet file; empty if there are none.
+        fingerprint: which nullpose did it; none is done by another than the client's.
+        fault: what went wrong beyond a scene of its own; empty if nothing did.
     """
 
     first: int
@@ -41,6 +42,7 @@ class Done:
     seconds: float
     content: bytes
     fingerprint: str
+    fault: str = ""
 
 
 def rows_of(spec: StudySpec, first: int, last: int) -> Iterator[Row]:
@@ -91,8 +93,32 @@ def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: flo
     return Done(first, last, len(rows), failed, seconds, content, fingerprint())
 
 
+def joined(pieces: list[Done]) -> Done:
+    """Return parts that follow one another as one.
+
+    Args:
+        pieces: at least one, in order.
+    """
+    import io
+
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    return Done(
+        pieces[0].first,
+        pieces[-1].last,
+        sum(piece.rows for piece in pieces),
+        sum(piece.failed for piece in pieces),
+        sum(piece.seconds for piece in pieces),
+        as_parquet(pa.concat_tables([pq.read_table(io.BytesIO(piece.content)) for piece in pieces])),
+        pieces[0].fingerprint,
+    )
+
+
 def solve_chunk(spec_json: str, expected: str, first: int, last: int) -> Done:
     """Return the rows of some scenes; this is what is sent to a worker.
+
+    It raises nothing: not every exception finds its way from one process to another.
 
     Args:
         spec_json: the study as JSON.
@@ -100,12 +126,15 @@ def solve_chunk(spec_json: str, expected: str, first: int, last: int) -> Done:
         first: the first scene.
         last: the last scene.
     """
-    if fingerprint() != expected:  # told, not raised: the client says what to do about it
+    if fingerprint() != expected:
         return Done(first, last, 0, 0, 0.0, b"", fingerprint())
-    spec = _spec(spec_json)
     began = time.perf_counter()
-    rows = list(rows_of(spec, first, last))
-    return packed(spec, rows, first, last, time.perf_counter() - began)
+    try:
+        spec = _spec(spec_json)
+        rows = list(rows_of(spec, first, last))
+        return packed(spec, rows, first, last, time.perf_counter() - began)
+    except Exception as error:
+        return Done(first, last, 0, 0, 0.0, b"", expected, fault=reason_of(error))
 
 
 def seconds_per_scene(spec_json: str) -> float:

@@ -32,6 +32,7 @@ class Ledger:
         self.fingerprint = fingerprint()
         self.workers = 0
         self.chunk = 1
+        self.is_open = False
         self._finished = bytearray()  # a byte for each part: there may be millions
         self._done = self._rows = self._failed = self._before = 0
         self._began = time.monotonic()
@@ -45,7 +46,7 @@ class Ledger:
         Raises:
             OutputError: the folder cannot be written.
         """
-        self.chunk = chunk
+        self.chunk, self.is_open = chunk, True
         self._finished = bytearray(-(-self.spec.n_scenes // chunk))
         kept, redone = self._store.mend()
         for part in kept:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from nullpose.errors import UsageError
+from nullpose.errors import ClusterError, UsageError
 from nullpose.study.files import prepare_folder
 from nullpose.study.monte_carlo.checking import require_sound
 from nullpose.study.monte_carlo.chunk import seconds_per_scene, solve_chunk
@@ -69,14 +69,22 @@ def run_study(
         require_sound(spec)
     with locked(prepare_folder(folder)):
         ledger = Ledger(spec, store, on_progress)
+        if store.is_begun():
+            ledger.open(int(store.require_same(spec)["chunk"]))
 
         def begin(calibrated: Callable[[], float]) -> None:
-            if not store.is_begun():
-                size = chunk or _size(spec, calibrated())
-                store.begin(spec, size)
-            ledger.open(int(store.manifest()["chunk"]))
+            if not ledger.is_open:
+                size = _size(spec, calibrated()) if chunk is None else chunk
+                ledger.open(int(store.begin(spec, size)["chunk"]))
 
-        _run_here(ledger, begin)
+        if ledger.is_open and ledger.is_complete:
+            ledger.tell()
+        elif workers == 0:
+            _run_here(ledger, begin)
+        else:
+            from nullpose.study.monte_carlo.engine import run_on_cluster
+
+            run_on_cluster(ledger, begin, scheduler, workers)
     return study_status(folder)
 
 
@@ -85,7 +93,10 @@ def _run_here(ledger: Ledger, begin: Callable[[Callable[[], float]], None]) -> N
     ledger.workers = 1
     begin(lambda: seconds_per_scene(ledger.json))
     for first, last in ledger.to_do():
-        ledger.add(solve_chunk(ledger.json, ledger.fingerprint, first, last))
+        done = solve_chunk(ledger.json, ledger.fingerprint, first, last)
+        if done.fault:
+            raise ClusterError(f"scenes {first} to {last} cannot be worked on: {done.fault}")
+        ledger.add(done)
 
 
 def _size(spec: StudySpec, seconds: float) -> int:

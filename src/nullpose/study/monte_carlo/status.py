@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from nullpose.study.monte_carlo.lock import holder
+from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.store import Store
 
-__all__ = ["StudyStatus", "study_status"]
+__all__ = ["StudyStatus", "study_spec", "study_status"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,3 +79,15 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
         worked_s=sum(part.seconds for part in parts),
         running=holder(Path(out)),
     )
+
+
+def study_spec(out: str | os.PathLike[str]) -> StudySpec:
+    """Return the spec of the study in a folder.
+
+    Args:
+        out: the folder.
+
+    Raises:
+        UsageError: no study is there.
+    """
+    return StudySpec.from_dict(Store(Path(out)).manifest()["spec"], str(out))

@@ -1,0 +1,123 @@
+"""The verb ``study`` and what it is followed by: ``run``, ``status``, ``show``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.options import JsonOutput, OutFolder
+from nullpose.cli.output import show_json
+from nullpose.cli.study_bar import StudyBar, words_of
+
+__all__ = ["StudyFolder", "study"]
+
+study = typer.Typer(
+    name="study",
+    no_args_is_help=True,
+    help="Many random scenes, each solved in several cases, on this machine or a cluster.",
+)
+
+StudyFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)]
+
+
+@study.command()
+def run(
+    spec: Annotated[
+        Path, typer.Argument(metavar="SPEC", help="Spec of the study (TOML).", show_default=False)
+    ],
+    out: OutFolder,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="A running Dask scheduler, as in tcp://host:8786.",
+            show_default="a cluster of this machine's processors",
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers",
+            metavar="N",
+            help="Processes on this machine; 0 for none beside this one.",
+            show_default="one for each processor",
+        ),
+    ] = None,
+    chunk: Annotated[
+        int | None,
+        typer.Option("--chunk", metavar="N", help="Scenes of a part.", show_default="about a second of work"),
+    ] = None,
+    json_output: JsonOutput = False,
+) -> None:
+    """Solve the scenes of a study that its folder does not hold yet; ended in any way, it goes on."""
+    from nullpose.study.monte_carlo.extra import require_extra
+
+    require_extra()
+    from nullpose.study.monte_carlo import load_spec, run_study
+
+    loaded = load_spec(spec)
+    try:
+        with StudyBar() as bar:
+            found = run_study(loaded, out, scheduler=scheduler, workers=workers, chunk=chunk, on_progress=bar)
+    except KeyboardInterrupt:
+        typer.echo(
+            "interrupted; the parts so far are kept, and the same command goes on from there", err=True
+        )
+        raise typer.Exit(INTERRUPTED) from None
+    if json_output:
+        show_json(found.to_dict())
+    else:
+        typer.echo(words_of(found))
+
+
+@study.command()
+def status(folder: StudyFolder, json_output: JsonOutput = False) -> None:
+    """Say how far a study is."""
+    from nullpose.study.monte_carlo import study_status
+
+    found = study_status(folder)
+    if json_output:
+        show_json(found.to_dict())
+    else:
+        typer.echo(words_of(found))
+
+
+@study.command()
+def show(
+    folder: StudyFolder,
+    scene: Annotated[
+        int, typer.Option("--scene", metavar="N", help="Number of the scene.", show_default=False)
+    ],
+    point: Annotated[
+        int | None,
+        typer.Option(
+            "--point",
+            metavar="N",
+            help="Number of a combination of swept values.",
+            show_default="nothing swept",
+        ),
+    ] = None,
+    case: Annotated[
+        str | None,
+        typer.Option("--case", metavar="NAME", help="With a case's vehicle.", show_default="the scene's own"),
+    ] = None,
+    json_output: JsonOutput = False,
+) -> None:
+    """Print a scene of a study as a scenario file, for solve or the studio."""
+    from nullpose.errors import UsageError
+    from nullpose.study.monte_carlo import draw_scene, scene_at, study_spec
+
+    spec = study_spec(folder)
+    scenario = draw_scene(spec, scene) if point is None else scene_at(spec, scene, point)
+    if case is not None:
+        if case not in spec.case_names:
+            raise UsageError(f"case: given {case!r}; allowed: {', '.join(spec.case_names)}")
+        scenario = spec.cases[spec.case_names.index(case)].on(scenario)
+    if json_output:
+        show_json(scenario.to_dict())
+    else:
+        typer.echo(scenario.to_toml(), nl=False)

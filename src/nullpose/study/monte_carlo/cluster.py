@@ -1,0 +1,117 @@
+"""The Dask cluster of a study: one embedded on this machine's processors, or one that runs already."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+from nullpose.errors import ClusterError
+from nullpose.solve.crew import processors
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["CONNECT_S", "connected"]
+
+CONNECT_S = 5.0
+"""How long a scheduler has to answer, seconds."""
+
+# One thread for each worker, also in the libraries that would start more by themselves.
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
+
+
+@contextmanager
+def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
+    """Yield a client of a running cluster, or of one that lives as long as the block.
+
+    Args:
+        scheduler: address of a running scheduler; None for an embedded cluster.
+        workers: processes of the embedded cluster; None for one on each processor.
+
+    Raises:
+        ClusterError: no scheduler answers.
+    """
+    with _quiet():
+        if scheduler is None:
+            with _embedded(workers or processors()) as client:
+                yield client
+        else:
+            client = _client_of(scheduler)
+            try:
+                yield client
+            finally:
+                with suppress(Exception):  # the scheduler may be gone, and what counts is written
+                    client.close(timeout=2)
+
+
+@contextmanager
+def _embedded(workers: int) -> Iterator[Client]:
+    import dask
+    from distributed import Client, LocalCluster
+
+    environment = dask.config.get("distributed.nanny.pre-spawn-environ", {}) | _ONE_THREAD
+    with dask.config.set({"distributed.nanny.pre-spawn-environ": environment}):
+        with _deaf_to_ctrl_c():
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+            )
+        with cluster, Client(cluster) as client:
+            yield client
+
+
+def _client_of(scheduler: str) -> Client:
+    from distributed import Client
+
+    try:
+        return Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise ClusterError(
+            f"scheduler: no Dask scheduler answers at {scheduler} ({_first_line(error)}); check the address "
+            "(as in tcp://host:8786) and that it runs: dask scheduler on its machine, dask worker "
+            f"{scheduler} --nthreads 1 on the others; or leave it out to use this machine"
+        ) from error
+
+
+def _first_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Start processes in the block that leave Ctrl-C to this one, which ends them in order."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Dask's own log lines off the terminal: what matters is said in this package's words."""
+    import distributed  # noqa: F401  its import sets up its loggers
+
+    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == "distributed"]
+    loggers: list[Any] = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
