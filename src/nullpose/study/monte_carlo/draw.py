@@ -87,7 +87,7 @@ class Draws:
 
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
-        self._swept = [_of_point(spec, values) for values in spec.points]
+        self._swept: dict[int, tuple[dict[str, Points], list[tuple[str, float]]]] = {}
         self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
 
     def base(self, index: int) -> Scenario:
@@ -105,6 +105,8 @@ class Draws:
             index: the scene's number, from 0.
             point: the combination's number, from 0.
         """
+        if point not in self._swept:
+            self._swept[point] = _of_point(self._spec, self._spec.points[point])
         drawn, settings = self._swept[point]
         scene = self._drawn(index, drawn)
         overrides = [each for path, value in settings for each in _settings(scene, path, value)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 
 from nullpose.errors import UsageError
 from nullpose.scenario.choice import Choice
-from nullpose.scenario.faults import as_error_details, collected, rejection
+from nullpose.scenario.faults import Place, as_error_details, collected, path_of, rejection
 from nullpose.scenario.units import Count, Quantity
 from nullpose.scenario.wording import described, listed, nearest, plain
 from nullpose.study.spacing import spaced
@@ -41,13 +41,13 @@ class _Axes:
             raise rejection(f"got {described(value)}, must be a table headed [sweep]")
         axes: list[Axis] = []
         details: list[InitErrorDetails] = []
-        for path, given in value.items():
+        for path, given in _paths(value):
             try:
-                axes.append((str(path), _values(plain(given))))
+                axes.append((path, _values(plain(given))))
             except PydanticCustomError as error:
-                details.append(as_error_details((str(path),), error.message()))
+                details.append(as_error_details((path,), error.message()))
             except UsageError as error:
-                details.append(as_error_details((str(path),), str(error).replace("\n  ", "; ")))
+                details.append(as_error_details((path,), str(error).replace("\n  ", "; ")))
         if details:
             raise collected("sweep", details)
         if len(axes) and _size(axes) > MOST_POINTS:
@@ -74,6 +74,15 @@ def points_of(axes: tuple[Axis, ...]) -> tuple[dict[str, float], ...]:
     return tuple(
         dict(zip(paths, values, strict=True)) for values in itertools.product(*(values for _, values in axes))
     )
+
+
+def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str, object]]:
+    """Yield each path with what is given for it; one without quotes has come as tables within tables."""
+    for key, given in table.items():
+        if isinstance(given, Mapping) and given and not set(given) & set(_KEYS):
+            yield from _paths(given, (*at, str(key)))
+        else:
+            yield (path_of((*at, str(key))) if at else str(key)), given
 
 
 def _size(axes: list[Axis]) -> int:

@@ -1,0 +1,60 @@
+"""The rows of a study are the same wherever it runs, in whatever parts."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from nullpose.study.monte_carlo import StudyProgress, StudySpec, run_study
+
+Rows = Callable[[Path], pd.DataFrame]
+Spec = Callable[..., StudySpec]
+
+CASES = [{"name": "free"}, {"name": "level", "airframe": "tilt-10"}]
+SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
+
+
+def test_the_rows_do_not_depend_on_who_makes_them(farm: Any, spec: Spec, tmp_path: Path, rows: Rows) -> None:
+    """In this process, on an embedded cluster of two, on one hand-started worker and on two: row for row."""
+    study = spec(cases=CASES, sweep=SWEEP)
+    run_study(study, tmp_path / "here", workers=0, chunk=5)
+    told: list[StudyProgress] = []
+    run_study(study, tmp_path / "embedded", workers=2, chunk=1, on_progress=told.append)
+    farm.scheduler()
+    farm.worker()
+    run_study(study, tmp_path / "one", scheduler=farm.address, chunk=4)
+    farm.worker()
+    run_study(study, tmp_path / "two", scheduler=farm.address)
+    expected = rows(tmp_path / "here")
+    assert len(expected) == 12 * 2 * 2
+    for folder in ("embedded", "one", "two"):
+        pd.testing.assert_frame_equal(rows(tmp_path / folder), expected)
+    assert {at.workers for at in told} == {2}
+    assert [at.done for at in told if not at.note] == list(range(1, 13))
+    assert told[-1].rate > 0.0
+    assert told[-1].seconds_left == 0.0
+
+
+def test_workers_may_come_late(farm: Any, quick: Spec, tmp_path: Path) -> None:
+    """Without a worker the run waits for one, and says so."""
+    farm.scheduler()
+    notes: list[str] = []
+
+    def note(at: StudyProgress) -> None:
+        notes.append(at.note)
+        if at.note.startswith("no worker") and len(farm.started) == 1:
+            farm.worker()
+
+    assert run_study(quick(), tmp_path / "out", scheduler=farm.address, chunk=4, on_progress=note).complete
+    assert notes[0] == f"no worker at {farm.address} yet: waiting for one"
+
+
+@pytest.mark.parametrize("address", ["nowhere", "http://127.0.0.1:1", "tcp://127.0.0.1:notaport"])
+def test_an_address_that_is_none(quick: Spec, tmp_path: Path, address: str) -> None:
+    """It is refused in this package's words."""
+    from nullpose.errors import ClusterError
+
+    with pytest.raises(ClusterError, match="no Dask scheduler answers at"):
+        run_study(quick(), tmp_path / "out", scheduler=address)
