@@ -18,18 +18,22 @@ from nullpose.studio.server import studio
 __all__ = ["soak"]
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
-_WARM = 0.1  # share of the steps after which memory counts
+_WARM = 1300  # steps after which memory counts: two rests and a comparison are over
 _REST_EVERY = 600  # steps; then the hand rests for a proof, maps and a curve
+_DRAG = 50  # steps from the press of the button to its release
+_PHASES = {0: "start", _DRAG - 1: "end"}
+_BETWEEN_S = 0.005
 
 
-def soak(steps: int) -> dict[str, Any]:
+def soak(steps: int, most_minutes: float) -> dict[str, Any]:
     """Return what remains after so many drag steps on a page that a browser shows.
 
-    The server's memory after a tenth of the steps and at the end, what the log has from warnings up, and the
+    The server's memory after the first rests and at the end, what the log has from warnings up, and the
     threads that are left when the studio is closed.
 
     Args:
         steps: how many; 36,000 are an hour of a hand that moves ten times a second.
+        most_minutes: when it ends though there are steps left, minutes.
     """
     records = _Records()
     logging.getLogger().addHandler(records)
@@ -37,24 +41,26 @@ def soak(steps: int) -> dict[str, Any]:
     began = time.perf_counter()
     with studio(load(_EXAMPLES / "paper.toml"), port=0) as running, opened(running.port):
         page = next(iter(running.pages.values()))
-        early_mb = 0.0
-        for step in range(steps):
+        early_mb, done = 0.0, 0
+        until = time.perf_counter() + 60.0 * most_minutes
+        while done < steps and time.perf_counter() < until:
+            step, done = done, done + 1
             turn = 0.01 * step
             place = (17.0 + 12.0 * math.cos(turn), 15.0 + 12.0 * math.sin(turn), 4.0)
-            page._dragged(("jammers", 0), place, "start" if step % 50 == 0 else "update")
+            page._dragged(("jammers", 0), place, _PHASES.get(step % _DRAG, "update"))
             if step % _REST_EVERY == _REST_EVERY - 1:
                 page.session.compare(case_named("Vertical") if step % (2 * _REST_EVERY) == 0 else None)
                 page.session.undo()
                 time.sleep(2.5)
-            time.sleep(0.012)
-            if step == int(_WARM * steps):
+            time.sleep(_BETWEEN_S)
+            if step == _WARM:
                 early_mb = _memory_mb()
         late_mb = _memory_mb()
     gc.collect()
     time.sleep(1.0)
     left = [thread.name for thread in threading.enumerate() if thread not in before and thread.is_alive()]
     return {
-        "steps": steps,
+        "steps": done,
         "minutes": round((time.perf_counter() - began) / 60.0, 1),
         "memory_early_mb": round(early_mb, 1),
         "memory_late_mb": round(late_mb, 1),

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
@@ -27,6 +29,7 @@ SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "studio-comparison": ("paper", lambda session: session.compare(case_named("Vertical"))),
     "studio-robust": ("robust", lambda session: session.choose(case_named("Robust pose"))),
 }
+_FROM = {"studio-ten-nodes": (-0.72, -0.66, 0.58)}  # where the camera stands, for a drone at the near edge
 _QUIET_MS = 9000  # without a graphics card a frame takes long
 
 
@@ -38,10 +41,17 @@ def take(name: str) -> None:
         opened(running.port, scale=1.0) as page,
     ):
         page.get_by_role("button", name="Got it").click()
-        session: Any = next(iter(running.pages.values())).session
+        ours: Any = next(iter(running.pages.values()))
+        session: Any = ours.session
         change(session)
         while session.field_map is None or session.status(session.view.case).startswith("solving"):
             page.wait_for_timeout(200)
+        if name in _FROM:
+            camera = ours._client.camera
+            look_at = np.array(camera.look_at)  # which moves with the position
+            with ours._client.atomic():
+                camera.position = look_at + ours._size_m * np.array(_FROM[name])
+                camera.look_at = look_at
         page.mouse.move(300, 30)  # away from what would show its help
         page.wait_for_timeout(_QUIET_MS)
         page.screenshot(path=IMAGES / f"{name}.png")

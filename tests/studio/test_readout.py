@@ -1,13 +1,16 @@
 """The panel's numbers."""
 
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.readout import about_html, failure_html, readout_html
 from nullpose.studio.session import Session, scenario_from_text
+from nullpose.studio.steps import quick_answer
 
 
 class _Text(HTMLParser):
@@ -42,6 +45,20 @@ def test_without_an_answer_there_are_no_numbers(idle: Session) -> None:
     html = readout_html(idle)
     assert "solving" in _Text(html).text
     assert "data-value" not in html
+    assert idle.close()
+
+
+def test_two_cases_differ_by_what_is_known_of_both(idle: Session) -> None:
+    """A robust case counts with what it guarantees, once that is known, and it is said that it does."""
+    robust = case_named("Robust pose")
+    idle.compare(robust)
+    first = quick_answer(idle.version, idle.view, OPTIMUM)
+    second = replace(first, case=robust, value=0.5 * first.value)
+    idle._take(first)
+    idle._take(second)
+    assert 'data-np="difference"' not in readout_html(idle)
+    idle._take(replace(second, bound=0.6 * first.value))
+    assert "A over B: 3.01 dB (B guaranteed, A without errors)" in _Text(readout_html(idle)).text
     assert idle.close()
 
 

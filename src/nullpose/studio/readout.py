@@ -16,7 +16,7 @@ __all__ = ["about_html", "failure_html", "readout_html", "status_tone"]
 
 _TONES = {"waiting": "#8a5a00", "found": "#005a8c", "proved": "#00684a", "failed": "#a02000"}
 _MARKS = {"waiting": "&#8987;", "found": "&#9679;", "proved": "&#10003;", "failed": "&#10007;"}
-_STYLE = "font-size:13px;line-height:1.35;padding:2px 10px;font-variant-numeric:tabular-nums"
+_STYLE = "font-size:13px;line-height:1.35;padding:2px 10px 8px;font-variant-numeric:tabular-nums"
 
 _ABOUT = """<b>A drone listens to ground nodes while jammers drown them.</b> Its antenna, a short dipole,
 hears nothing along its own axis: the <b>null</b>. nullpose finds where to hover and how to tilt so that the
@@ -134,8 +134,14 @@ def _difference_html(session: Session) -> str:
     first, second = (session.answer(case) for case in session.view.cases)
     if first is None or second is None or not (session.is_current(first) and session.is_current(second)):
         return ""
+    if any(answer.case.robust and answer.bound is None for answer in (first, second)):
+        return ""  # what it guarantees is not known yet
     difference = _signed(first.shown_value - second.shown_value)
-    return f'<div data-np="difference"><b>A over B: {difference} {first.quantity.unit}</b></div>'
+    unlike = ""
+    if first.case.robust != second.case.robust:
+        robust, other = "AB" if first.case.robust else "BA"
+        unlike = f" ({robust} guaranteed, {other} without errors)"
+    return f'<div data-np="difference"><b>A over B: {difference} {first.quantity.unit}</b>{unlike}</div>'
 
 
 def failure_html(error: ScenarioError | None, name: str = "") -> str:

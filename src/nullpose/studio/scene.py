@@ -201,10 +201,12 @@ class Ground:
         )
         every = max(1, (max(len(east), len(north)) + 2) // 4)
         ticks = [
-            (f"east-{i}", f"{x:g}", (x, low[1] - 0.45 * step_m)) for i, x in enumerate(east) if i % every == 0
+            (f"east-{i}", _signed(x), (x, low[1] - 0.45 * step_m))
+            for i, x in enumerate(east)
+            if i % every == 0
         ]
         ticks += [
-            (f"north-{i}", f"{y:g}", (high[0] + 0.45 * step_m, y))
+            (f"north-{i}", _signed(y), (high[0] + 0.45 * step_m, y))
             for i, y in enumerate(north)
             if i % every == 0
         ]
@@ -266,6 +268,10 @@ class Ground:
             thickness=1.4,
             thickness_units="screen",
         )
+
+
+def _signed(value: float) -> str:
+    return f"{value:g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _same_but_for_places(first: Scenario, second: Scenario) -> bool:
