@@ -1,0 +1,66 @@
+"""The verb ``study report``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.options import JsonOutput
+from nullpose.cli.output import show_json
+
+__all__ = ["report"]
+
+
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)],
+    requirement_db: Annotated[
+        float | None,
+        typer.Option(
+            "--requirement-db",
+            metavar="X",
+            help="Smallest SINR or margin that will do, in dB: outage is counted against it.",
+            show_default="0 for margins",
+        ),
+    ] = None,
+    requirement_bps_hz: Annotated[
+        float | None,
+        typer.Option(
+            "--requirement-bps-hz",
+            metavar="X",
+            help="The same of a secrecy rate, in bits/s/Hz.",
+            show_default=False,
+        ),
+    ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            "--against",
+            metavar="CASE",
+            help="Case that gains are measured against.",
+            show_default="the level vehicle",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FOLDER", help="Where it is written.", show_default="DIR/report"),
+    ] = None,
+    json_output: JsonOutput = False,
+) -> None:
+    """Write a study's report: its answer in words, figures and tables, as Markdown, HTML and CSV."""
+    from nullpose.report.study import report_study
+
+    written = report_study(
+        folder,
+        out=out,
+        requirement_db=requirement_db,
+        requirement_bps_hz=requirement_bps_hz,
+        against=against,
+    )
+    if json_output:
+        show_json(written.to_dict())
+        return
+    for line in (*written.notes[: not written.summary.is_complete], written.answer):
+        typer.echo(f"{line}\n")
+    typer.echo("\n".join(str(path) for path in written.files))

@@ -1,0 +1,138 @@
+"""The values of a study, read part by part into arrays that stay small."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.physics.types import FloatArray
+from nullpose.report.quantity import Quantity
+from nullpose.study.monte_carlo import StudyTable
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["STATUSES", "StudyValues", "gather", "quantity_of"]
+
+STATUSES = ("certified", "gap-not-reached", "best-found", "failed")
+"""The statuses of rows, in the order of their codes."""
+
+_MOST_REASONS = 10_000  # reasons may quote numbers, so that each row has its own
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyValues:
+    """What the rows of a study say, by scene, combination of swept values, and case: 25 bytes for each.
+
+    Args:
+        value: what the pose reaches, in dB or bits/s/Hz, shape ``(n, p, c)``; NaN of a failure.
+        bound: no pose exceeds it, likewise; NaN if nothing is proved.
+        gap: relative gap; NaN if nothing is proved.
+        status: places in ``STATUSES``.
+        seconds: how long each took.
+        reasons: how often each case failed, or kept from its gap, for which reason, by case, status, reason.
+    """
+
+    value: FloatArray
+    bound: FloatArray
+    gap: NDArray[np.float32]
+    status: NDArray[np.uint8]
+    seconds: NDArray[np.float32]
+    reasons: Counter[tuple[str, str, str]]
+
+    @property
+    def scenes(self) -> int:
+        """How many scenes there are rows of."""
+        return int(self.value.shape[0])
+
+    def counts(self) -> dict[str, int]:
+        """Return how many rows have each status."""
+        return {name: int(np.sum(self.status == code)) for code, name in enumerate(STATUSES)}
+
+
+def quantity_of(table: StudyTable) -> Quantity:
+    """Return what the study made as large as it can be.
+
+    Args:
+        table: the study's rows.
+    """
+    name = str(table.manifest["objective"])
+    return Quantity.named({"secrecy-rate": "min_secrecy_rate"}.get(name, name.replace("-", "_")))
+
+
+def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], None] | None = None) -> StudyValues:
+    """Return the values of all rows that are done, reading them once, part by part.
+
+    Args:
+        table: the study's rows.
+        on_batch: given each part's rows, with what is maximised in dB beside it if it is a ratio.
+
+    Raises:
+        UsageError: a part is damaged.
+    """
+    spec, quantity = table.spec, quantity_of(table)
+    inner = (len(spec.points), len(spec.cases))
+    shape = (table.scenes_done, *inner)
+    found = StudyValues(
+        value=np.full(shape, np.nan),
+        bound=np.full(shape, np.nan),
+        gap=np.full(shape, np.nan, np.float32),
+        status=np.zeros(shape, np.uint8),
+        seconds=np.zeros(shape, np.float32),
+        reasons=Counter(),
+    )
+    done = 0
+    for batch in table.batches():
+        end = done + len(batch) // spec.rows_per_scene
+        columns = _columns(batch, quantity)
+        for name, numbers in columns.items():
+            getattr(found, name)[done:end] = numbers.reshape(-1, *inner)
+        _count_reasons(found.reasons, batch)
+        if on_batch is not None:
+            on_batch(_with_decibels(batch, columns, quantity))
+        done = end
+    return found
+
+
+def _columns(batch: pd.DataFrame, quantity: Quantity) -> dict[str, NDArray[Any]]:
+    value, bound, gap, seconds = (
+        batch[name].to_numpy(float, na_value=np.nan) for name in ("value", "bound", "gap", "seconds")
+    )
+    codes = {name: code for code, name in enumerate(STATUSES)}
+    return {
+        "value": _in_unit(value, quantity),
+        "bound": _in_unit(bound, quantity),
+        "gap": gap,
+        "status": batch["status"].map(codes).to_numpy(np.uint8),
+        "seconds": seconds,
+    }
+
+
+def _in_unit(values: FloatArray, quantity: Quantity) -> FloatArray:
+    if quantity.is_rate:
+        return values
+    with np.errstate(divide="ignore"):
+        return np.asarray(10.0 * np.log10(values))
+
+
+def _with_decibels(batch: pd.DataFrame, columns: dict[str, Any], quantity: Quantity) -> pd.DataFrame:
+    if quantity.is_rate:
+        return batch
+    place = batch.columns.get_loc("gap")
+    batch.insert(place, "value_db", columns["value"])
+    batch.insert(place + 1, "bound_db", columns["bound"])
+    return batch
+
+
+def _count_reasons(reasons: Counter[tuple[str, str, str]], batch: pd.DataFrame) -> None:
+    told = batch.loc[batch["reason"] != "", ["case", "status", "reason"]]
+    for (case, status, reason), count in told.value_counts(sort=False).items():
+        if count and (case, status, reason) not in reasons and len(reasons) >= _MOST_REASONS:
+            reason = "other reasons"
+        if count:
+            reasons[str(case), str(status), str(reason)] += int(count)
