@@ -95,7 +95,7 @@ def _level_words(summary: Summary, point: int, case: ReportCase) -> str:
     row, quantity = summary.row(point, case), summary.quantity
     kind = "guaranteed" if case.robust else "reached"
     return (
-        f"the {quantity.smallest} {kind} by {case.phrase.rstrip(',')} is "
+        f"the {quantity.smallest} {kind} by {case.phrase} is "
         f"{with_unit(row['median'], quantity)} in the median and {with_unit(row['worst_tenth'], quantity)} "
         "in the worst tenth; there is no other case to set it against"
     )
@@ -112,7 +112,7 @@ def _most_gaining(summary: Summary, point: int, cases: list[ReportCase]) -> Repo
 def _gain_words(summary: Summary, point: int, case: ReportCase, reference: ReportCase) -> str:
     row, quantity = summary.row(point, case), summary.quantity
     median, tenth = float(row["gain_median"]), float(row["shift_worst_tenth"])
-    names = (case.phrase.rstrip(","), reference.phrase.rstrip(","))
+    names = (case.phrase, reference.phrase)
     if summary.values.scenes == 1:
         return f"{names[0]} {_beats(median, quantity.is_rate)} {names[1]} by {_size(summary, median)}"
     verb, sign = ("beats", 1.0) if median >= 0.0 else ("falls behind", -1.0)
@@ -155,16 +155,23 @@ def _shares_words(summary: Summary, point: int, cases: list[ReportCase]) -> str:
     parts: list[str] = []
     for case in sorted(cases, key=lambda case: math.inf if case.tilt_deg is None else case.tilt_deg):
         row = summary.row(point, case)
-        median, tenth = float(row["share_of_median"]), float(row["share_of_worst_tenth"])
+        median, tenth = _shares(summary, row)
         if math.isnan(median) and math.isnan(tenth):
             continue
-        name = case.phrase.rstrip(",")
+        name = case.phrase
         if all(math.isnan(share) or share >= _ALL_OF_IT for share in (median, tenth)):
             parts.append(f"{name} all of it" if parts else f"{name} buys all of it")
             continue
         verb = "" if parts else " buys"
-        parts.append(f"{name}{verb} {_share(median)} of the median gain{_tenth_words(summary, row, tenth)}")
+        gain = "the gain" if summary.values.scenes == 1 else "the median gain"
+        parts.append(f"{name}{verb} {_share(median)} of {gain}{_tenth_words(summary, row, tenth)}")
     return f"{_capital('; '.join(parts))}." if parts else ""
+
+
+def _shares(summary: Summary, row: Any) -> tuple[float, float]:
+    """Return the shares of the two gains that a case has; of one scene there is but one."""
+    tenth = math.nan if summary.values.scenes == 1 else float(row["share_of_worst_tenth"])
+    return float(row["share_of_median"]), tenth
 
 
 def _tenth_words(summary: Summary, row: Any, share: float) -> str:
@@ -189,16 +196,14 @@ def _least_tilt_words(summary: Summary, point: int, cases: list[ReportCase], who
         return ""
 
     def buys_most(case: ReportCase) -> bool:
-        row = summary.row(point, case)
-        shares = (float(row["share_of_median"]), float(row["share_of_worst_tenth"]))
-        return all(share >= MOST_OF_IT for share in shares if not math.isnan(share)) and not all(
-            math.isnan(share) for share in shares
-        )
+        shares = [each for each in _shares(summary, summary.row(point, case)) if not math.isnan(each)]
+        return bool(shares) and min(shares) >= MOST_OF_IT
 
     enough = [case for case in sorted(known, key=lambda case: case.tilt_deg or 0.0) if buys_most(case)]
-    most = f"most of it ({percent(MOST_OF_IT)} or more of both)"
+    both = "" if summary.values.scenes == 1 else " of both"
+    most = f"most of it ({percent(MOST_OF_IT)} or more{both})"
     if enough:
-        return f"The least of these that buys {most} is {enough[0].phrase.rstrip(',')}."
+        return f"The least of these that buys {most} is {enough[0].phrase}."
     if all(math.isnan(float(summary.row(point, case)["share_of_median"])) for case in known):
         return ""
     return f"None of these buys {most}."
@@ -211,7 +216,7 @@ def _others_words(summary: Summary, point: int, cases: list[ReportCase]) -> str:
         if not math.isnan(row["gain_median"]):
             words = f"{number(row['gain_median'], summary.quantity)} and "
             words += f"{number(row['shift_worst_tenth'], summary.quantity)} {summary.quantity.unit}"
-            parts.append(f"{case.phrase.rstrip(',')} {words}")
+            parts.append(f"{case.phrase} {words}")
     return f"The same of the others: {'; '.join(parts)}." if parts else ""
 
 
@@ -221,9 +226,7 @@ def _missing_words(group: list[ReportCase], reference: ReportCase, whole: Report
     if reference.tilt_deg != 0.0:
         missing.append("no level vehicle")
     elif reference.role != "level-vertical":
-        return (
-            f"The level vehicle here is {reference.phrase.rstrip(',')}: there is none with a vertical dipole."
-        )
+        return f"The level vehicle here is {reference.phrase}: there is none with a vertical dipole."
     if whole is None:
         missing.append("no omnidirectional one")
     return f"There is {listed(missing)} in this study." if missing else ""
@@ -240,7 +243,7 @@ def _sweep_words(summary: Summary, point: int, case: ReportCase) -> str:
         gains = (number(row[name], summary.quantity) for name in ("gain_median", "shift_worst_tenth"))
         parts.append(f"{' and '.join(gains)} {summary.quantity.unit} at {summary.points.words(each)}")
     few = "" if len(summary.spec.points) == len(summary.points.shown) else ", among others"
-    return f"For {case.phrase.rstrip(',')} the two gains are {listed(parts)}{few}."
+    return f"For {case.phrase} the two gains are {listed(parts)}{few}."
 
 
 def _capital(text: str) -> str:
@@ -260,7 +263,7 @@ def outage_words(summary: Summary) -> str:
     for case in summary.cases:
         share = float(summary.row(point, case)["outage"])
         if not math.isnan(share):
-            parts.append(f"{percent(share, 1)} of scenes by {case.phrase.rstrip(',')}")
+            parts.append(f"{percent(share, 1)} of scenes by {case.phrase}")
     if not parts:
         return ""
     words = summary.points.words(point)
@@ -300,7 +303,8 @@ def certainty_of(summary: Summary) -> str:
             "a lower bound of the best."
         )
     if counts["failed"]:
-        sentences.append(f"{count_of(counts['failed'], 'row')} failed, without a pose, and are left out.")
+        are = "is" if counts["failed"] == 1 else "are"
+        sentences.append(f"{count_of(counts['failed'], 'row')} failed, without a pose, and {are} left out.")
     if 0 < summary.values.scenes < FEW_SCENES:
         count = summary.values.scenes
         sentences.append(

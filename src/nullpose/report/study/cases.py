@@ -142,7 +142,7 @@ def _case(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
     if airframe is None:
         return replace(plain, robust=bool(case.robust))
     role, phrase = _vehicle(airframe, (each.airframe for each in AIRFRAME_CASES))
-    guaranteed = ", robustly posed," if case.robust else ""
+    guaranteed = " in its robust pose" if case.robust else ""
     tilt_deg = math.degrees(airframe.tilt_max_rad)
     return replace(
         plain,

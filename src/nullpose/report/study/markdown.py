@@ -106,7 +106,7 @@ def _gains(summary: Summary, figures: Collection[str]) -> list[str]:
         reference = summary.reference(group[0]) if group else None
         if reference is not None:
             of_what = "What is guaranteed" if robust else "Each case"
-            name = f"{reference.phrase.rstrip(',')} ({reference.name})"
+            name = f"{reference.phrase} ({reference.name})"
             references.append(f"{of_what} is measured against {escaped(name)} on the same scenes.")
     unit = summary.quantity.unit
     caption = (

@@ -1,0 +1,111 @@
+"""Cases are named as the vehicles that they are, and the right one is measured against."""
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from nullpose.report.study.cases import nominal_of, reference_of, report_cases, whole_of
+from nullpose.study import AIRFRAME_CASES
+from nullpose.study.monte_carlo import StudySpec
+
+SCENE: dict[str, Any] = {
+    "airspace": {"altitude_m": [8.0, 30.0]},
+    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+    "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
+    "jammers": [{"name": "M", "position_m": [9.0, 0.0, 4.0], "power_w": 1.0}],
+}
+
+Specify = Callable[..., StudySpec]
+
+
+@pytest.fixture
+def specify() -> Specify:
+    """A spec with the cases given and changes to its scene."""
+
+    def spec(*cases: dict[str, Any], scene: dict[str, Any] | None = None, **tables: Any) -> StudySpec:
+        whole = copy.deepcopy(SCENE) | (scene or {})
+        return StudySpec.from_dict({"scenes": 2, "scene": whole, "cases": list(cases), **tables})
+
+    return spec
+
+
+def test_vehicles_have_their_phrases(specify: Specify) -> None:
+    """The usual five are named as everywhere, whatever the case is called and however it is stated."""
+    cases = report_cases(
+        specify(*({"name": f"v{n}", "airframe": c.name} for n, c in enumerate(AIRFRAME_CASES)))
+    )
+    assert [case.phrase for case in cases] == [case.phrase for case in AIRFRAME_CASES]
+    assert [case.tilt_deg for case in cases] == [0.0, 0.0, 10.0, 30.0, 180.0]
+    (stated,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}}))
+    assert (stated.role, stated.phrase) == ("tilt-10", AIRFRAME_CASES[2].phrase)
+    (other,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}}))
+    assert (other.role, other.phrase) == ("", "a 20 degree tilt with the dipole mounted at 45 degrees")
+
+
+def test_what_is_no_vehicle_is_named_as_the_spec_does(specify: Specify) -> None:
+    """Schemes, arrays and poses; a scheme's upright dipole is the level vehicle."""
+    cases = report_cases(
+        specify(
+            {"name": "a", "scheme": "zero-interference"},
+            {"name": "b", "scheme": "vertical"},
+            {"name": "c", "array": {"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}},
+            {"name": "d", "pose": {"position_m": [0.0, 0.0, 9.0]}},
+        )
+    )
+    assert [case.phrase for case in cases] == [
+        "the zero interference pose",
+        "a level vehicle with a vertical dipole",
+        "a level vehicle with an array of 4 with digital combining",
+        "the fixed pose d",
+    ]
+    assert [case.role for case in cases] == ["", "level-vertical", "", ""]
+
+
+def test_the_scenes_vehicle(specify: Specify) -> None:
+    """Without one of its own a case has the scene's: any attitude, what is stated, or not known if swept."""
+    assert report_cases(specify({"name": "a"}))[0].role == "omnidirectional"
+    level = {"airframe": {"tilt_max_deg": 0.0}}
+    assert report_cases(specify({"name": "a"}, scene=level))[0].role == "level-vertical"
+    swept = specify({"name": "a"}, scene=level, sweep={"airframe.tilt_max_deg": [0.0, 5.0]})
+    assert (report_cases(swept)[0].role, report_cases(swept)[0].phrase) == ("", "the case a")
+
+
+def test_equal_phrases_are_told_apart(specify: Specify) -> None:
+    """Two cases with one vehicle carry their names."""
+    phrases = [case.phrase for case in report_cases(specify({"name": "a"}, {"name": "b", "certify": False}))]
+    assert phrases == ["an omnidirectional vehicle (a)", "an omnidirectional vehicle (b)"]
+
+
+def test_what_others_are_measured_against(specify: Specify) -> None:
+    """The upright level vehicle, another level one, the first; robust cases among themselves."""
+    free, tilt = {"name": "free"}, {"name": "tilt", "airframe": "tilt-10"}
+    flat, upright = ({"name": name, "airframe": name} for name in ("level-horizontal", "level-vertical"))
+    for given, expected in (
+        ((free, flat, upright), "level-vertical"),
+        ((free, tilt, flat), "level-horizontal"),
+        ((free, tilt), "free"),
+    ):
+        cases = report_cases(specify(*given))
+        reference = reference_of(cases)
+        assert reference is not None
+        assert reference.name == expected
+        assert reference_of(cases, robust=True) is None
+        whole = whole_of(cases)
+        assert whole is not None
+        assert whole.name == "free"
+
+
+def test_robust_cases_have_their_nominal_ones(specify: Specify) -> None:
+    """The same vehicle without errors; none where it was not solved, or only by another scheme."""
+    spec = specify(
+        {"name": "r", "robust": True},
+        {"name": "t", "airframe": "tilt-10", "robust": True},
+        {"name": "z", "scheme": "zero-interference"},
+        {"name": "n"},
+    )
+    cases = report_cases(spec)
+    found = [nominal_of(spec, cases, case) for case in cases]
+    assert [None if case is None else case.name for case in found] == ["n", None, None, None]
+    assert cases[0].robust
