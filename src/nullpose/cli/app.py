@@ -15,6 +15,7 @@ from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
 from nullpose.cli.study import study
+from nullpose.cli.study_report import report
 from nullpose.cli.sweep import sweep
 from nullpose.cli.verify import verify
 
@@ -56,6 +57,7 @@ def nullpose(
 
 for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema):
     app.command()(_verb)
+study.command()(report)
 app.add_typer(study)
 
 

@@ -9,12 +9,13 @@ import typer
 
 from nullpose.cli.options import JsonOutput
 from nullpose.cli.output import show_json
+from nullpose.cli.study import StudyFolder
 
 __all__ = ["report"]
 
 
 def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)],
+    folder: StudyFolder,
     requirement_db: Annotated[
         float | None,
         typer.Option(

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import answer_of
+from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.summary import Summary
 
 Summed = Callable[..., Summary]
@@ -49,6 +50,15 @@ def test_a_loss_in_the_worst_tenth(summed: Summed, ladder: Ladder) -> None:
         cells[scene][0][1] -= 9.0
     answer = answer_of(summed(cells))
     assert "buys 50 % of the median gain, but loses 8.00 dB in the worst tenth" in answer
+
+
+def test_a_gain_that_turns(summed: Summed, ladder: Ladder) -> None:
+    """More in the median and less in the worst tenth, each with its own sign."""
+    cells = ladder(40, 1.0, 2.0)
+    for scene in range(30, 40):
+        cells[scene][0][2] -= 9.0
+    answer = answer_of(summed(cells))
+    assert "by 2.00 dB in the median (95 % confidence: 2.00 to 2.00) but loses 7.00 dB in" in answer
 
 
 def test_nothing_gained(summed: Summed, ladder: Ladder) -> None:
@@ -116,8 +126,8 @@ def test_robust_cases_answer_for_themselves(summed: Summed) -> None:
     ]
     answer = answer_of(summed([[[0.0, 3.0, -4.0, 1.0]]] * 40, cases=cases))
     assert "beats a level vehicle with a vertical dipole by 3.00 dB in the median" in answer
-    assert "robust pose beats a level vehicle with a vertical dipole in its robust pose in the" in answer
-    assert "smallest SINR that is guaranteed by 5.00 dB in the median" in answer
+    assert "In what is guaranteed under the errors stated an omnidirectional vehicle in its robust" in answer
+    assert "dipole in its robust pose by 5.00 dB in the median" in answer
 
 
 def test_not_finished(summed: Summed, ladder: Ladder) -> None:

@@ -10,31 +10,13 @@ from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
 from nullpose.report.study.wording import count_of, listed, number, percent, span, with_unit
 
-__all__ = ["FEW_SCENES", "MOST_OF_IT", "answer_of", "certainty_of", "outage_words", "unfinished_note"]
+__all__ = ["MOST_OF_IT", "answer_of"]
 
 MOST_OF_IT = 0.9
 """A vehicle that has this share of what an omnidirectional one gains, or more, has most of it."""
 
-FEW_SCENES = 36
-"""With fewer scenes the 10th percentile has no lower end at 95 per cent confidence."""
-
 _ALL_OF_IT = 0.995  # as a whole per cent, 100
 _MOST_TOLD = 5  # combinations of swept values that are told one by one
-
-
-def unfinished_note(summary: Summary) -> str:
-    """Return that the study is not finished, in a sentence; empty if it is.
-
-    Args:
-        summary: of a study.
-    """
-    if summary.is_complete:
-        return ""
-    done, whole = summary.values.scenes, summary.spec.n_scenes
-    return (
-        f"This study is not finished: {done:,} of {count_of(whole, 'scene')} "
-        f"({percent(done / whole)}) are done, and everything below is of these."
-    )
 
 
 def answer_of(summary: Summary) -> str:
@@ -62,7 +44,8 @@ def _of_group(summary: Summary, group: list[ReportCase], point: int) -> str:
     assert reference is not None, "the group is not empty"
     whole = whole_of(group, robust=group[0].robust)
     others = [case for case in group if case is not reference]
-    opening = _opening(summary, point)
+    second = group[0].robust and len(group) < len(summary.cases)
+    opening = "In what is guaranteed under the errors stated" if second else _opening(summary, point)
     if not others:
         return f"{opening} {_level_words(summary, point, reference)}."
     best = whole if whole is not None and whole is not reference else _most_gaining(summary, point, others)
@@ -118,12 +101,13 @@ def _gain_words(summary: Summary, point: int, case: ReportCase, reference: Repor
     verb, sign = ("beats", 1.0) if median >= 0.0 else ("falls behind", -1.0)
     if not _tells(median, quantity.is_rate) and not _tells(tenth, quantity.is_rate):
         return f"{names[0]} gains nothing over {names[1]}, in the median or in the worst tenth"
-    guaranteed = f" in the {quantity.smallest} that is guaranteed" if case.robust else ""
+    turned = sign * tenth < 0.0 and _tells(tenth, quantity.is_rate)
+    joined = "and" if not turned else "but loses" if sign > 0.0 else "but gains"
+    other = -sign if turned else sign
     return (
-        f"{names[0]} {verb} {names[1]}{guaranteed} by {with_unit(sign * median, quantity)} in the median "
-        f"{_interval(summary, row, 'gain_median', sign)}and "
-        f"{'' if sign * tenth >= 0.0 else 'by '}{with_unit(sign * tenth, quantity)} in the worst tenth "
-        f"{_interval(summary, row, 'shift_worst_tenth', sign)}".rstrip()
+        f"{names[0]} {verb} {names[1]} by {with_unit(sign * median, quantity)} in the median "
+        f"{_interval(summary, row, 'gain_median', sign)}{joined} {with_unit(other * tenth, quantity)} in the "
+        f"worst tenth {_interval(summary, row, 'shift_worst_tenth', other)}".rstrip()
     )
 
 
@@ -248,67 +232,3 @@ def _sweep_words(summary: Summary, point: int, case: ReportCase) -> str:
 
 def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def outage_words(summary: Summary) -> str:
-    """Return how often the requirement is missed, in a sentence; empty if there is none.
-
-    Args:
-        summary: of a study.
-    """
-    if summary.requirement is None or not summary.values.scenes:
-        return ""
-    point = len(summary.spec.points) - 1
-    parts = []
-    for case in summary.cases:
-        share = float(summary.row(point, case)["outage"])
-        if not math.isnan(share):
-            parts.append(f"{percent(share, 1)} of scenes by {case.phrase}")
-    if not parts:
-        return ""
-    words = summary.points.words(point)
-    return (
-        f"{f'At {words} a' if words else 'A'} {summary.quantity.smallest} of "
-        f"{summary.requirement:g} {summary.quantity.unit} is missed in {listed(parts)}."
-    )
-
-
-def certainty_of(summary: Summary) -> str:
-    """Return what is proved of the numbers, and what is left out of them.
-
-    Args:
-        summary: of a study.
-    """
-    counts = summary.values.counts()
-    rows = sum(counts.values())
-    if not rows:
-        return ""
-    unproved = counts["gap-not-reached"] + counts["best-found"]
-    sentences = []
-    if counts["certified"] == rows:
-        sentences.append(f"All {rows:,} poses are certified: proved to be the best within the gap asked for.")
-    else:
-        sentences.append(f"Of {count_of(rows, 'row')}, {counts['certified']:,} are certified.")
-    if unproved:
-        kinds = [
-            f"{counts[name]:,} {words}"
-            for name, words in (
-                ("gap-not-reached", "with a proof that stopped before its gap"),
-                ("best-found", "of which nothing is proved"),
-            )
-            if counts[name]
-        ]
-        sentences.append(
-            f"{listed(kinds)[:1].upper() + listed(kinds)[1:]} enter by what their pose reaches, which is "
-            "a lower bound of the best."
-        )
-    if counts["failed"]:
-        are = "is" if counts["failed"] == 1 else "are"
-        sentences.append(f"{count_of(counts['failed'], 'row')} failed, without a pose, and {are} left out.")
-    if 0 < summary.values.scenes < FEW_SCENES:
-        count = summary.values.scenes
-        sentences.append(
-            f"With {count_of(count, 'scene')} the worst tenth is {count_of(max(1, count // 10), 'scene')}: "
-            "take it as an indication only."
-        )
-    return " ".join(sentences)

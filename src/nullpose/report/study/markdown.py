@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from nullpose.report.study import tables
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import answer_of
 from nullpose.report.study.cases import whole_of
-from nullpose.report.study.statistics import CONFIDENCE, replicates_of
+from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
+from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, replicates_of
 from nullpose.report.study.summary import Summary
 from nullpose.report.study.wording import count_of, escaped, percent
 
@@ -217,8 +218,9 @@ def _data(summary: Summary) -> list[str]:
         f"{count_of(spec.n_scenes, 'scene')} from seed {spec.seed}, gap {gap}; bands of distribution "
         "functions after Dvoretzky, Kiefer and Wolfowitz, intervals of quantiles by order statistics, of "
         "shares after Clopper and Pearson, and of differences and ratios of quantiles by a bootstrap over "
-        f"scenes ({replicates_of(summary.values.scenes):,} replicates, seeded). Quantiles are numbers that "
-        "occur: the smallest that the share of scenes does not exceed.",
+        f"scenes ({replicates_of(summary.values.scenes):,} replicates, seeded; with fewer than {FEW_SCENES} "
+        "scenes none is given). Quantiles are numbers that occur: the smallest that the share of scenes does "
+        "not exceed.",
         "`study.csv` has a row for each scene, combination and case; `summary.csv` one for each combination "
         "and case, with every number above. In one line each, in the study's folder:",
         '```python\nframe = nullpose.study.monte_carlo.read_study(".").frame()    # pandas\n'

@@ -12,6 +12,7 @@ from nullpose.physics.types import FloatArray
 
 __all__ = [
     "CONFIDENCE",
+    "FEW_SCENES",
     "MEDIAN",
     "WORST_TENTH",
     "band_half_width",
@@ -29,6 +30,9 @@ CONFIDENCE = 0.95
 """Of every band and interval."""
 
 MEDIAN, WORST_TENTH = 0.5, 0.1
+
+FEW_SCENES = 36
+"""With fewer scenes the 10th percentile has no lower end at this confidence, and nothing is resampled."""
 
 _SEED = 0  # of the bootstrap: the same study gives the same report
 _MOST_REPLICATES, _FEWEST_REPLICATES = 1000, 200

@@ -13,6 +13,7 @@ from nullpose.report.quantity import Quantity
 from nullpose.report.study.cases import ReportCase, nominal_of, reference_of, report_cases, whole_of
 from nullpose.report.study.points import SweptPoints
 from nullpose.report.study.statistics import (
+    FEW_SCENES,
     MEDIAN,
     WORST_TENTH,
     difference,
@@ -206,7 +207,8 @@ def _bootstrapped(cases: tuple[ReportCase, ...], value: FloatArray, against: str
 
     count = value.shape[0]
     found = statistics(np.ones(count, dtype=np.int64)) if count else np.full((3, len(cases)), math.nan)
-    many = np.array([statistics(times) for times in draws(count)]) if count else np.empty((0, 3, len(cases)))
+    drawn = draws(count) if count >= FEW_SCENES else ()
+    many = np.array([statistics(times) for times in drawn]).reshape(-1, 3, len(cases))
     cells: list[Cells] = []
     for at, whole in enumerate(wholes):
         row: Cells = {}

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, TextIO
 from nullpose.errors import OutputError, UsageError
 from nullpose.report.figures.style import write_figure
 from nullpose.report.quantity import Quantity
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import answer_of
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of
+from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather, quantity_of
 from nullpose.study import prepare_folder, replacing, write_text

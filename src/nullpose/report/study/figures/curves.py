@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import house_style
+from nullpose.report.figures.style import Curve, house_style
 from nullpose.report.study.figures.panels import finish, looks_of, step_curve
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
@@ -108,33 +108,36 @@ def draw_effort(summary: Summary) -> Figure | None:
     if not np.any(solved):
         return None
     looks = looks_of(summary.cases)
+    columns = [(values.seconds, "time of a solve  (s)", 1e-6)]
+    if not np.all(np.isnan(values.gap)):
+        columns.append((values.gap, "relative gap of the proof", _LEAST_GAP))
     with house_style():
         figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-        left, right = figure.subplots(1, 2, sharey=True)
-        for case in summary.cases:
-            look = looks[case.name]
-            kept = solved[:, :, case.place]
-            gaps = values.gap[:, :, case.place][kept].astype(float)
-            for axes, numbers, least in (
-                (left, values.seconds[:, :, case.place][kept].astype(float), 1e-6),
-                (right, gaps[~np.isnan(gaps)], _LEAST_GAP),
-            ):
-                corners = step_curve(np.maximum(numbers, least)) if len(numbers) else ([], [])
-                axes.step(
-                    *corners,
-                    where="post",
-                    color=look.colour,
-                    linestyle=look.line,
-                    linewidth=look.width,
-                    label=look.label,
-                    zorder=look.order,
-                )
-        for axes, label in ((left, "time of a solve  (s)"), (right, "relative gap of the proof")):
+        panels = figure.subplots(1, len(columns), sharey=True, squeeze=False)[0]
+        for axes, (numbers, label, least) in zip(panels, columns, strict=True):
+            for case in summary.cases:
+                kept = numbers[:, :, case.place][solved[:, :, case.place]].astype(float)
+                _step(axes, kept[~np.isnan(kept)], looks[case.name], least)
             axes.set_xscale("log")
             axes.set_xlabel(label)
             axes.set_ylim(0.0, 1.02)
-        left.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
-        left.set_ylabel("solves with no more")
-        handles, _ = left.get_legend_handles_labels()
+        panels[0].set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
+        panels[0].set_ylabel("solves with no more")
+        handles, _ = panels[0].get_legend_handles_labels()
         finish(figure, handles, "", "")
     return figure
+
+
+def _step(axes: Axes, numbers: FloatArray, look: Curve, least: float) -> None:
+    if len(numbers):
+        across, shares = step_curve(np.maximum(numbers, least))
+        axes.step(
+            np.concatenate([across[:1], across]),
+            np.concatenate([[0.0], shares]),
+            where="post",
+            color=look.colour,
+            linestyle=look.line,
+            linewidth=look.width,
+            label=look.label,
+            zorder=look.order,
+        )

@@ -95,7 +95,7 @@ def draw_costs(summary: Summary) -> Figure | None:
             ends = [float(row["cost_median"]), float(row["cost_worst_tenth"])]
             axes.plot(ends, [place, place], color=look.colour, linewidth=4.0, alpha=0.35, zorder=2.0)
         _estimate(axes, place, row, "cost_median", look, filled=True)
-        axes.set_xlim(left=0.0)
+        axes.axvline(0.0, color=INK, linewidth=0.8, zorder=1.4)
 
     unit = summary.quantity.unit
     label = f"nominal less guaranteed {summary.quantity.smallest}  ({unit})"

@@ -80,7 +80,7 @@ def new_panels(
 
     across = 1 if len(points) == 1 else 2
     down = -(-len(points) // across)
-    figure = Figure(figsize=(_WIDTH, 0.9 + height * down), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, (1.3 if down == 1 else 0.9) + height * down), layout="constrained")
     grid = figure.subplots(down, across, sharex=True, sharey=share_y, squeeze=False)
     panels: list[Axes] = list(grid.flat)
     for axes, point in zip(panels, points, strict=False):

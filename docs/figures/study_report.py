@@ -1,0 +1,46 @@
+"""Bring the page "The report of a study" up to date: `python docs/figures/study_report.py out/study`.
+
+From the folder of the study of ``examples/study.toml``: its pictures into ``docs/images/study-report-*.png``,
+its summary and its answer beside this script.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from nullpose.report.study import report_study
+from nullpose.report.study.tables import gain_table, share_table
+from nullpose.study import write_text
+
+FOLDER = Path(__file__).parent
+IMAGES = FOLDER.parent / "images"
+REQUIREMENT_DB = 0.0
+TABLES = {
+    "Median gain over the level vehicle, dB": (gain_table, "gain_median"),
+    "Gain in the worst tenth, dB": (gain_table, "shift_worst_tenth"),
+    "Share of the omnidirectional vehicle's median gain, %": (share_table, "share_of_median"),
+    "Share of its gain in the worst tenth, %": (share_table, "share_of_worst_tenth"),
+}
+
+
+def main(study: Path) -> None:
+    """Write pictures, summary and answer of a study's report.
+
+    Args:
+        study: its folder.
+    """
+    with TemporaryDirectory() as folder:
+        report = report_study(study, out=folder, requirement_db=REQUIREMENT_DB)
+        for image in (Path(folder) / "figures").glob("*.png"):
+            shutil.copyfile(image, IMAGES / f"study-report-{image.name}")
+        shutil.copyfile(Path(folder) / "summary.csv", FOLDER / "study-report.csv")
+    write_text(FOLDER / "study-report-answer.txt", "\n\n".join([report.answer, *report.notes]) + "\n")
+    tables = [f"**{heading}**\n\n{table(report.summary, name)}" for heading, (table, name) in TABLES.items()]
+    write_text(FOLDER / "study-report-gains.txt", "\n\n".join(tables) + "\n")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,47 @@
+"""The page on the report of a study: its numbers are those kept beside it, and all columns are explained."""
+
+import csv
+import re
+from pathlib import Path
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "study-report.md").read_text(encoding="utf-8")
+ANSWER = (DOCS / "figures" / "study-report-answer.txt").read_text(encoding="utf-8")
+GAINS = (DOCS / "figures" / "study-report-gains.txt").read_text(encoding="utf-8")
+
+with (DOCS / "figures" / "study-report.csv").open(encoding="utf-8", newline="") as _file:
+    ROWS = list(csv.DictReader(_file))
+
+LAST = {row["case"]: row for row in ROWS if row["point"] == ROWS[-1]["point"]}
+
+
+def test_the_answer_is_in_the_data() -> None:
+    """Both gains, and the shares that each tilt buys, are those of the summary's last combination."""
+    whole = LAST["omnidirectional"]
+    assert f"Over {int(whole['scenes']):,} scenes at P_M/P = 100 an omnidirectional vehicle beats" in ANSWER
+    gains = re.findall(r"([\d.]+) dB in the (?:median|worst tenth)", ANSWER)
+    assert gains[:2] == [f"{float(whole[name]):.2f}" for name in ("gain_median_db", "shift_worst_tenth_db")]
+    for case, phrase in (("tilt-10", "a 10 degree tilt"), ("tilt-30", "a 30 degree tilt")):
+        told = re.search(rf"{phrase} with a horizontal dipole (all of it|(\d+) % of the median gain)", ANSWER)
+        assert told is not None
+        share = 100.0 * float(LAST[case]["share_of_median"])
+        assert abs(share - float(told[2] or 100.0)) <= 0.51
+
+
+def test_the_tables_are_the_data() -> None:
+    """Each median gain of the page's table is that of the summary."""
+    table = GAINS.split("**")[2]
+    for line in table.strip().splitlines()[2:]:
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        rows = [row for row in ROWS if row["case"] == name]
+        shown = [cell.split()[0].replace("\N{MINUS SIGN}", "-") for cell in cells]
+        assert shown == [f"{float(row['gain_median_db']):.2f}" for row in rows]
+
+
+def test_every_column_is_explained() -> None:
+    """The page's table names each column of the summary, less units and the ends of intervals."""
+    table = PAGE.split("## The summary's columns")[1].split("\n## ")[0]
+    names = {re.sub(r"(_db)?$", "", name).removesuffix("_low").removesuffix("_high") for name in ROWS[0]}
+    robust = {"nominal", "cost_median", "cost_worst_tenth"}
+    swept = {name for name in names if "." in name}
+    assert set(re.findall(r"`([a-z0-9_]+)`", table.split("|---|---|")[1])) == (names - swept) | robust
