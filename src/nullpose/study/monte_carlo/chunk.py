@@ -6,16 +6,19 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 
 from nullpose.errors import ScenarioError
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, as_table
 from nullpose.study.monte_carlo.solving import reason_of, solved_row
 from nullpose.study.monte_carlo.spec import StudySpec
+from nullpose.study.monte_carlo.together import Instance, solved_together
 from nullpose.study.monte_carlo.versions import fingerprint
 
 __all__ = ["Done", "failed_rows", "joined", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
 
+_TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
 _CALIBRATED_S = 0.3  # so much work tells how long a scene takes
 _MOST_CALIBRATED = 1000
 
@@ -54,15 +57,23 @@ def rows_of(spec: StudySpec, first: int, last: int) -> Iterator[Row]:
         last: the last scene.
     """
     draws = Draws(spec)
-    for index in range(first, last + 1):
-        for point in range(len(spec.points)):
+    for start in range(first, last + 1, block := max(1, _TOGETHER // len(spec.points))):
+        instances: list[Instance] = []
+        faults: dict[tuple[int, int], str] = {}
+        indices = range(start, min(start + block, last + 1))
+        for index, point in product(indices, range(len(spec.points))):
             try:
-                scene = draws.at(index, point)
+                instances.append((index, point, draws.at(index, point)))
             except ScenarioError as error:
-                yield from failed_rows(spec, index, point, reason_of(error))
+                faults[index, point] = reason_of(error)
+        scenes = {(index, point): scene for index, point, scene in instances}
+        rows = solved_together(spec, instances) if instances else {}
+        for at in product(indices, range(len(spec.points))):
+            if at in faults:
+                yield from failed_rows(spec, *at, faults[at])
                 continue
             for place in range(len(spec.cases)):
-                yield solved_row(spec, scene, index, point, place)
+                yield rows.get((*at, place)) or solved_row(spec, scenes[at], *at, place)
 
 
 def failed_rows(spec: StudySpec, index: int, point: int, reason: str) -> Iterator[Row]:
@@ -144,17 +155,17 @@ def seconds_per_scene(spec_json: str) -> float:
         spec_json: the study as JSON.
     """
     spec = _spec(spec_json)
-    last = min(spec.n_scenes, _MOST_CALIBRATED) - 1
     for _ in rows_of(spec, 0, 0):
         pass
-    began = time.perf_counter()
-    for done in range(1, last + 2):
-        for _ in rows_of(spec, done - 1, done - 1):
+    scenes, spent = 1, 0.0
+    while True:
+        began = time.perf_counter()
+        for _ in rows_of(spec, 0, scenes - 1):
             pass
         spent = time.perf_counter() - began
-        if spent >= _CALIBRATED_S:
-            break
-    return spent / done
+        if spent >= _CALIBRATED_S or 2 * scenes > min(spec.n_scenes, _MOST_CALIBRATED):
+            return spent / scenes
+        scenes *= 2
 
 
 @lru_cache(maxsize=4)

@@ -1,4 +1,4 @@
-"""One case in one scene, as a row: the one place where a study calls the solver."""
+"""One case in one scene, as a row."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["GIVEN_POSE", "solved_row"]
+__all__ = ["GIVEN_POSE", "limits_of", "reason_of", "solved_row"]
 
 GIVEN_POSE = "a pose that was given: nothing is searched or proved"
 """The reason of a row whose case states a pose."""
@@ -65,7 +65,9 @@ def _solved(spec: StudySpec, case: StudyCase, scene: Scenario) -> dict[str, Any]
         deciding = min(links, key=lambda link: _deciding(link.sinr, link.margin, link.secrecy_rate_bps_hz))
         return _row(Status.BEST_FOUND, GIVEN_POSE, objective.value, None, None, pose, deciding.node, 0)
     if case.robust:
-        robust = solve_robust(scene, **_limits(spec, case))
+        limits = limits_of(spec, case)
+        del limits["threads"]
+        robust = solve_robust(scene, **limits)
         best = robust.robust
         return _row(
             robust.status,
@@ -79,10 +81,10 @@ def _solved(spec: StudySpec, case: StudyCase, scene: Scenario) -> dict[str, Any]
         )
     found: Any
     if case.array is not None:
-        gap = _limits(spec, case).get("gap")
+        gap = limits_of(spec, case).get("gap")
         found = solve_array(scene, case.array.combining, gap=gap, certify=case.certify is not False)
     else:
-        found = solve(scene, case.scheme or "optimum", **_limits(spec, case))
+        found = solve(scene, case.scheme or "optimum", **limits_of(spec, case))
     return _row(
         found.status,
         found.reason,
@@ -99,13 +101,19 @@ def _deciding(sinr: float, margin: float | None, rate: float | None) -> float:
     return rate if rate is not None else sinr if margin is None else margin
 
 
-def _limits(spec: StudySpec, case: StudyCase) -> dict[str, Any]:
-    """Return the target and the limits of a solve, as its keywords."""
+def limits_of(spec: StudySpec, case: StudyCase) -> dict[str, Any]:
+    """Return the target and the limits of a solve, as its keywords.
+
+    Args:
+        spec: the study.
+        case: one of its cases.
+    """
     gap = spec.gap if case.gap is None else case.gap
     return {
         **({} if gap is None else {"gap": gap}),
         "time_limit_s": spec.time_limit_s if case.time_limit_s is None else case.time_limit_s,
         "node_limit": NODE_LIMIT if spec.node_limit is None else spec.node_limit,
+        "threads": 1,  # a worker has one, and equal rows everywhere need it
         "certify": case.certify is not False,
     }
 

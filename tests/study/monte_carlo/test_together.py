@@ -1,0 +1,84 @@
+"""What is solved together is what is solved alone, and one at fault takes no other with it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.solve import solve_many
+from nullpose.study.monte_carlo import StudySpec, together
+from nullpose.study.monte_carlo.chunk import rows_of
+from nullpose.study.monte_carlo.draw import Draws
+from nullpose.study.monte_carlo.rows import Row
+from nullpose.study.monte_carlo.solving import solved_row
+
+Spec = Callable[..., StudySpec]
+
+CASES = [{"name": "free"}, {"name": "tilt", "airframe": "tilt-10"}, {"scheme": "vertical"}, {"gap": 0.1}]
+SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
+
+
+def _without_time(rows: Any) -> list[dict[str, Any]]:
+    return [{name: getattr(row, name) for name in Row.__slots__ if name != "seconds"} for row in rows]
+
+
+def test_a_row_is_the_same_whatever_is_solved_beside_it(spec: Spec) -> None:
+    """All scenes in one go, or one by one: the same rows, to the last digit."""
+    study = spec(cases=CASES, sweep=SWEEP)
+    alone = [row for index in range(12) for row in rows_of(study, index, index)]
+    assert _without_time(rows_of(study, 0, 11)) == _without_time(alone)
+
+
+def test_together_or_by_solve(spec: Spec) -> None:
+    """The values are those of a solve within the gap, and the bounds hold for both."""
+    study = spec(cases=CASES[:2], sweep=SWEEP)
+    draws = Draws(study)
+    for row in rows_of(study, 0, 5):
+        single = solved_row(study, draws.at(row.scene, row.point), row.scene, row.point, row.case)
+        assert row.value is not None
+        assert row.bound is not None
+        assert row.value == pytest.approx(single.value, rel=1e-2)
+        assert (single.value or 0.0) <= row.bound * (1.0 + 1e-9)
+        assert row.status == single.status == "certified"
+
+
+def test_one_at_fault(spec: Spec, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rows of the others stay what they are; that one is solved by itself."""
+    study = spec(cases=CASES[:2])
+    whole = _without_time(rows_of(study, 0, 7))
+    bad = Draws(study).base(3)
+
+    def broken(scenarios: list[Scenario], **options: Any) -> Any:
+        if any(scenario == bad for scenario in scenarios):
+            raise RuntimeError("broken here")
+        return solve_many(scenarios, **options)
+
+    monkeypatch.setattr(together, "solve_many", broken)
+    monkeypatch.setattr("nullpose.study.monte_carlo.solving.solve", lambda *_, **__: 1 / 0)
+    rows = _without_time(rows_of(study, 0, 7))
+    for before, after in zip(whole, rows, strict=True):
+        if after["scene"] == 3:
+            assert (after["status"], after["reason"]) == ("failed", "ZeroDivisionError: division by zero")
+        else:
+            assert after == before
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"jammers.M.power_w": 3.0},
+        {"jammers[0].power_dbm": 33.0, "nodes.S2.power_w": 0.5},
+        {"jammers.*.power_w": 3.0},
+        {"nodes[1].power_dbm": 3.0, "receiver.noise_w": 1e-5},
+    ],
+)
+def test_powers_are_set_as_by_override(spec: Spec, changes: dict[str, float]) -> None:
+    """The quick way to set a power gives the scene of the usual one."""
+    study = spec(sweep={path: [value] for path, value in changes.items()})
+    draws = Draws(study)
+    overrides = [Override(path.replace("*", "M"), value) for path, value in changes.items()]
+    expected = apply_overrides(draws.base(0), overrides)
+    assert draws.at(0, 0) == expected
+    assert draws.at(0, 0).to_dict() == expected.to_dict()
+    assert draws.at(0, 0).jammer_powers_w.tolist() == expected.jammer_powers_w.tolist()
