@@ -1,9 +1,9 @@
 """How fast a study goes: ``python -m benchmarks.study``.
 
-The rate of one process without Dask, of the embedded cluster with two workers, and of one and two workers that are
-started by hand, on the same scenes. The first fifth of each run, in which kernels are loaded, does not count. Beside
-scenes per second there are scenes per second of processor time, of client, scheduler and workers together, which
-other work on the machine disturbs less.
+The rate of one process without Dask, of the embedded cluster with two workers, and of one and two workers
+that are started by hand, on the same scenes. The first fifth of each run, in which kernels are loaded, does
+not count. Beside scenes per second there are scenes per second of processor time, of client, scheduler and
+workers together, which other work on the machine disturbs less.
 
 With ``--million``: 10^6 scenes with a pose that is given, and how much memory the client takes.
 """

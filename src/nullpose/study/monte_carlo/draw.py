@@ -89,6 +89,7 @@ class Draws:
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
         self._swept: dict[int, tuple[dict[str, Points], list[tuple[str, float]]]] = {}
+        self._kept: dict[int, dict[str, Any]] = {}
         self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
 
     def base(self, index: int) -> Scenario:
@@ -117,7 +118,10 @@ class Draws:
 
     def _drawn(self, index: int, drawn: Mapping[str, Points]) -> Scenario:
         if self._last is None or self._last[0] != index or self._last[1] != drawn:
-            self._last = index, drawn, _scene(self._spec, index, drawn)
+            number = index % self._spec.scene.size
+            if number not in self._kept:
+                self._kept[number] = self._spec.scene.kept(number, drawn)
+            self._last = index, drawn, _scene(self._spec, index, drawn, self._kept[number])
         return self._last[2]
 
 
@@ -190,14 +194,13 @@ def _with_powers(scene: Scenario, overrides: Sequence[Override]) -> Scenario | N
     return Scenario.model_construct(**values | {kind: tuple(members) for kind, members in points.items()})
 
 
-def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario:
+def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points], kept: Mapping[str, Any]) -> Scenario:
     """Return a scene, drawing those points again that make it invalid."""
-    tables = spec.scene.drawn_tables(index, drawn)
     attempts = dict.fromkeys(drawn, 0)
     points = {kind: _draw(spec.seed, index, kind, drawn[kind], 0) for kind in drawn}
     while True:
         try:
-            return Scenario.from_dict(tables | {"name": f"scene {index}"} | points)
+            return Scenario.from_dict({**kept, "name": f"scene {index}", **points})
         except ScenarioError as error:
             again = _at_fault(error.faults, attempts)
             if again is None or attempts[again] + 1 >= MOST_DRAWS:

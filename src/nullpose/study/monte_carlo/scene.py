@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -13,6 +13,7 @@ from nullpose.scenario import (
     Airspace,
     Array,
     Eavesdropper,
+    GroundPoint,
     Jammer,
     Node,
     Origin,
@@ -24,7 +25,7 @@ from nullpose.scenario.choice import Choice
 from nullpose.scenario.faults import Place
 from nullpose.scenario.members import Members
 from nullpose.scenario.names import Label
-from nullpose.scenario.origin import GEODETIC_KEYS, located
+from nullpose.scenario.origin import located
 from nullpose.scenario.section import Section
 
 __all__ = ["POINT_LISTS", "SceneBase"]
@@ -131,8 +132,8 @@ class SceneBase(Section):
             return self.scenarios[index % len(self.scenarios)].to_dict()
         return {key: value for key, value in self.to_dict().items() if key in _TABLES}
 
-    def drawn_tables(self, index: int, drawn: Iterable[str]) -> dict[str, Any]:
-        """Return the tables of a scene without the points that are to be drawn.
+    def kept(self, index: int, drawn: Collection[str]) -> dict[str, Any]:
+        """Return what a scene keeps when points are drawn, validated already, as the values of a scenario.
 
         Points that stay are stated in metres alone: all points of a scenario are stated in one way.
 
@@ -140,17 +141,21 @@ class SceneBase(Section):
             index: the scene.
             drawn: the kinds of points that are drawn.
         """
-        tables = self.tables(index)
-        kinds = list(drawn)
-        if not kinds:
-            return tables
-        for kind in POINT_LISTS:
-            if kind in kinds:
-                tables.pop(kind, None)
-            for point in tables.get(kind, ()):
-                for key in GEODETIC_KEYS:
-                    point.pop(key, None)
-        return tables
+        whole: SceneBase | Scenario = self
+        if self.scenarios:
+            whole = self.scenarios[index % len(self.scenarios)]
+        values = {key: getattr(whole, key) for key in _TABLES if key not in drawn}
+        if drawn:
+            for kind in POINT_LISTS:
+                if kind in values:
+                    values[kind] = tuple(_in_metres(point) for point in values[kind])
+        return {key: value for key, value in values.items() if value is not None}
+
+
+def _in_metres(point: GroundPoint) -> GroundPoint:
+    if point.lat_deg is None:
+        return point
+    return point.model_copy(update={"position_m": point.position_m})
 
 
 _TABLES = (
