@@ -30,7 +30,7 @@ from nullpose.study.monte_carlo import StudySpec, StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Summary", "pairs_of", "summarise"]
+__all__ = ["Summary", "summarise"]
 
 Cells = dict[str, Any]
 
@@ -96,20 +96,6 @@ class Summary:
             if name.startswith(heads) and name != "gain_of"
         }
         return self.frame.rename(columns=names)
-
-
-def pairs_of(summary: Summary, point: int, case: ReportCase) -> FloatArray:
-    """Return the gains of a case over its reference on the same scenes; NaN where one of them failed.
-
-    Args:
-        summary: of a study.
-        point: the combination's number.
-        case: one of the cases.
-    """
-    reference = summary.reference(case)
-    assert reference is not None, "a case's own group is never empty"
-    value = summary.values.value[:, point]
-    return difference(value[:, case.place], value[:, reference.place])
 
 
 def summarise(

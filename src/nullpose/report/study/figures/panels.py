@@ -21,7 +21,7 @@ __all__ = ["finish", "looks_of", "new_panels", "points_with", "row_axis", "step_
 
 _WIDTH = 7.0  # inches: the text of a page
 _LETTERS = 92  # of a legend's row, a handle being as wide as six
-_MOST_STEPS = 2000  # of a curve; more are not seen, and make a heavy file
+_STEPS = 500  # of a curve, about; more are not seen, and make a heavy file
 
 _FALLBACK = ("#d55e00", "#000000", "#8c564b", "#7f7f00", "#6a3d9a", "#8c8c8c")
 _LINES: tuple[Any, ...] = ("-", (0, (5, 1.6)), (0, (3, 1.2, 1, 1.2)), (0, (1.2, 1.2)))
@@ -130,8 +130,10 @@ def step_curve(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     ordered = np.sort(numbers)
     shares = np.arange(1, len(ordered) + 1) / len(ordered)
-    if len(ordered) > _MOST_STEPS:
-        kept = np.unique(np.linspace(0, len(ordered) - 1, _MOST_STEPS).round().astype(int))
+    if len(ordered) > 2 * _STEPS:
+        evenly = np.linspace(0, len(ordered) - 1, _STEPS)
+        tail = np.geomspace(1, len(ordered), _STEPS // 2) - 1  # outage is read where it is rare
+        kept = np.unique(np.concatenate([evenly, tail]).round().astype(int))
         ordered, shares = ordered[kept], shares[kept]
     return ordered, shares
 
