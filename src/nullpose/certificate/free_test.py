@@ -9,7 +9,7 @@ import numpy as np
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes, group_shares, mix_slots
-from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.frames import (
     PAIRS,
     SWING,
@@ -27,6 +27,7 @@ from nullpose.family import AxisField, Family
 __all__ = ["Sum", "free_holds", "negative_definite"]
 
 _LARGEST_ETA = 0.5
+_SWERVE = (2.0 + 2.0 / np.sqrt(3.0)) * (1.0 + 1e-12)  # see "Near a null", rounded up
 _DIAGONAL = np.sqrt(2.0) * (1.0 + 1e-12)  # a form's spread of eigenvalues over its Frobenius norm, rounded up
 
 
@@ -85,9 +86,8 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
         boxes: to be tested.
     """
     holds, vectors = _holds(family, field, leaves, boxes, None)
-    # near a null the denominators' remainders may be had smaller, in a frame at rest
-    left = np.flatnonzero(~holds & (leaves.test[boxes.leaf] != TOWARDS))
-    if len(left):
+    left = np.flatnonzero(~holds)
+    if len(left):  # near a null the denominators' remainders may be had smaller
         holds[left], _ = _holds(family, field, leaves, boxes.chosen(left), vectors[left])
     return holds
 
@@ -127,8 +127,8 @@ def add_ratios(
 ) -> None:
     """Add ``sum_k lambda_k (N_k - t D_g(k))``, denominators gathered by group.
 
-    With vectors, (b, 3), along which the sums are largest, denominators that are small there get the
-    remainder that is sharp near a null if it is the smaller one; that asks for frames at rest.
+    With vectors, (b, 3) in the basis, along which the sums are largest, denominators that are small there
+    get the remainder that is sharp near a null if it is the smaller one.
     """
     ratio, weight = mix_slots(leaves, boxes)
     half2 = boxes.half2 * 0.5
@@ -167,7 +167,7 @@ def add_denominator(
         form, slopes, _, down = expansion(family, frames, boxes, where)
         rest = down * boxes.half2 * 0.5
         if vectors is not None:
-            share, rest = sharper(form, vectors, boxes, family.points_m[where], rest)
+            share, rest = sharper(form, vectors, boxes, frames, where, family.points_m[where], rest)
             total.add(-(scale * (1.0 - Interval(share))), form, slopes)
         else:
             total.add(-scale, form, slopes)
@@ -178,30 +178,43 @@ def add_denominator(
 
 
 def sharper(
-    form: list[Interval], vectors: FloatArray, boxes: Boxes, points: FloatArray, plain: Interval
+    form: list[Interval],
+    vectors: FloatArray,
+    boxes: Boxes,
+    frames: Frames,
+    point: IntArray,
+    point_m: FloatArray,
+    plain: Interval,
 ) -> tuple[FloatArray, Interval]:
     """Return each box's eta and the remainder near a null, or zero and the plain one where that is smaller.
 
     Args:
-        form: of one point, at the centres, in the world.
+        form: of one point, at the centres, in the frames' bases.
         vectors: (b, 3) where it counts.
         boxes: whose remainders they are.
-        points: (b, 3) the point.
+        frames: of the boxes.
+        point: (b,) which point; the one that a frame turns towards keeps its own remainder.
+        point_m: (b, 3) where it is.
         plain: lemma 2's remainder, positive.
     """
-    here = sum(
-        (1.0 if i == j else 2.0) * f.middle() * vectors[:, i] * vectors[:, j]
-        for f, (i, j) in zip(form, PAIRS, strict=True)
+    here = np.asarray(
+        sum(
+            (1.0 if i == j else 2.0) * f.middle() * vectors[:, i] * vectors[:, j]
+            for f, (i, j) in zip(form, PAIRS, strict=True)
+        )
     )
-    near = Interval(boxes.nearest2(points))
-    # (|x|^2 / a^3)^2, a being the least distance
-    square = boxes.half2.squared() / (near.squared() * near)
+    near = Interval(Interval(boxes.nearest2(point_m)).sqrt().low)
+    turn = np.where(frames.turning, 1.0, 0.0)
+    bend = 2.0 / (near.squared() * near)
+    bend = bend + 6.0 / (near.squared() * frames.rho_least) * turn
+    bend = bend + _SWERVE / (near * frames.rho_least.squared()) * turn
+    square = (bend * boxes.half2 * 0.5).squared()
     least = 1e-12 * sum(f.middle() for f in form[:3])
-    eta = np.sqrt(square.high / np.maximum(np.asarray(here), least))
-    use = (eta > 0.0) & (eta < _LARGEST_ETA)
+    eta = np.sqrt(square.high / np.maximum(here, least))
+    use = (eta > 0.0) & (eta < _LARGEST_ETA) & ~(frames.turning & (point == frames.anchor))
     eta = np.where(use, eta, _LARGEST_ETA)
     rest = square / eta
-    use &= eta * np.asarray(here) + rest.high < plain.high
+    use &= eta * here + rest.high < plain.high
     return np.where(use, eta, 0.0), Interval(
         np.where(use, finite(rest.low), plain.low), np.where(use, finite(rest.high), plain.high)
     )

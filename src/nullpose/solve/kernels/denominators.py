@@ -84,13 +84,23 @@ def add_mixed_denominators(family, view, row, matrix, slopes):
 
 
 @inner_kernel
-def sharpen(family, view, row, matrix, slopes):
-    """Replace, in a frame at rest, the denominators' remainders by smaller ones where they are smaller.
+def null_rest(a, rho):
+    """Return a bound on the second derivative of a link's vector w, in a frame that turns or stands still."""
+    rest = 2.0 / (a * a * a)
+    if rho < math.inf:
+        rest += 6.0 / (a * a * rho) + 3.155 / (a * rho * rho)  # 2 + 2 / sqrt(3), rounded up
+    return rest
 
-    With ``w = r / |r|^2`` a link is ``|u x w|^2``, and the rest of w beyond first order is at most ``|x|^2 /
-    a^3`` at a step x from the centre, a being the least distance. Since ``2 p q <= eta p^2 + q^2 / eta``, its
-    form is at least ``(1 - eta) (T + T'.x) - |x|^4 / (eta a^6) I`` for any eta in (0, 1): beside the null,
-    where T is small, far better than ``T + T'.x - 2 |x|^2 / a^4 I``.
+
+@inner_kernel
+def sharpen(family, view, row, matrix, slopes):
+    """Replace the denominators' remainders by smaller ones where they are smaller.
+
+    With ``w = r / |r|^2``, r seen in the frame, a link is ``|u x w|^2``, and the rest of w beyond first
+    order is at most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
+    form is at least ``(1 - eta) (T + T'.x) - (W |x|^2 / 2)^2 / eta I`` for any eta in (0, 1): beside the
+    null, where T is small, far better than a remainder of the second order. The point that the frame turns
+    towards keeps its own.
     """
     points, den, dstart, dpt, dw, turn = family[0], family[4], family[6], family[7], family[8], family[9]
     kind, anchor, basis, rho, rho_min = view
@@ -105,13 +115,15 @@ def sharpen(family, view, row, matrix, slopes):
             continue
         g = den[int(row[INDEX + s])]
         for e in range(dstart[g], dstart[g + 1]):
+            if kind == TOWARDS_POINT and dpt[e] == anchor:
+                continue
             scale = weight * dw[e]
-            expand_point(
+            _, down = expand_point(
                 points, turn, dpt[e], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
             )
             here, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
-            a = min_distance(points, dpt[e], centre, half)
-            rest, plain = square / (a * a * a), 2.0 * square / (a * a * a * a)
+            rest = 0.5 * square * null_rest(min_distance(points, dpt[e], centre, half), rho_min)
+            plain = -0.5 * square * down
             eta = rest / math.sqrt(max(here, 1e-12 * trace))
             if eta < _LARGEST_SHARE and eta * here + rest * rest / eta < plain:
                 add_scaled(scale * eta, form, form_slopes, matrix, slopes)

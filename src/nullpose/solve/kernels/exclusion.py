@@ -202,13 +202,12 @@ def excludes(family, domain, axis_field, view, row, below):
     matrix[2] += everywhere
     if negative_at_corners(matrix, slopes, half, level_axes):
         return True
-    if view[0] == WORLD:
-        if level_axes:  # what is off the level plane does not count
-            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
-            matrix[4] = matrix[5] = 0.0
-        sharpen(family, view, row, matrix, slopes)
-        if negative_at_corners(matrix, slopes, half, level_axes):
-            return True
+    if level_axes:  # what is off the level plane does not count
+        matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+        matrix[4] = matrix[5] = 0.0
+    sharpen(family, view, row, matrix, slopes)
+    if negative_at_corners(matrix, slopes, half, level_axes):
+        return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
 
