@@ -277,6 +277,8 @@ def test_false_certificates_are_rejected(
         "cell": ("cells", "level"),
         "sides": ("cells", "level"),
         "band": ("belt",),
+        "test": ("ball", "zones", "belt", "level"),
+        "point": ("ball", "zones", "null", "secret"),
         "ball": ("ball", "zones"),
         "ball_multiplier": ("ball",),
         "airframe, claim redone": ("belt", "level"),
