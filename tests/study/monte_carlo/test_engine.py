@@ -1,5 +1,7 @@
 """The rows of a study are the same wherever it runs, in whatever parts."""
 
+import socketserver
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -7,6 +9,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from nullpose.errors import ClusterError
 from nullpose.study.monte_carlo import StudyProgress, StudySpec, run_study
 
 Rows = Callable[[Path], pd.DataFrame]
@@ -51,10 +54,22 @@ def test_workers_may_come_late(farm: Any, quick: Spec, tmp_path: Path) -> None:
     assert notes[0] == f"no worker at {farm.address} yet: waiting for one"
 
 
+def test_a_server_that_is_no_scheduler(quick: Spec, tmp_path: Path) -> None:
+    """Whatever it answers, it is told as one that is not there."""
+
+    class Page(socketserver.BaseRequestHandler):
+        def handle(self) -> None:
+            self.request.sendall(b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n")
+
+    with socketserver.TCPServer(("127.0.0.1", 0), Page) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        with pytest.raises(ClusterError, match="no Dask scheduler answers at"):
+            run_study(quick(), tmp_path, scheduler=f"tcp://127.0.0.1:{server.server_address[1]}")
+        server.shutdown()
+
+
 @pytest.mark.parametrize("address", ["nowhere", "http://127.0.0.1:1", "tcp://127.0.0.1:notaport"])
 def test_an_address_that_is_none(quick: Spec, tmp_path: Path, address: str) -> None:
     """It is refused in this package's words."""
-    from nullpose.errors import ClusterError
-
     with pytest.raises(ClusterError, match="no Dask scheduler answers at"):
         run_study(quick(), tmp_path / "out", scheduler=address)

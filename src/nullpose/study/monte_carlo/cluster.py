@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import signal
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
@@ -74,8 +76,12 @@ def _client_of(scheduler: str) -> Client:
     from distributed import Client
 
     try:
+        # A client that cannot connect takes long to be given up: this tells sooner. In a thread of its own,
+        # since a notebook has a loop running in this one.
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(lambda: asyncio.run(_reached(scheduler))).result()
         return Client(scheduler, timeout=CONNECT_S, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
+    except Exception as error:
         raise ClusterError(
             f"scheduler: no Dask scheduler answers at {scheduler} ({_first_line(error)}); check the address "
             "(as in tcp://host:8786) and that it runs: dask scheduler on its machine, dask worker "
@@ -83,8 +89,17 @@ def _client_of(scheduler: str) -> Client:
         ) from error
 
 
+async def _reached(scheduler: str) -> None:
+    from distributed.comm import connect
+
+    comm = await connect(scheduler, timeout=CONNECT_S)
+    await comm.close()
+
+
 def _first_line(error: Exception) -> str:
     lines = str(error).strip().splitlines()
+    if not isinstance(error, OSError | ValueError):
+        return "what answers is something else"
     return lines[0] if lines else type(error).__name__
 
 
