@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -93,9 +92,8 @@ def by_hand(workers: int) -> Iterator[tuple[str, list[psutil.Process]]]:
             yield address, [psutil.Process(process.pid) for process in started]
         finally:
             for process in reversed(started):
-                process.send_signal(signal.SIGTERM)
-            for process in started:
-                process.wait(30)
+                process.kill()
+                process.wait()
 
 
 def measured(spec: StudySpec, chunk: int, others: list[psutil.Process], **where: Any) -> tuple[float, float]:
@@ -112,21 +110,22 @@ def compare(scenes: int, chunk: int) -> None:
     print(f"{spec.name}: {scenes} scenes of {spec.rows_per_scene} proofs, {chunk} in a part")
     print(f"load of the machine before: {os.getloadavg()[0]:.1f} on {psutil.cpu_count()} processors")
     rows: list[tuple[str, int, float, float]] = []
+    print(f"{'':<22}{'workers':>8}{'scenes/s':>10}{'of one':>8}{'per CPU s':>11}{'of one':>8}")
 
     def add(name: str, workers: int, run: Callable[[], tuple[float, float]]) -> None:
-        rows.append((name, workers, *run()))
+        rate, efficient = run()
+        rows.append((name, workers, rate, efficient))
+        print(
+            f"{name:<22}{workers:>8}{rate:>10.2f}{rate / rows[0][2]:>8.2f}"
+            f"{efficient:>11.2f}{efficient / rows[0][3]:>8.2f}",
+            flush=True,
+        )
 
     add("one process, no Dask", 1, lambda: measured(spec, chunk, [], workers=0))
     add("embedded cluster", 2, lambda: measured(spec, chunk, [], workers=2))
     for workers in (1, 2):
         with by_hand(workers) as (address, others):
             add("by hand", workers, lambda a=address, o=others: measured(spec, chunk, o, scheduler=a))
-    print(f"{'':<22}{'workers':>8}{'scenes/s':>10}{'of one':>8}{'per CPU s':>11}{'of one':>8}")
-    for name, workers, rate, efficient in rows:
-        print(
-            f"{name:<22}{workers:>8}{rate:>10.2f}{rate / rows[0][2]:>8.2f}"
-            f"{efficient:>11.2f}{efficient / rows[0][3]:>8.2f}"
-        )
     print(f"two workers by hand against one: {rows[3][2] / rows[2][2]:.2f} times the rate")
 
 
