@@ -42,7 +42,6 @@ class GapBar:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
-            self._bar.refresh()  # not every release of rich draws the last state by itself
             self._bar.stop()
 
     def __call__(self, gap: float, boxes: int) -> None:
@@ -52,7 +51,7 @@ class GapBar:
         if now - self._began < _QUIET_S:
             return
         words = f"gap {gap:.1e} of {self._target:.1e}, {boxes} boxes"
-        if sys.stderr.isatty():
+        if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
             self._draw(gap, words)
         elif now - self._logged >= _LOG_EVERY_S:
             self._logged = now

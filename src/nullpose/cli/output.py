@@ -79,7 +79,6 @@ class Ticker:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
-            self._bar.refresh()  # not every release of rich draws the last state by itself
             self._bar.stop()
 
     def __call__(self, done: int, total: int) -> None:
@@ -87,7 +86,7 @@ class Ticker:
         now = time.monotonic()
         if now - self._began < _QUIET_S:
             return
-        if sys.stderr.isatty():
+        if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
             self._draw(done, total)
         elif now - self._logged >= _LOG_EVERY_S:
             self._logged = now

@@ -36,7 +36,6 @@ class StudyBar:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
-            self._bar.refresh()
             self._bar.stop()
 
     def __call__(self, progress: StudyProgress) -> None:
@@ -47,7 +46,7 @@ class StudyBar:
         now = time.monotonic()
         if now - self._began < _QUIET_S:
             return
-        if sys.stderr.isatty():
+        if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
             self._draw(progress)
         elif now - self._logged >= _LOG_EVERY_S:
             self._logged = now
