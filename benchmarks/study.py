@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -26,6 +27,7 @@ from typing import Any
 import psutil
 
 from nullpose.study.monte_carlo import StudyProgress, StudySpec, load_spec, run_study
+from nullpose.study.monte_carlo.chunk import rows_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "study.toml"
 WARM = 0.2  # share of the scenes that is not measured
@@ -104,6 +106,24 @@ def measured(spec: StudySpec, chunk: int, others: list[psutil.Process], **where:
     return meter.rates()
 
 
+def alone(spec: StudySpec, first: int, last: int) -> None:
+    """Solve some scenes, and keep nothing: what a process does that shares nothing with another."""
+    for _ in rows_of(spec, first, last):
+        pass
+
+
+def apart(spec: StudySpec, processes: int) -> tuple[float, float]:
+    """Return the rates of processes that know nothing of each other: what the machine has to give."""
+    context = multiprocessing.get_context("spawn")
+    with context.Pool(processes) as pool:
+        pool.starmap(alone, [(spec, 0, 0)] * processes, chunksize=1)  # kernels are loaded
+        share = spec.n_scenes // processes
+        began = time.perf_counter()
+        pool.starmap(alone, [(spec, i * share, (i + 1) * share - 1) for i in range(processes)], chunksize=1)
+        spent = time.perf_counter() - began
+    return processes * share / spent, share / spent
+
+
 def compare(scenes: int, chunk: int) -> None:
     """Print the rates of all ways to run the example."""
     spec = load_spec(EXAMPLE).model_copy(update={"scenes": scenes})
@@ -126,7 +146,11 @@ def compare(scenes: int, chunk: int) -> None:
     for workers in (1, 2):
         with by_hand(workers) as (address, others):
             add("by hand", workers, lambda a=address, o=others: measured(spec, chunk, o, scheduler=a))
+    one, two = apart(spec, 1)[0], apart(spec, 2)[0]
     print(f"two workers by hand against one: {rows[3][2] / rows[2][2]:.2f} times the rate")
+    print(
+        f"two processes that share nothing against one: {two / one:.2f} times ({one:.2f}, {two:.2f} scenes/s)"
+    )
 
 
 def million(scenes: int) -> None:
