@@ -121,7 +121,7 @@ def test_level_axes_are_proved_in_cells(random_scene: Callable, put_together: Ca
 
 def test_cells_are_proved_within_bands(random_scene: Callable, put_together: Callable) -> None:
     """With many nodes bands are cut into cells, which need their multipliers."""
-    scenario = with_airframe(random_scene(50, 8, 3), tilt_max_deg=20.0, mount_deg=90.0)
+    scenario = with_airframe(random_scene(57, 8, 3), tilt_max_deg=10.0, mount_deg=90.0)
     certificate = put_together(scenario, gap=1e-2)
     leaves = certificate.trees[0].leaves
     assert verify(certificate).proved

@@ -14,7 +14,7 @@ from nullpose.solve.effort import Effort
 from nullpose.solve.found import Found
 from nullpose.solve.limits import Limits
 from nullpose.solve.multistart import CLIMBS, landmarks, shift_of
-from nullpose.solve.proof import DIRECT_NODES, INSIDE, Spent, prove
+from nullpose.solve.proof import DIRECT_NODES, INSIDE, Spent, late_nodes, prove
 from nullpose.solve.warming import ready
 
 __all__ = ["Batch", "Settlement", "same_shape"]
@@ -164,7 +164,7 @@ class Batch:
             (search.coarse, search.polished, search.rounds, search.patience),
             np.array(CLIMBS),
             -1.0 if limits is None else INSIDE * limits.gap,
-            1 if limits is None else min(DIRECT_NODES, limits.node_limit),
+            (1, 1, 1) if limits is None else self._budget(limits),
             known.position_m,
             known.axis,
             known.multipliers,
@@ -176,6 +176,10 @@ class Batch:
         if limits is not None:
             for one in np.flatnonzero(known.code == _OPEN):
                 self._go_on(int(one), field, limits, known)
+
+    def _budget(self, limits: Limits) -> tuple[int, int, int]:
+        """Return the nodes of the two tries, and of all."""
+        return late_nodes(self.families[0]), DIRECT_NODES, limits.node_limit
 
     def _go_on(self, one: int, field: AxisField, limits: Limits, known: Settlement) -> None:
         """Give a proof that is longer than most its stages and its clock."""

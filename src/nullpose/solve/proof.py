@@ -17,12 +17,14 @@ from nullpose.solve.crew import Crew, Task, processors
 from nullpose.solve.found import Found
 from nullpose.solve.limits import Limits
 
-__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "Proof", "Spent", "prove"]
+__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "Proof", "Spent", "late_nodes", "prove"]
 
 FloatArray = NDArray[np.float64]
 
 DIRECT_NODES = 20_000
-"""Nodes of a first try at the target; most problems of the paper's size need a few hundred."""
+"""Nodes of a try with axes split early; most problems of the paper's size need a few hundred."""
+_LATE_NODES = 3_000
+_LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _STAGE = 0.25  # each stage's gap, as a share of the one before
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
 _MOST_LEAVES = 500_000
@@ -93,7 +95,7 @@ class _Run:
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
-        self.doubt = 0.0
+        self.doubt, self.axes_above = 0.0, self.kernel.EARLY
         self.target = INSIDE * limits.ratio_gap(self.value)
         self.favourite = self._favourite()
 
@@ -125,6 +127,21 @@ class _Run:
         row[self.node.FACE] = -1.0
         return row[None]
 
+    def directly(self, root: FloatArray) -> tuple[FloatArray, str]:
+        """Try the target from the root; return the leaves and why it stopped short, if it did.
+
+        Splitting axes late takes some hundred nodes where splitting them early takes many thousands, and the
+        other way round, and nothing cheap was found that tells which beforehand.
+        """
+        tries = [(self.kernel.EARLY, DIRECT_NODES)]
+        if self.kernel.may_have_gaps(self.family.arrays, self.axis_field.arrays):
+            tries.insert(0, (self.kernel.LATE, late_nodes(self.family)))
+        for self.axes_above, nodes in tries:
+            done, reason = self.stage(self.target, root, min(nodes, self.node_limit - self.nodes))
+            if not reason or time.perf_counter() > self.deadline or self.nodes >= self.node_limit:
+                break
+        return done, reason
+
     def stage(self, gap: float, start: FloatArray, most: int, threads: int = 1) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
         crew = Crew(start, threads)
@@ -155,6 +172,7 @@ class _Run:
             self.value * (1.0 + gap),
             self.value * (1.0 + self.doubt),
             self.favourite,
+            self.axes_above,
         )
         return Task(self.kernel, arguments, max(1, min(self.chunk, until - self.nodes)))
 
@@ -212,6 +230,15 @@ class _Run:
         return leaf
 
 
+def late_nodes(family: Family) -> int:
+    """Return how many nodes a first try at the target may take, in which axes are split late.
+
+    Args:
+        family: whose ratios are counted.
+    """
+    return min(_LATE_NODES, _LATE_NODES_EACH * len(family.numerator_point))
+
+
 def prove(
     family: Family,
     axis_field: AxisField,
@@ -246,7 +273,7 @@ def prove(
             return run.result(root, leaves, "")
         done, reason = root, "tried before"
         if not spent.direct:
-            done, reason = run.stage(target, root, min(DIRECT_NODES, run.node_limit))
+            done, reason = run.directly(root)
         if not reason:
             leaves = run.shown(done, leaves)
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:

@@ -77,7 +77,7 @@ def compile_branch(family: Family, axis_field: AxisField) -> None:
     row, rows = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS))
     node.keep_largest(np.ones(1), 1, row)
     none = (0, rows.copy(), 0, 1, np.empty(3), np.empty(3))
-    branch.branch(family.arrays, family.domain, axis_field.arrays, 1.0, 1.0, row, rows, *none)
+    branch.branch(family.arrays, family.domain, axis_field.arrays, 1.0, 1.0, row, 1.0, rows, *none)
 
 
 def compile_search(family: Family, axis_field: AxisField) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.solve.kernels.array_enclosure import box_bound
 from nullpose.solve.kernels.array_response import array_value
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
 
 __all__ = ["branch_array"]
 
@@ -61,7 +61,7 @@ def widest(scene, radius, centre, half):
     return axis
 
 
-@kernel
+@heap_kernel
 def branch_array(scene, base, domain, root, target, most, state):
     """Return what the smallest ratio exceeds nowhere, and the boxes examined; fill the best centre seen.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from nullpose.solve.kernels.array_response import array_value, respond
 from nullpose.solve.kernels.chart import choose_sides, side_slack
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 
 __all__ = ["climb", "judge"]
 
@@ -104,7 +104,7 @@ def direction(matrix, slope, step):
     return rise, 1.0 / max(1.0, largest)
 
 
-@inner_kernel
+@inner_heap_kernel
 def learn(matrix, step, bend):
     """BFGS update of the inverse curvature by a step and the change of slope, downhill, along it."""
     n = step.shape[0]
@@ -123,7 +123,7 @@ def learn(matrix, step, bend):
                 ) / agreement
 
 
-@kernel
+@heap_kernel
 def climb(scene, base, domain, shared, x, betas, most):
     """Climb from a state, in place; return its smallest log ratio less the walls' penalty, and evaluations.
 

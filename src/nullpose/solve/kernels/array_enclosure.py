@@ -26,7 +26,7 @@ from nullpose.solve.kernels.array_response import (
     unwhiten,
     whiten,
 )
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 
 __all__ = ["box_bound"]
 
@@ -70,7 +70,7 @@ def fill_sizes(scene, centre, half, channels, leans, sizes):
         sizes[i, 4] = least
 
 
-@inner_kernel
+@inner_heap_kernel
 def swing(way_j, way_k, reach, half, cosine, sine):
     """Return bounds on the changes of ``u.(e_j - e_k)``: linear, for u along each body axis, and further.
 
@@ -117,7 +117,7 @@ def norm(v):
     return math.sqrt(total)
 
 
-@inner_kernel
+@inner_heap_kernel
 def node_bound(scene, base, q, field, jammers, half, slope):
     """Return a node's bound without its first-order terms, and fill the slope that these come from."""
     channels, places, leans, ways, distances, sizes, turn = field
@@ -150,7 +150,7 @@ def total_of(level, slope, half):
     return level
 
 
-@inner_kernel
+@inner_heap_kernel
 def blend(level, slope, other, other_slope, half):
     """Return the share of one bound in the best mean of two: where a slope cancels, or all or nothing."""
     best_share, best = 1.0, total_of(level, slope, half)
@@ -169,7 +169,7 @@ def blend(level, slope, other, other_slope, half):
     return best_share
 
 
-@inner_kernel
+@inner_heap_kernel
 def best_mean(levels, slopes, half):
     """Return the least mean of the nodes' bounds that a few passes of pairwise blending find."""
     low = 0
@@ -189,7 +189,7 @@ def best_mean(levels, slopes, half):
     return total_of(level, slope, half)
 
 
-@kernel
+@heap_kernel
 def box_bound(scene, base, centre, half):
     """Return what the smallest ratio (not its logarithm) exceeds nowhere in a box.
 

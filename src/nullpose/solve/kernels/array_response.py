@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 
 __all__ = ["array_value", "respond"]
 
@@ -109,7 +109,7 @@ def jammer_factors(channels, nodes, factors, shares):
         shares[j] = 1.0 / (root * (root + 1.0))
 
 
-@inner_kernel
+@inner_heap_kernel
 def digital(scene, base, x, logs, slopes):
     """Fill the log of ``h_k^H R^-1 h_k`` for every node, and its slopes (nodes, 4) unless they have no rows.
 
@@ -148,7 +148,7 @@ def digital(scene, base, x, logs, slopes):
     return worst
 
 
-@inner_kernel
+@inner_heap_kernel
 def beam_power(w, h, places, lean, way, distance, slopes):
     """Return ``|w^H h|^2`` and add its slopes in the variables of a shared beam, unless there are none."""
     change = np.empty(4, np.complex128)
@@ -160,7 +160,7 @@ def beam_power(w, h, places, lean, way, distance, slopes):
     return part.real**2 + part.imag**2
 
 
-@inner_kernel
+@inner_heap_kernel
 def shared_beam(scene, base, x, logs, slopes):
     """Fill the log SINR of every node with one beam of phase shifters, and its slopes (nodes, 4 + k)."""
     nodes, m, k = scene[2], scene[0].shape[0], base.shape[0]
@@ -207,7 +207,7 @@ def respond(scene, base, shared, x, logs, slopes):
     return digital(scene, base, x, logs, slopes)
 
 
-@kernel
+@heap_kernel
 def array_value(scene, base, shared, x):
     """Return the smallest log ratio at a state, as :func:`respond`."""
     return respond(scene, base, shared, x, np.empty(scene[2]), np.empty((0, x.shape[0])))

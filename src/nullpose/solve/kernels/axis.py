@@ -19,9 +19,10 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polynomial import real_roots
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import eigen3
 
 __all__ = ["best_axis", "best_axis_of_forms"]
@@ -44,13 +45,13 @@ def quartic(a, curve, out):
 @inner_kernel
 def equal_cone(difference, curves):
     """Fill the curves, each (3, 3), whose traces over s in [-1, 1] cover ``v^T B v = 0``; return how many."""
-    matrix = np.empty((3, 3))
+    matrix = scratch(3, 3)
     matrix[0, 0], matrix[1, 1], matrix[2, 2] = difference[0], difference[1], difference[2]
     matrix[0, 1] = matrix[1, 0] = difference[3]
     matrix[0, 2] = matrix[2, 0] = difference[4]
     matrix[1, 2] = matrix[2, 1] = difference[5]
-    values = np.empty(3)
-    vectors = np.empty((3, 3))
+    values = scratch(3)
+    vectors = scratch(3, 3)
     eigen3(matrix, values, vectors)
     high, middle, low = values[0], values[1], values[2]
     if middle >= 0.0:
@@ -105,17 +106,17 @@ def add_candidate(v, forms, working, members, candidates, values, count, floor):
     return count + 1
 
 
-@inner_kernel
+@inner_heap_kernel
 def add_pair(forms, working, members, i, j, candidates, values, count, floor):
     """Append the candidates on which forms i and j of the working set are equal."""
     difference = forms[working[i]] - forms[working[j]]
     identity = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-    curves = np.empty((4, 3, 3))
-    q = np.empty(5)
-    n = np.empty(5)
-    poly = np.empty(9)
-    roots = np.empty(12)
-    v = np.empty(3)
+    curves = scratch(4, 3, 3)
+    q = scratch(5)
+    n = scratch(5)
+    poly = scratch(9)
+    roots = scratch(12)
+    v = scratch(3)
     for c in range(equal_cone(difference, curves)):
         curve = curves[c]
         quartic(forms[working[i]], curve, q)
@@ -143,13 +144,13 @@ def add_pair(forms, working, members, i, j, candidates, values, count, floor):
     return count
 
 
-@inner_kernel
+@inner_heap_kernel
 def add_single(forms, working, members, i, candidates, values, count, floor):
     """Append the top eigenvector of form i of the working set."""
     a = forms[working[i]]
     matrix = np.array([[a[0], a[3], a[4]], [a[3], a[1], a[5]], [a[4], a[5], a[2]]])
-    w = np.empty(3)
-    vectors = np.empty((3, 3))
+    w = scratch(3)
+    vectors = scratch(3, 3)
     eigen3(matrix, w, vectors)
     return add_candidate(vectors[:, 0].copy(), forms, working, members, candidates, values, count, floor)
 
@@ -172,7 +173,7 @@ def largest_eigenvalue(a):
 def spread_axis(forms, axis):
     """Fill the best of some directions spread evenly over a hemisphere; return its smallest form."""
     best = -math.inf
-    v = np.empty(3)
+    v = scratch(3)
     for i in range(_SPREAD):
         v[2] = (i + 0.5) / _SPREAD
         across = math.sqrt(1.0 - v[2] * v[2])
@@ -190,7 +191,7 @@ def spread_axis(forms, axis):
     return best
 
 
-@kernel
+@heap_kernel
 def best_axis_of_forms(forms, axis):
     """Fill the unit vector that maximises the smallest of the forms; return that value.
 
@@ -255,13 +256,13 @@ def best_axis_of_forms(forms, axis):
     return best
 
 
-@inner_kernel
+@inner_heap_kernel
 def whiten(forms, denominator, back, out):
     """Fill ``B A_k B`` with ``B = D^(-1/2)`` kept in ``back``, so that ratios become plain forms."""
     d = denominator
     matrix = np.array([[d[0], d[3], d[4]], [d[3], d[1], d[5]], [d[4], d[5], d[2]]])
-    w = np.empty(3)
-    vectors = np.empty((3, 3))
+    w = scratch(3)
+    vectors = scratch(3, 3)
     eigen3(matrix, w, vectors)
     # the smallest eigenvalues of a denominator lie near its isotropic part, far below the largest
     back[:, :] = 0.0
@@ -278,7 +279,7 @@ def whiten(forms, denominator, back, out):
             out[k, m] = bilinear(a, back[i], back[j])
 
 
-@kernel
+@heap_kernel
 def best_axis(family, p, axis):
     """Fill the unit axis that maximises the smallest ratio at position p; return the log of that ratio.
 
@@ -290,12 +291,12 @@ def best_axis(family, p, axis):
     denominators = np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
     forms = np.empty((ratios, 6))
-    v = np.zeros(3)
+    v = zeroed(3)
     v[2] = 1.0
     logs = np.empty(groups)
     f = np.empty(ratios)
     if groups == 1:
-        back = np.empty((3, 3))
+        back = scratch(3, 3)
         whiten(numerators, denominators[0], back, forms)
         best_axis_of_forms(forms, v)
         for i in range(3):

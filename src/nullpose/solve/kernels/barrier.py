@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel, kernel
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve
 
 __all__ = ["barrier_value", "bent_step", "best_level", "newton_step", "residual", "update_duals"]
@@ -71,7 +71,7 @@ def residual(f, t, slacks, used, z, zs, slopes, rows, n, mu):
     return error
 
 
-@kernel
+@heap_kernel
 def newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, factor, step):
     """Fill the primal-dual Newton step in the n variables and t; return the barrier's slope along it, or NaN.
 

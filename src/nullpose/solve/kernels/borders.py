@@ -10,6 +10,7 @@ import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import BALL, CENTRE, HALF, NU, reaching_ball
+from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.zones import (
     FORBIDDEN,
     MOST_ALTERNATIVES,
@@ -33,7 +34,7 @@ def choose_border(domain, row):
     row[BALL], row[NU] = reaching_ball(keep_points, keep_radius, row), 0.0
     if zones == 0:
         return -1
-    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     chosen, inside = -1, False
     for z in range(zones):
         count = zone_alternatives(domain, z, row, sides, counts)
@@ -93,7 +94,7 @@ def slope_and_rest(side, row, slope):
 def border_multipliers(slopes, count, gradient, nu):
     """Fill the multipliers of one or two constraints that cancel a gradient best; tell whether there are."""
     nu[0] = nu[1] = 0.0
-    gram, pull = np.zeros(2), np.zeros(2)
+    gram, pull = zeroed(2), zeroed(2)
     cross = 0.0
     for c in range(count):
         for i in range(3):

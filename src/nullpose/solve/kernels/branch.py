@@ -16,7 +16,7 @@ from nullpose.solve.kernels.denominators import expand_denominator
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
@@ -40,14 +40,20 @@ from nullpose.solve.kernels.node import (
     split_axis,
     split_position,
 )
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.zones import in_zone
 
-__all__ = ["BETTER", "DONE", "FULL", "LIMIT", "branch"]
+__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch", "may_have_gaps"]
 
 DONE = 0
 LIMIT = 1
 FULL = 2
 BETTER = 3
+
+EARLY = 0.0
+"""Split axes wherever there is a duality gap that outweighs the box."""
+LATE = 1.0
+"""Split axes only where no multipliers exclude even the box's centre: mostly far fewer nodes, or far more."""
 
 _EXCLUDED = 0
 _BY_POSITION = 1
@@ -123,9 +129,10 @@ def is_pose(domain, centre):
 
 
 @inner_kernel
-def examine(family, domain, axis_field, best, favourite, row, weights, axis):
+def examine(family, domain, axis_field, plan, row, room, axis):
     """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
+    ``plan`` holds the value to beat, the favourite row and what the dual must exceed for axes to be split.
     Fills the node's kind, its multipliers, and an axis if it beats the best.
     """
     side = longest_side(row)
@@ -143,27 +150,27 @@ def examine(family, domain, axis_field, best, favourite, row, weights, axis):
     if axis_field[0] == 1:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
-            return examine_affine(family, domain, axis_field, best, favourite, row, weights, axis)
+            return examine_affine(family, domain, axis_field, plan, row, room, axis)
     if axis_field[0] >= 2 and off_band(axis_field[1], row):
         row[KIND] = OFF_BAND
         return _EXCLUDED, side, 0
-    verdict, sought = examine_free(family, domain, axis_field, best, favourite, row, nearest, weights, axis)
+    verdict, sought = examine_free(family, domain, axis_field, plan, row, nearest, room, axis)
     return verdict, side, sought
 
 
 @inner_kernel
-def examine_free(family, domain, axis_field, best, favourite, row, nearest, weights, axis):
+def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
     """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    basis = np.empty((3, 3))
+    basis = scratch(3, 3)
     is_free, is_band = axis_field[0] != 1, axis_field[0] >= 2
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = (np.int64(0), axis_field[1], axis_field[2])
     kind, anchor = best_frame(family, axis_field, row)
     rho, rho_min = set_frame(family[0], kind, anchor, centre, half, basis)
     view = (kind, anchor, basis, rho, rho_min)
-    denominator, slopes = np.zeros(6), np.zeros((3, 6))
+    denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
     if family[5].shape[0] == 1:
         first = np.int64(0)
@@ -174,17 +181,18 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
         for m in range(BAND, BALL):
-            row[m] = favourite[m]
+            row[m] = plan[1][m]
         if excludes(family, domain, axis_field, view, row, below):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
-    primal, reached = free_multipliers(family, axis_field, basis, row, denominator, coarseness, weights, axis)
-    if is_free and primal < math.inf and is_pose(domain, centre):
+    primal, reached, followed = free_multipliers(
+        family, axis_field, basis, row, denominator, coarseness, room, axis
+    )
+    if is_free and followed and is_pose(domain, centre):
         value = reached * row[LEVEL]
         if family[5].shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
-            logs, f = np.empty(family[5].shape[0]), np.empty(family[1].shape[0])
-            value = math.exp(min_log_ratio(family, centre, axis, logs, f))
-        if value > best * (1.0 + _BEATS):
+            value = math.exp(min_log_ratio(family, centre, axis, room[5], room[1]))
+        if value > plan[0] * (1.0 + _BEATS):
             return _BETTER, 1
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
@@ -192,7 +200,8 @@ def examine_free(family, domain, axis_field, best, favourite, row, nearest, weig
     if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
-    split_axes = primal - reached > coarseness and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = followed and primal - reached > coarseness and primal > plan[2]
+    split_axes = split_axes and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or radius == 0.0  # one position has no halves
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
@@ -210,10 +219,10 @@ def lone_ratio(family, row, below):
 
 
 @inner_kernel
-def examine_affine(family, domain, axis_field, best, favourite, row, weights, axis):
+def examine_affine(family, domain, axis_field, plan, row, room, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half = row[HALF:LEVEL]
-    jet, below, total = np.empty(JET), np.empty((family[5].shape[0], JET)), np.empty(JET)
+    jet, below, total = scratch(JET), room[3], scratch(JET)
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
     if lone_ratio(family, row, below):
@@ -221,11 +230,11 @@ def examine_affine(family, domain, axis_field, best, favourite, row, weights, ax
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
     for m in range(COUNT, BALL):
-        row[m] = favourite[m]
+        row[m] = plan[1][m]
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
-    reached = curved_multipliers(family, axis_field, row, below, jet, weights)
-    if reached * row[LEVEL] > best * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
+    reached = curved_multipliers(family, axis_field, row, below, jet, room)
+    if reached * row[LEVEL] > plan[0] * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
         for m in range(3):
             axis[m] = axis_field[1][m]
             for i in range(3):
@@ -236,9 +245,42 @@ def examine_affine(family, domain, axis_field, best, favourite, row, weights, ax
     return _BY_POSITION, impact(total, half), 1
 
 
+@inner_heap_kernel
+def make_room(family):
+    """Return scratch space for a family: of its ratios, and of its denominators."""
+    ratios, groups = family[1].shape[0], family[5].shape[0]
+    return (
+        np.empty(ratios + 4),
+        np.empty(ratios),
+        np.empty((ratios, 3)),
+        np.empty((groups, JET)),
+        np.empty((groups, 6)),
+        np.empty(groups),
+    )
+
+
 @kernel
+def may_have_gaps(family, axis_field):
+    """Return whether to reckon with duality gaps: two ratios have none, or hardly any within a band."""
+    return axis_field[0] != 1 and family[1].shape[0] > 2
+
+
+@heap_kernel
 def branch(
-    family, domain, axis_field, level, best, favourite, stack, top, leaves, filled, most, better_p, better_u
+    family,
+    domain,
+    axis_field,
+    level,
+    best,
+    favourite,
+    axes_above,
+    stack,
+    top,
+    leaves,
+    filled,
+    most,
+    better_p,
+    better_u,
 ):
     """Work off the stack at one level until it is empty or a limit is met.
 
@@ -249,6 +291,8 @@ def branch(
         level: the ratio to exclude.
         best: the incumbent's smallest ratio; a centre that beats it ends the call.
         favourite: (COLUMNS,) a row whose multipliers are tried on every box: those at the incumbent.
+        axes_above: axes are split only where the dual's value, relative to the level, is above this: EARLY
+            or LATE.
         stack: (s, COLUMNS) nodes still to do.
         top: how many there are.
         leaves: (l, COLUMNS) output, excluded nodes.
@@ -260,8 +304,19 @@ def branch(
     Returns:
         (code, top, filled, nodes worked off, nodes in which new multipliers were sought).
     """
-    row, axis = np.empty(COLUMNS), np.empty(3)
-    weights = np.empty(family[1].shape[0] + 4)
+    plan = (best, favourite, axes_above)
+    return work_off(
+        family, domain, axis_field, level, plan, stack, top, leaves, filled, most, better_p, better_u,
+        make_room(family),
+    )  # fmt: skip
+
+
+@inner_kernel
+def work_off(
+    family, domain, axis_field, level, plan, stack, top, leaves, filled, most, better_p, better_u, room
+):
+    """Do what ``branch`` does, with the scratch space that it made."""
+    row, axis = scratch(COLUMNS), scratch(3)
     level_axes = is_level(axis_field)
     nodes = sought = 0
     while top > 0:
@@ -274,7 +329,7 @@ def branch(
         for m in range(COLUMNS):
             row[m] = stack[top, m]
         row[LEVEL] = level
-        verdict, side, new = examine(family, domain, axis_field, best, favourite, row, weights, axis)
+        verdict, side, new = examine(family, domain, axis_field, plan, row, room, axis)
         sought += new
         if verdict == _EXCLUDED:
             for m in range(COLUMNS):

@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import tangents
 
 __all__ = [
@@ -97,7 +96,7 @@ def chart(field, matrix, rate, u, free, length, jacobian):
         jacobian[3, n], jacobian[4, n] = -u[1] / across, u[0] / across
         n += 1
     elif field != 1:
-        a, b = np.empty(3), np.empty(3)
+        a, b = scratch(3), scratch(3)
         tangents(u, a, b)
         for i in range(3):
             jacobian[3 + i, n] = a[i]
@@ -148,7 +147,7 @@ def clamp_axis(axis_field, u):
 @kernel
 def reduce_hessian(hess, jacobian, n, out):
     """Fill ``J^T H J`` for the (6, n) Jacobian."""
-    half = np.zeros((6, 5))
+    half = zeroed(6, 5)
     for i in range(6):
         for m in range(n):
             s = 0.0

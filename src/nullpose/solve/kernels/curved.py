@@ -27,6 +27,7 @@ from nullpose.solve.kernels.node import (
     WEIGHT,
     keep_largest,
 )
+from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, eigen3
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
@@ -95,7 +96,7 @@ def dual_bound(base, gradient, hessian, mu):
 @kernel
 def box_maximum(jet, half):
     """Return an upper bound on a jet over its box."""
-    gradient, hessian, mu = np.empty(3), np.empty((3, 3)), np.empty(3)
+    gradient, hessian, mu = scratch(3), scratch(3, 3), scratch(3)
     base = scaled_bound(jet, half, gradient, hessian)
     if not base < 0.0:
         return base
@@ -109,9 +110,9 @@ def box_maximum(jet, half):
     if bound < 0.0:
         return bound
     # the convex part of the Hessian is paid for in full, the concave part kept
-    values, vectors = np.empty(3), np.empty((3, 3))
+    values, vectors = scratch(3), scratch(3, 3)
     eigen3(hessian, values, vectors)
-    convex = np.zeros(3)
+    convex = zeroed(3)
     for i in range(3):
         for k in range(3):
             part = 0.0
@@ -166,10 +167,10 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
 @inner_kernel
 def excludes_allowed(domain, row, total):
     """Return whether a jet is negative wherever a border allows positions; fill its multiplier."""
-    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
-    nu, ways, bent = np.empty(2), np.empty((2, 3)), np.empty(JET)
-    values, bends, axes = np.empty(2), np.empty(2), np.empty(2, np.int64)
+    nu, ways, bent = scratch(2), scratch(2, 3), scratch(JET)
+    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
     for a in range(alternatives):
         for c in range(counts[a]):
             values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
@@ -213,7 +214,7 @@ def linear_bound(value, slopes, half):
 
 
 @inner_kernel
-def curved_multipliers(family, axis_field, row, below, jet, weights):
+def curved_multipliers(family, axis_field, row, below, jet, room):
     """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
 
     Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
@@ -222,7 +223,7 @@ def curved_multipliers(family, axis_field, row, below, jet, weights):
     points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
     ratios = nw.shape[0]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    values, gradients = np.empty(ratios), np.empty((ratios, 3))
+    weights, values, gradients = room[:3]
     smallest = math.inf
     for k in range(ratios):
         link_jet(points, turn, npt[k], axis_field, centre, half, jet)
@@ -254,9 +255,10 @@ def mix_in(values, gradients, half, lead, weights):
     """Lower the bound of a mix of linear functions, beginning with one of them, by exact line searches."""
     ratios = values.shape[0]
     value = values[lead]
-    gradient = gradients[lead].copy()
+    gradient = scratch(3)
+    copy_into(gradients[lead], gradient)
     bound = linear_bound(value, gradient, half)
-    trial = np.empty(3)
+    trial = scratch(3)
     for _ in range(3):
         before = bound
         for k in range(ratios):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.dual import top_eigenvector
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, expand_point, min_distance
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solve.kernels.scratch import scratch
 
 __all__ = ["ROUNDING", "add_mixed_denominators", "add_scaled", "expand_denominator", "sharpen"]
 
@@ -34,7 +33,7 @@ def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
     """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
     points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
     kind, anchor, basis, rho, rho_min = view
-    form, slopes = np.empty(6), np.empty((3, 6))
+    form, slopes = scratch(6), scratch(3, 6)
     for m in range(3):
         out[m] -= level * d0[g]
     everywhere = across = 0.0
@@ -105,7 +104,7 @@ def sharpen(family, view, row, matrix, slopes):
     points, den, dstart, dpt, dw, turn = family[0], family[4], family[6], family[7], family[8], family[9]
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    form, form_slopes, v = np.empty(6), np.empty((3, 6)), np.empty(3)
+    form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)
     top_eigenvector(matrix, v)
     square = half[0] ** 2 + half[1] ** 2 + half[2] ** 2
     change = 0.0

@@ -13,7 +13,8 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import cholesky_factor, cholesky_solve, copy_into
 
 __all__ = ["dual_multipliers", "positive_definite", "top_eigenvector"]
@@ -112,7 +113,7 @@ def fill_rows(forms, count, matrix, rows, value):
 @inner_kernel
 def barrier_derivatives(matrix, rows, slacks, mu, grad, hess):
     """Fill the gradient and the lower half of minus the Hessian of ``s + mu (log det U + sum log slack)``."""
-    w, p = np.empty(6), np.empty((5, 3, 3))
+    w, p = scratch(6), scratch(5, 3, 3)
     inverse(matrix, w)
     for r in range(3):  # P_i = U^-1 B_i for the five trace-free basis matrices
         w0 = w[0] if r == 0 else (w[3] if r == 1 else w[4])
@@ -163,7 +164,7 @@ def feasible_step(matrix, slacks, changes, way, trial):
     return 0.0
 
 
-@kernel
+@heap_kernel
 def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, matrix):
     """Fill the multipliers of ``count`` forms, summing to one, and of the ``sides`` constraints after them.
 
@@ -186,7 +187,7 @@ def dual_multipliers(forms, count, sides, level, stop, gap, start, multipliers, 
     """
     total = count + sides
     rows, value, slacks, changes = np.empty((total, 6)), np.empty(total), np.empty(total), np.zeros(total)
-    hess, way, grad, trial = np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6)
+    hess, way, grad, trial = scratch(6, 6), scratch(6), scratch(6), scratch(6)
     for i in range(6):
         matrix[i] = start[i]
     fill_rows(forms[:total], count, matrix, rows, value)

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.symmetric import copy_into, copy_table
 
 __all__ = ["JET", "axis_clearance", "link_jet"]
 
@@ -78,17 +78,18 @@ def relative_slopes(value, slope, swing, low, high):
 
 
 @inner_kernel
-def turned_field(axis_field, turn, j):
-    """Return the offset and matrix of the axis that point j sees."""
+def turned_field(axis_field, turn, j, offset, matrix):
+    """Fill the offset and the matrix of the axis that point j sees."""
     if turn.shape[0] == 0:
-        return axis_field[1].copy(), axis_field[2].copy()
-    offset, matrix = np.zeros(3), np.zeros((3, 3))
+        copy_into(axis_field[1], offset)
+        copy_table(axis_field[2], matrix)
+        return
+    offset[:], matrix[:, :] = 0.0, 0.0
     for i in range(3):
         for a in range(3):
             offset[i] += turn[j, i, a] * axis_field[1][a]
             for k in range(3):
                 matrix[i, k] += turn[j, i, a] * axis_field[2][a, k]
-    return offset, matrix
 
 
 @kernel
@@ -104,9 +105,10 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         half: (3,) its half sides; the point is outside the box.
         jet: output, (JET,).
     """
-    offset, matrix = turned_field(axis_field, turn, j)
-    r, u, c = np.empty(3), np.empty(3), np.empty(3)
-    dc, hc = np.empty((3, 3)), np.empty((3, 3, 3))
+    offset, matrix = scratch(3), scratch(3, 3)
+    turned_field(axis_field, turn, j, offset, matrix)
+    r, u, c = scratch(3), scratch(3), scratch(3)
+    dc, hc = scratch(3, 3), scratch(3, 3, 3)
     for i in range(3):
         r[i] = points[j, i] - centre[i]
     cross_parts(offset, matrix, r, centre, half, u, c, dc, hc)
@@ -120,8 +122,8 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         s, s_low, s_high = s + r[m] * r[m], s_low + low, s_high + high
         low, high = square((u[m] - swing, u[m] + swing))
         b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
-    sigma, beta, dn = np.empty((3, 2)), np.empty((3, 2)), np.empty((3, 2))
-    boxed = np.empty((3, 4, 2))  # of each entry of u x r: bounds on the value and on the gradient
+    sigma, beta, dn = scratch(3, 2), scratch(3, 2), scratch(3, 2)
+    boxed = scratch(3, 4, 2)  # of each entry of u x r: bounds on the value and on the gradient
     n_low = n_high = n = 0.0
     for m in range(3):
         swing = 0.0

@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
 from nullpose.solve.kernels.denominators import (
     ROUNDING,
@@ -42,7 +40,8 @@ from nullpose.solve.kernels.node import (
     WEIGHT,
     cell_side,
 )
-from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
+from nullpose.solve.kernels.symmetric import copy_into, copy_table
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["excludes", "is_level", "out_of_reach"]
@@ -106,7 +105,7 @@ def negative_at_corners(matrix, slopes, half, level_axes):
 def add_side(form, weight, view, matrix, matrix_slopes):
     """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
     kind, _, basis, rho, rho_min = view
-    q = np.empty(6)
+    q = scratch(6)
     congruence(form, basis, q)
     for m in range(6):
         matrix[m] += weight * q[m]
@@ -130,7 +129,7 @@ def add_band(axis_field, view, row, matrix, slopes):
     weight = row[BAND]
     if axis_field[0] < 2 or weight == 0.0 or is_level(axis_field):
         return 0.0
-    form = np.zeros(6)
+    form = zeroed(6)
     form[2] = -1.0 if weight > 0.0 else 1.0
     end = axis_field[1][1] if weight > 0.0 else axis_field[1][0]
     for m in range(3):
@@ -144,7 +143,7 @@ def add_numerators(family, axis_field, view, row, matrix, slopes):
     points, n0, nw, npt, turn = family[0], family[1], family[2], family[3], family[9]
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    form, form_slopes = np.empty(6), np.empty((3, 6))
+    form, form_slopes = scratch(6), scratch(3, 6)
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     everywhere = 0.0
     for s in range(int(row[COUNT])):
@@ -183,7 +182,7 @@ def excludes(family, domain, axis_field, view, row, below):
     """
     if not row[COUNT] > 0.0:
         return False
-    matrix, slopes = np.empty(6), np.empty((3, 6))
+    matrix, slopes = scratch(6), scratch(3, 6)
     for m in range(6):
         matrix[m] = below[0][m]
         for i in range(3):
@@ -214,26 +213,26 @@ def excludes(family, domain, axis_field, view, row, below):
 @inner_kernel
 def excludes_allowed(domain, row, matrix, slopes, level_axes):
     """Return whether the matrix is negative wherever a border allows positions; fill its multiplier."""
-    sides, counts = np.empty((MOST_ALTERNATIVES, 2, 5)), np.empty(MOST_ALTERNATIVES, np.int64)
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
     if alternatives == 0:
         return False
-    v, gradient, nu, ways = np.empty(3), np.empty(3), np.empty(2), np.empty((2, 3))
-    values, bends, axes = np.empty(2), np.empty(2), np.empty(2, np.int64)
+    v, gradient, nu, ways = scratch(3), scratch(3), scratch(2), scratch(2, 3)
+    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
     half, row[NU] = row[HALF:LEVEL], 0.0
     if level_axes:
         matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
     top_eigenvector(matrix, v)
     for i in range(3):
         gradient[i] = form_value(slopes, i, v)
-    bent, bent_slopes = np.empty(6), np.empty((3, 6))
+    bent, bent_slopes = scratch(6), scratch(3, 6)
     for a in range(alternatives):
         for c in range(counts[a]):
             values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
         if not border_multipliers(ways, counts[a], gradient, nu):
             return False
         copy_into(matrix, bent)
-        bent_slopes[:, :] = slopes
+        copy_table(slopes, bent_slopes)
         for c in range(counts[a]):
             rest = values[c]
             for i in range(axes[c]):

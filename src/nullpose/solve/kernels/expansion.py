@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
 
 __all__ = ["TOWARDS_POINT", "WORLD", "expand_point", "min_distance", "set_frame"]
@@ -46,7 +45,7 @@ def set_frame(points, kind, anchor, centre, half, basis):
             for m in range(3):
                 basis[i, m] = 1.0 if i == m else 0.0
         return math.inf, math.inf
-    a, b, c = np.empty(3), np.empty(3), np.empty(3)
+    a, b, c = scratch(3), scratch(3), scratch(3)
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
     rho = math.sqrt(x * x + y * y + z * z)
     c[0], c[1], c[2] = x / rho, y / rho, z / rho

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 
 __all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor", "turned_back"]
 
@@ -39,7 +38,7 @@ def bilinear(a, x, y):
 @kernel
 def congruence(form, basis, out):
     """Fill ``R^T A R`` for a form and a 3x3 matrix."""
-    half = np.empty((3, 3))
+    half = scratch(3, 3)
     for m in range(3):
         x, y, z = basis[0, m], basis[1, m], basis[2, m]
         half[0, m] = form[0] * x + form[3] * y + form[4] * z

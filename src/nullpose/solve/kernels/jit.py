@@ -1,4 +1,4 @@
-"""The one decorator of the kernels, and the cache behind it."""
+"""The kernels' decorators, and the cache behind them."""
 
 from __future__ import annotations
 
@@ -10,24 +10,41 @@ from typing import Any
 
 from numba import njit
 
-__all__ = ["inner_kernel", "kernel"]
+__all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
 
 # without the wrapper that C callbacks would use, a tenth less is compiled
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+# no references are counted, which in short kernels is a fifth of the time
+_LEAN: dict[str, Any] = _OPTIONS | {"_nrt": False}
+_HEAP: dict[str, Any] = _OPTIONS | {
+    "_nrt": True
+}  # said, since a kernel inherits it from the first that calls it
+_INNER = {"no_cpython_wrapper": True}
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Return the function compiled on first use, cached on disk, following IEEE rules on division by zero.
 
-    Where no folder can hold a cache (a read-only installation without a home), it is compiled in every
-    process.
+    It may take views of arrays and scratch space (``scratch.py``), but make no array on the heap: the
+    compiler refuses that. Where no folder can hold a cache (a read-only installation without a home), it is
+    compiled in every process.
     """
-    return _compiled(function, _OPTIONS)
+    return _compiled(function, _LEAN)
 
 
 def inner_kernel(function: Callable[..., Any]) -> Any:
     """Return a kernel that only kernels can call: without a Python wrapper a tenth less is compiled."""
-    return _compiled(function, _OPTIONS | {"no_cpython_wrapper": True})
+    return _compiled(function, _LEAN | _INNER)
+
+
+def heap_kernel(function: Callable[..., Any]) -> Any:
+    """Return a kernel that makes arrays whose size is not known when it is compiled."""
+    return _compiled(function, _HEAP)
+
+
+def inner_heap_kernel(function: Callable[..., Any]) -> Any:
+    """Return a kernel that makes such arrays and that only kernels can call."""
+    return _compiled(function, _HEAP | _INNER)
 
 
 def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:

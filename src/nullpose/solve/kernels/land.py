@@ -13,8 +13,9 @@ from nullpose.solve.kernels.chart import (
     reduce_hessian,
     turning,
 )
-from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import derivatives, min_log_ratio
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into, gauss_solve
 
 __all__ = ["land"]
@@ -52,7 +53,7 @@ def active_set(domain, z, zs, used, free, length, q, held, active):
     return count
 
 
-@inner_kernel
+@inner_heap_kernel
 def held_axis(axis_field, zs):
     """Return the axis field, or the cone at the end of a band that holds the axis."""
     ends = axis_field[1].copy()
@@ -92,7 +93,7 @@ def fill_equations(f, grads, h, jacobian, active, count, multipliers, t, n, syst
     return size
 
 
-@inner_kernel
+@inner_heap_kernel
 def land(family, domain, axis_field, place, limits, best, best_pose, multipliers):
     """Return the best smallest log ratio after solving the equations of the active set.
 
@@ -122,12 +123,12 @@ def land(family, domain, axis_field, place, limits, best, best_pose, multipliers
     if axis_field[0] == 3:
         clamp_axis(axis_field, v)
     f, logs = np.empty(ratios), np.empty(family[5].shape[0])
-    grads, hess, h = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((5, 5))
+    grads, hess, h = np.empty((ratios, 6)), scratch(6, 6), scratch(5, 5)
     work = np.empty((family[5].shape[0], 50))
-    jacobian = np.empty((6, 5))
-    system, rhs = np.empty((12, 12)), np.empty(12)
+    jacobian = scratch(6, 5)
+    system, rhs = scratch(12, 12), scratch(12)
     slacks = np.empty(zs.shape[0])
-    new_q, new_v = np.empty(3), np.empty(3)
+    new_q, new_v = scratch(3), scratch(3)
     t = best
     for _ in range(_STEPS):
         n = chart(axis_field[0], axis_field[2], turning(family, q, v), v, held, length, jacobian)

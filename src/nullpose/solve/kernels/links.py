@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch, zeroed
 
 __all__ = ["derivatives", "log_ratios", "min_log_ratio", "seen_axis"]
 
@@ -73,7 +74,7 @@ def add_form(points, turn, j, weight, p, u, grad, hess, second):
     if turn.shape[0] == 0:
         return add_seen_form(points, j, weight, p, u, grad, hess, second)
     q = turn[j]
-    v, g, h = np.empty(3), np.zeros(6), np.zeros((6, 6))
+    v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
     v[0], v[1], v[2] = seen_axis(turn, j, u)
     value = add_seen_form(points, j, weight, p, v, g, h, second)
     for i in range(3):
@@ -99,7 +100,7 @@ def add_seen_form(points, j, weight, p, u, grad, hess, second):
     The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (u.r)^2 = |u x r|^2`` and ``h = A
     |r|^-4``.
     """
-    r = np.empty(3)
+    r = scratch(3)
     for i in range(3):
         r[i] = points[j, i] - p[i]
     rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
@@ -113,8 +114,8 @@ def add_seen_form(points, j, weight, p, u, grad, hess, second):
     i4 = weight * i2 * i2
     i6 = i4 * i2
     i8 = i6 * i2
-    ar = np.empty(3)
-    au = np.empty(3)
+    ar = scratch(3)
+    au = scratch(3)
     # (u.u) r - c u and (r.r) u - c r are double cross products: no cancellation beside the null
     ar[0] = 2.0 * (cy * u[2] - cz * u[1])
     ar[1] = 2.0 * (cz * u[0] - cx * u[2])
@@ -153,8 +154,8 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
     for i in range(6):
         for k in range(6):
             hess[i, k] = 0.0
-    gradient = np.empty(6)
-    form = np.empty((6, 6))
+    gradient = scratch(6)
+    form = scratch(6, 6)
     for g in range(d0.shape[0]):
         gradient[:] = 0.0
         form[:, :] = 0.0

@@ -10,12 +10,13 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.branch import BETTER, DONE, FULL, branch
+from nullpose.solve.kernels.branch import BETTER, DONE, EARLY, FULL, LATE, branch, may_have_gaps
 from nullpose.solve.kernels.expansion import min_distance
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.node import CENTRE, COLUMNS, FACE, HALF, keep_largest
 from nullpose.solve.kernels.polish import polish
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.search import cut_box, search
 from nullpose.solve.kernels.symmetric import copy_into
 
@@ -51,7 +52,7 @@ def find(family, domain, axis_field, landmarks, shift, effort, climbs, p, u, z):
 def reach(family, low, high, keep_out_m):
     """Return what no ratio can exceed at all: the bound of the most distant point."""
     points, n0, nw, npt, den, d0 = family[:6]
-    zero, here = np.zeros(3), np.empty(3)
+    zero, here = zeroed(3), scratch(3)
     least = math.inf
     for k in range(nw.shape[0]):
         for i in range(3):
@@ -61,10 +62,10 @@ def reach(family, low, high, keep_out_m):
     return least * (1.0 + _HAIR)
 
 
-@inner_kernel
+@inner_heap_kernel
 def fill_root(family, domain, log_value, target, favourite, row):
     """Fill the box outside which no pose reaches the incumbent."""
-    low, high = np.empty(3), np.empty(3)
+    low, high = scratch(3), scratch(3)
     level = log_value
     if np.any(family[1] != 0.0):  # ratios tend to one far away, however little that is
         level += math.log1p(target)
@@ -77,7 +78,7 @@ def fill_root(family, domain, log_value, target, favourite, row):
     row[FACE] = -1.0
 
 
-@inner_kernel
+@inner_heap_kernel
 def fill_favourite(z, favourite):
     """Fill a row with the multipliers at the incumbent."""
     weights = z.copy()
@@ -85,20 +86,20 @@ def fill_favourite(z, favourite):
     keep_largest(weights, weights.shape[0], favourite)
 
 
-@inner_kernel
-def prove(family, domain, axis_field, log_value, target, most, p, u, z, stack, leaves):
+@inner_heap_kernel
+def prove(family, domain, axis_field, log_value, target, axes_above, most, p, u, z, stack, leaves):
     """Return (whether all above the target is excluded, the incumbent's log value, the nodes worked off)."""
-    favourite = np.empty(COLUMNS)
+    favourite = scratch(COLUMNS)
     fill_favourite(z, favourite)
     fill_root(family, domain, log_value, target, favourite, stack[0])
     logs, f = np.empty(family[5].shape[0]), np.empty(z.shape[0])
-    better_p, better_u, trial = np.empty(3), np.empty(3), np.empty(z.shape[0])
+    better_p, better_u, trial = scratch(3), scratch(3), np.empty(z.shape[0])
     top, nodes = np.int64(1), np.int64(0)
     doubt = 0.0
     while nodes < most:
         value = math.exp(log_value)
         code, top, _, done, _ = branch(
-            family, domain, axis_field, value * (1.0 + target), value * (1.0 + doubt), favourite,
+            family, domain, axis_field, value * (1.0 + target), value * (1.0 + doubt), favourite, axes_above,
             stack, top, leaves, np.int64(0), most - nodes, better_p, better_u,
         )  # fmt: skip
         nodes += done
@@ -112,7 +113,8 @@ def prove(family, domain, axis_field, log_value, target, most, p, u, z, stack, l
             found, _ = polish(family, domain, axis_field, q, v, 0.01, np.int64(100), trial)
             if found < start:
                 found = start
-                q[:], v[:] = better_p, better_u
+                copy_into(better_p, q)
+                copy_into(better_u, v)
             if found > log_value:
                 log_value = found
                 copy_into(q, p)
@@ -124,9 +126,9 @@ def prove(family, domain, axis_field, log_value, target, most, p, u, z, stack, l
     return False, log_value, nodes
 
 
-@kernel
+@heap_kernel
 def settle_many(
-    shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, climbs, target, most,
+    shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, climbs, target, budget,
     positions, axes, multipliers, log_values, bounds, nodes, codes,
 ):  # fmt: skip
     """Fill the best pose of every family that is not settled yet, and the bound that was proved.
@@ -144,7 +146,8 @@ def settle_many(
         effort: coarse, polished, rounds and patience of the search.
         climbs: barrier weights of the last climb.
         target: relative gap to be proved; negative: nothing is.
-        most: nodes of one proof; a family that needs more stays open.
+        budget: nodes of a try in which axes are split late, of one in which they are split early, and of all;
+            a family that needs more stays open.
         positions: (s, 3) in and out.
         axes: (s, 3) in and out.
         multipliers: (s, r) in and out.
@@ -176,9 +179,38 @@ def settle_many(
             if bound <= math.exp(value) * (1.0 + target):
                 codes[s] = PROVED
             else:
-                shown, value, nodes[s] = prove(
-                    family, here, axis_field, value, target, most, p, u, z, stack, leaves
-                )
+                shown = False
+                if may_have_gaps(family, axis_field):
+                    shown, value, nodes[s] = prove(
+                        family,
+                        here,
+                        axis_field,
+                        value,
+                        target,
+                        LATE,
+                        min(budget[0], budget[2]),
+                        p,
+                        u,
+                        z,
+                        stack,
+                        leaves,
+                    )
+                if not shown:
+                    shown, value, more = prove(
+                        family,
+                        here,
+                        axis_field,
+                        value,
+                        target,
+                        EARLY,
+                        min(budget[1], budget[2] - nodes[s]),
+                        p,
+                        u,
+                        z,
+                        stack,
+                        leaves,
+                    )
+                    nodes[s] += more
                 if shown:
                     codes[s] = PROVED
                     bound = min(bound, math.exp(value) * (1.0 + target))

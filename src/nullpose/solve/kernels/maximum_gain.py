@@ -14,8 +14,9 @@ import numpy as np
 
 from nullpose.solve.kernels.axis import best_axis_of_forms
 from nullpose.solve.kernels.forms import bilinear, fill_forms, form_value
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel
 from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
 
 __all__ = ["maximum_gain_value"]
@@ -23,10 +24,10 @@ __all__ = ["maximum_gain_value"]
 _TIE = 1e-11
 
 
-@inner_kernel
+@inner_heap_kernel
 def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
     """Fill the quietest axis across ``normal`` among those whose forms all reach ``level``."""
-    a, b, v = np.empty(3), np.empty(3), np.empty(3)
+    a, b, v = scratch(3), scratch(3), scratch(3)
     tangents(normal, a, b)
     ratios = numerators.shape[0]
     angles = np.empty(2 * ratios + 2)
@@ -66,7 +67,7 @@ def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
                     axis[i] = v[i]
 
 
-@kernel
+@heap_kernel
 def maximum_gain_value(family, p, axis):
     """Fill the maximum-gain axis at a position; return the smallest log ratio (shared denominator)."""
     ratios = family[1].shape[0]

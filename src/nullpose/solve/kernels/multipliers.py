@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
+from nullpose.solve.kernels.ascent import ascend
 from nullpose.solve.kernels.chart import clamp_axis
 from nullpose.solve.kernels.dual import dual_multipliers, positive_definite, top_eigenvector
 from nullpose.solve.kernels.exclusion import is_level
-from nullpose.solve.kernels.forms import congruence, form_value, inverse_factor
-from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.forms import form_value
+from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.node import (
     BAND,
     CELL,
@@ -21,133 +22,36 @@ from nullpose.solve.kernels.node import (
     INDEX,
     LEVEL,
     SIDE,
-    cell_side,
     keep_largest,
+)
+from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.whitened import (
+    axis_of,
+    constraint_forms,
+    fill_values,
+    half_width,
+    ratio_form,
+    whiten,
+    whiten_axis,
 )
 
 __all__ = ["free_multipliers"]
 
-_MIXES = 6
 _MANY = 16  # more ratios than this are not all taken at once
 _FEW = 6
+_FORMS = 2 * _MANY + 4
 _ROUNDS = 5
 _SLIGHT = 1e-3
-_THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
-_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
+_FINE = 1e-5  # accuracy of the multipliers
+_LOOSE = 1e-3  # and in units of a box's size
 _GRID = 9  # of axes looked at for one inside both a cell and a band
-
-
-@inner_kernel
-def half_width(axis_field):
-    """Return half the width that a cone is given; zero for a band."""
-    if axis_field[0] != 3:
-        return 0.0
-    c = axis_field[1][0]
-    return min(_THIN, _STEEP * min(c, 1.0 - c))
-
-
-@inner_kernel
-def add_plain_form(points, turn, j, basis, centre, weight, isotropic, out):
-    """Add ``isotropic I + weight T`` for point j seen from the centre, in the frame."""
-    r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
-    if turn.shape[0] > 0:
-        basis = turn[j]
-    x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
-    y = basis[0, 1] * r0 + basis[1, 1] * r1 + basis[2, 1] * r2
-    z = basis[0, 2] * r0 + basis[1, 2] * r1 + basis[2, 2] * r2
-    s = x * x + y * y + z * z
-    f = weight / (s * s)
-    out[0] += isotropic + f * (y * y + z * z)
-    out[1] += isotropic + f * (x * x + z * z)
-    out[2] += isotropic + f * (x * x + y * y)
-    out[3] -= f * x * y
-    out[4] -= f * x * z
-    out[5] -= f * y * z
-
-
-@inner_kernel
-def fill_denominators(family, basis, centre, denominators, mean):
-    """Fill every denominator at the centre, in the frame, and their mean."""
-    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
-    groups = d0.shape[0]
-    denominators[:, :] = 0.0
-    mean[:] = 0.0
-    for g in range(groups):
-        for m in range(3):
-            denominators[g, m] = d0[g]
-        for e in range(dstart[g], dstart[g + 1]):
-            add_plain_form(points, turn, dpt[e], basis, centre, dw[e], 0.0, denominators[g])
-        for m in range(6):
-            mean[m] += denominators[g, m] / groups
-
-
-@inner_kernel
-def centre_forms(family, axis_field, basis, row, denominator, forms, back):
-    """Fill the whitened forms at the centre, those of the constraints last; return how many those are.
-
-    Whitened by the denominator; where there are several, by their mean W: then a ratio's form is that of
-    ``N_k + t (W - D_k)``, which exceeds the level t exactly where the ratio does.
-    """
-    points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
-    level, groups, ratios = row[LEVEL], family[5].shape[0], family[2].shape[0]
-    raw, mean, turned = np.empty(6), np.empty(6), np.empty(6)
-    denominators = np.empty((groups, 6))
-    if groups == 1:
-        for m in range(6):
-            mean[m] = -denominator[m] / level
-    else:
-        fill_denominators(family, basis, row[CENTRE:HALF], denominators, mean)
-    inverse_factor(mean, back)
-    for k in range(ratios):
-        for m in range(6):
-            raw[m] = 0.0 if groups == 1 else level * (mean[m] - denominators[den[k], m])
-        add_plain_form(points, turn, npt[k], basis, row[CENTRE:HALF], nw[k], n0[k], raw)
-        congruence(raw, back, forms[k])
-    sides = np.int64(0)
-    level_axes = is_level(axis_field)
-    if row[FACE] >= 0.0:
-        for side in range(2):
-            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
-                continue
-            cell_side(int(row[FACE]), row[CELL:SIDE], side, raw)
-            congruence(raw, basis, turned)
-            congruence(turned, back, forms[ratios + sides])
-            sides += 1
-    if level_axes:  # no weight on the vertical: whitening leaves its direction alone
-        for k in range(ratios + sides):
-            f = forms[k]
-            f[2] = -(abs(f[0]) + abs(f[1]) + 2.0 * abs(f[3])) - level if k < ratios else 0.0
-            f[4] = f[5] = 0.0
-    elif axis_field[0] >= 2:
-        thin = half_width(axis_field)
-        for end in range(2):
-            c = axis_field[1][end] + (thin if end == 1 else -thin)
-            if 0.0 < c < 1.0:
-                for m in range(6):
-                    raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
-                raw[2] += 1.0 if end == 0 else -1.0
-                congruence(raw, basis, turned)
-                congruence(turned, back, forms[ratios + sides])
-                sides += 1
-    return sides
-
-
-@inner_kernel
-def whiten_axis(basis, back, u, w):
-    """Fill an axis of the world in whitened coordinates."""
-    v0 = basis[0, 0] * u[0] + basis[1, 0] * u[1] + basis[2, 0] * u[2]
-    v1 = basis[0, 1] * u[0] + basis[1, 1] * u[1] + basis[2, 1] * u[2]
-    v2 = basis[0, 2] * u[0] + basis[1, 2] * u[1] + basis[2, 2] * u[2]
-    # back is upper triangular: w solves back w = v
-    w[2] = v2 / back[2, 2]
-    w[1] = (v1 - back[1, 2] * w[2]) / back[1, 1]
-    w[0] = (v0 - back[0, 1] * w[1] - back[0, 2] * w[2]) / back[0, 0]
 
 
 @inner_kernel
 def add_start(basis, back, u, start):
     """Add the whitened square of an axis to a matrix."""
-    w = np.empty(3)
+    w = scratch(3)
     whiten_axis(basis, back, u, w)
     norm = w[0] ** 2 + w[1] ** 2 + w[2] ** 2
     for m in range(6):
@@ -170,7 +74,7 @@ def cell_start(axis_field, basis, back, row, start):
         return True
     for m in range(6):
         start[m] = 0.0
-    u = np.empty(3)
+    u = scratch(3)
     least, greatest = axis_field[1][0], axis_field[1][1]
     least, greatest = least - half_width(axis_field), greatest + half_width(axis_field)
     least, greatest = max(0.0, least), min(1.0, greatest)
@@ -224,7 +128,7 @@ def add_band_axes(basis, back, row, least, greatest, swap, start):
     face = int(row[FACE])
     along = swap if face == 2 else (1 if face == 0 else 0)  # the side that is solved for: z where it is one
     other = 1 - along
-    u = np.empty(3)
+    u = scratch(3)
     count = 0
     for line in range(_GRID):
         low, wide = row[CELL + 2 * other], row[CELL + 2 * other + 1] - row[CELL + 2 * other]
@@ -253,72 +157,6 @@ def add_band_axes(basis, back, row, least, greatest, swap, start):
 
 
 @inner_kernel
-def two_multipliers(first, second, v):
-    """Return the weight of the first of two forms that makes their mix's largest eigenvalue least."""
-    low, high = 0.0, 1.0
-    slope_low = slope_high = 0.0
-    mix = np.empty(6)
-    for turn in range(_MIXES):  # the slope rises with the weight: its ends, then the Illinois rule
-        weight = 0.0 if turn == 0 else 1.0
-        if turn > 1:
-            weight = low - (high - low) * slope_low / (slope_high - slope_low)
-        for m in range(6):
-            mix[m] = weight * first[m] + (1.0 - weight) * second[m]
-        top_eigenvector(mix, v)
-        slope = 0.0
-        for m in range(6):
-            i = m if m < 3 else (0 if m < 5 else 1)
-            j = m if m < 3 else (1 if m == 3 else 2)
-            slope += (1.0 if m < 3 else 2.0) * (first[m] - second[m]) * v[i] * v[j]
-        if turn == 0 and slope >= 0.0:
-            return 0.0
-        if turn == 1 and slope <= 0.0:
-            return 1.0
-        if slope > 0.0:
-            high, slope_high = weight, slope
-            slope_low *= 0.5 if turn > 2 else 1.0
-        else:
-            low, slope_low = weight, slope
-            slope_high *= 0.5 if turn > 2 else 1.0
-    return low - (high - low) * slope_low / (slope_high - slope_low)
-
-
-@inner_kernel
-def axis_of(basis, back, w, axis):
-    """Fill the axis of the world, of any length, that whitened coordinates stand for."""
-    v = np.empty(3)
-    for i in range(3):
-        v[i] = back[i, 0] * w[0] + back[i, 1] * w[1] + back[i, 2] * w[2]
-    for i in range(3):
-        axis[i] = basis[i, 0] * v[0] + basis[i, 1] * v[1] + basis[i, 2] * v[2]
-
-
-@inner_kernel
-def pair_multipliers(axis_field, basis, back, forms, sides, weights, v):
-    """Fill the multipliers of two ratios and the axis that they leave; return the primal value.
-
-    Infinity if that axis is outside of the band, which has no multiplier then but should have one. Two forms
-    have no duality gap; nor do they on the level plane, where their values lie on an ellipse, of which a
-    largest minimum is a point wherever it may lie inside.
-    """
-    weights[0] = two_multipliers(forms[0], forms[1], v)
-    weights[1] = 1.0 - weights[0]
-    mix = np.empty(6)
-    for m in range(6):
-        mix[m] = weights[0] * forms[0, m] + weights[1] * forms[1, m]
-    primal = top_eigenvector(mix, v)
-    if axis_field[0] >= 2 and not is_level(axis_field):
-        axis_of(basis, back, v, mix)
-        upright = mix[2] ** 2
-        square = mix[0] ** 2 + mix[1] ** 2 + upright
-        if not axis_field[1][0] * square <= upright <= axis_field[1][1] * square:
-            return math.inf
-    for side in range(sides):
-        weights[2 + side] = 0.0
-    return primal
-
-
-@inner_kernel
 def smallest_form(forms, count, v):
     """Return the smallest of the first ``count`` forms at a vector."""
     smallest = math.inf
@@ -327,7 +165,7 @@ def smallest_form(forms, count, v):
     return smallest
 
 
-@inner_kernel
+@inner_heap_kernel
 def add_smallest(forms, ratios, matrix, below, most, chosen, count, taken):
     """Add the forms of smallest ``<A_k, U>`` below a value to those chosen; return how many there are now."""
     values = np.empty(ratios)
@@ -350,7 +188,7 @@ def add_smallest(forms, ratios, matrix, below, most, chosen, count, taken):
     return smallest, count
 
 
-@inner_kernel
+@inner_heap_kernel
 def sparse_dual(forms, ratios, sides, row, stop, gap, start, weights, matrix):
     """Return the dual's primal value as ``dual_multipliers`` does, from few forms at a time if many.
 
@@ -366,7 +204,7 @@ def sparse_dual(forms, ratios, sides, row, stop, gap, start, weights, matrix):
         taken[chosen[count]] = True
         count += 1
     _, count = add_smallest(forms, ratios, start, math.inf, _FEW, chosen, count, taken)
-    few, few_weights = np.empty((2 * _MANY + 4, 6)), np.empty(2 * _MANY + 4)
+    few, few_weights = scratch(_FORMS, 6), scratch(_FORMS)
     smallest = -math.inf
     for _ in range(_ROUNDS):
         for c in range(count + sides):
@@ -410,40 +248,90 @@ def keep_sides(axis_field, row, weights, ratios):
 
 
 @inner_kernel
-def free_multipliers(family, axis_field, basis, row, denominator, coarseness, weights, axis):
-    """Fill new multipliers for a free axis into the row; return (primal value, rank-one value) at the centre.
+def kept_sides(axis_field, row, weights):
+    """Fill a row's multipliers of the cell's sides and of the band: what ``keep_sides`` put there."""
+    level_axes = is_level(axis_field)
+    c = 0
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
+                continue
+            weights[c] = row[SIDE + side]
+            c += 1
+    if axis_field[0] >= 2 and not level_axes:
+        thin = half_width(axis_field)
+        for end in range(2):
+            if 0.0 < axis_field[1][end] + (thin if end == 1 else -thin) < 1.0:
+                weights[c] = max(0.0, -row[BAND] if end == 0 else row[BAND])
+                c += 1
 
-    Both are relative to the level: the first is what multipliers cannot beat, the second is what one axis
-    reaches, which is filled in world coordinates. A first value of infinity: no multipliers were found.
-    """
-    level = row[LEVEL]
-    ratios = family[1].shape[0]
-    forms = np.empty((ratios + 4, 6))
-    back = np.empty((3, 3))
-    matrix, start = np.empty(6), np.empty(6)
-    v = np.empty(3)
-    sides = centre_forms(family, axis_field, basis, row, denominator, forms, back)
-    primal = math.inf
-    if ratios == 2 and row[FACE] < 0.0:
-        primal = pair_multipliers(axis_field, basis, back, forms, sides, weights, v)
-    if primal == math.inf:
-        if not cell_start(axis_field, basis, back, row, start):
-            return math.inf, 0.0
-        accuracy = 1e-5 if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
-        primal = sparse_dual(forms, ratios, sides, row, level, accuracy, start, weights, matrix)
+
+@inner_heap_kernel
+def interior_multipliers(
+    family, axis_field, basis, row, whitening, constraints, sides, coarseness, weights, v
+):
+    """Fill the dual's multipliers and the axis that its matrix suggests; return the primal value."""
+    ratios, level = family[1].shape[0], row[LEVEL]
+    matrix, start = scratch(6), scratch(6)
+    if not cell_start(axis_field, basis, whitening[2], row, start):
+        return math.inf
+    forms = np.empty((ratios + sides, 6))
+    for k in range(ratios):
+        ratio_form(family, is_level(axis_field), basis, row, whitening, k, forms[k])
+    for c in range(sides):
+        copy_into(constraints[c], forms[ratios + c])
+    accuracy = 1e-5 if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
+    primal = sparse_dual(forms, ratios, sides, row, level, accuracy, start, weights, matrix)
+    top_eigenvector(matrix, v)
+    if primal > level and primal - smallest_form(forms, ratios, v) > coarseness * level:
+        # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
+        primal = sparse_dual(forms, ratios, sides, row, math.inf, 1e-4, start, weights, matrix)
         top_eigenvector(matrix, v)
-        if primal > level and primal - smallest_form(forms, ratios, v) > coarseness * level:
-            # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
-            primal = sparse_dual(forms, ratios, sides, row, math.inf, 1e-4, start, weights, matrix)
-            top_eigenvector(matrix, v)
+    return primal
+
+
+@inner_kernel
+def free_multipliers(family, axis_field, basis, row, denominator, coarseness, room, axis):
+    """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
+
+    Both values are at the centre and relative to the level: the first is what multipliers cannot beat, the
+    second is what one axis reaches, which is filled in world coordinates. A first value of infinity: no
+    multipliers were found. Where the last is false, the first is only what the multipliers found come to,
+    well below the level, and there is no axis.
+    """
+    level, ratios = row[LEVEL], family[1].shape[0]
+    weights, every = room[:2]
+    mean, back, v = scratch(6), scratch(3, 3), scratch(3)
+    constraints, start = scratch(4, 6), scratch(4)
+    denominators = room[4]
+    whiten(family, basis, row, denominator, denominators, mean, back)
+    whitening = (denominators, mean, back)
+    sides = constraint_forms(axis_field, basis, row, back, constraints)
+    kept_sides(axis_field, row, start)
+    tolerance = max(_FINE, _LOOSE * coarseness)
+    primal, followed = ascend(
+        family, is_level(axis_field), basis, row, whitening, constraints, sides, start, tolerance, every,
+        weights, v,
+    )  # fmt: skip
+    if primal == math.inf:
+        primal = interior_multipliers(
+            family, axis_field, basis, row, whitening, constraints, sides, coarseness, weights, v
+        )
+        followed = True
+        if primal == math.inf:
+            return math.inf, 0.0, False
     keep_sides(axis_field, row, weights, ratios)
     keep_largest(weights, ratios, row)
+    if not followed:
+        return primal / level, 0.0, False
     axis_of(basis, back, v, axis)
+    square = 1.0
     if axis_field[0] >= 2:
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
-        norm = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
-        for i in range(3):
-            v[i] /= norm
-    reached = smallest_form(forms, ratios, v)
-    return primal / level, reached / level
+        square = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
+    fill_values(family, row[CENTRE:HALF], level, axis, every)
+    reached = every[0]
+    for k in range(1, ratios):
+        reached = min(reached, every[k])
+    return primal / level, reached / (square * level), True

@@ -6,9 +6,8 @@ length, in the world frame; face -1 is every axis.
 
 from __future__ import annotations
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 
 __all__ = [
     "AFFINE",
@@ -175,7 +174,8 @@ def off_band(ends, row):
     if face < 0:
         return False
     # squares of the two free coordinates over the cell, the face's own being one
-    low, high = np.ones(3), np.ones(3)
+    low, high = scratch(3), scratch(3)
+    low[:], high[:] = 1.0, 1.0
     for side in range(2):
         v = (face + 1 + side) % 3
         a, b = row[CELL + 2 * side], row[CELL + 2 * side + 1]

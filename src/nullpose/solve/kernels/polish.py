@@ -32,9 +32,10 @@ from nullpose.solve.kernels.chart import (
     slack_count,
     turning,
 )
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solve.kernels.land import land
 from nullpose.solve.kernels.links import derivatives, log_ratios, min_log_ratio
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = ["polish"]
@@ -46,7 +47,7 @@ _ATTEMPTS = 31
 _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 
 
-@inner_kernel
+@inner_heap_kernel
 def enter(domain, axis_field, p, u, free, used):
     """Move a pose strictly inside its faces and its band; fill which coordinates and slacks are in play."""
     low, high = domain[0], domain[1]
@@ -192,7 +193,7 @@ def line_search(family, domain, axis_field, here, there, model, way):
     balls = 6 + domain[2].shape[0]
     step, slope, scale = way
     floor = barrier_value(f, t, slacks, used, mu)
-    bent = np.empty(6)
+    bent = scratch(6)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
             bent_step(f, t, new_f, slopes, z, factor, n, scale, step, bent)
@@ -210,7 +211,7 @@ def line_search(family, domain, axis_field, here, there, model, way):
     return 0.0, t
 
 
-@kernel
+@heap_kernel
 def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     """Improve a pose in place to a local maximum; return its smallest log ratio and the steps taken.
 
@@ -228,7 +229,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     chosen = np.empty(domain[4].shape[0] - 1, np.int64)
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
-    best_p, best_u = np.empty(3), np.empty(3)
+    best_p, best_u = scratch(3), scratch(3)
     work = (free, used, chosen, slacks, logs, f)
     best, value = begin(family, domain, axis_field, p, u, work, best_p, best_u)
     for k in range(ratios):
@@ -236,12 +237,12 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     if not value > -math.inf:
         copy_into(best_p, p)
         return best, 0
-    grads, hess, parts = np.empty((ratios, 6)), np.empty((6, 6)), np.empty((groups, 50))
-    jacobian, h = np.empty((6, 5)), np.empty((5, 5))
+    grads, hess, parts = np.empty((ratios, 6)), scratch(6, 6), np.empty((groups, 50))
+    jacobian, h = scratch(6, 5), scratch(5, 5)
     slopes, rows = np.empty((ratios, 6)), np.zeros((sides, 6))
-    system, factor, step = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    system, factor, step = scratch(6, 6), scratch(6, 6), scratch(6)
     gaps, new_gaps, every = np.empty(ratios), np.empty(ratios), np.empty(ratios, np.bool_)
-    new_p, new_u, new_f, new_slacks = np.empty(3), np.empty(3), np.empty(ratios), np.empty(sides)
+    new_p, new_u, new_f, new_slacks = scratch(3), scratch(3), np.empty(ratios), np.empty(sides)
     there = (new_p, new_u, new_f, new_slacks, logs)
     mu = mu_start
     t = best_level(f, mu)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 
 __all__ = ["real_roots"]
 
@@ -58,8 +59,8 @@ def real_roots(coefficients, degree, roots):
         roots: scratch and output, at least 10 long.
     """
     count = 0
-    derivative = np.empty(9)
-    knots = np.empty(12)
+    derivative = scratch(9)
+    knots = scratch(12)
     for order in range(degree - 1, -1, -1):
         d = degree - order
         for i in range(d + 1):

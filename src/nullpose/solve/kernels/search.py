@@ -14,9 +14,10 @@ import numpy as np
 from nullpose.solve.kernels.chart import axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polish import polish
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = ["search"]
@@ -44,7 +45,7 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)
 
 
-@inner_kernel
+@inner_heap_kernel
 def step_outside(p, domain, chosen):
     """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
     low, high, start, sides = domain[0], domain[1], domain[4], domain[5]
@@ -56,7 +57,7 @@ def step_outside(p, domain, chosen):
         clear = False
         least = math.inf
         best = p.copy()
-        q = np.empty(3)
+        q = scratch(3)
         for s in range(start[c], start[c + 1]):  # the side that is nearest and in the box
             side = sides[s]
             for i in range(3):
@@ -83,7 +84,7 @@ def step_outside(p, domain, chosen):
     return clear
 
 
-@kernel
+@heap_kernel
 def push_out(p, domain):
     """Move a position into the box and out of keep-out balls and forbidden pieces; return whether it is."""
     low, high, keep_points, keep_radius = domain[:4]
@@ -111,7 +112,7 @@ def push_out(p, domain):
     return False
 
 
-@kernel
+@heap_kernel
 def likely_axis(family, p, axis):
     """Fill the axis that the relaxation of the best axis suggests at a position.
 
@@ -121,7 +122,7 @@ def likely_axis(family, p, axis):
     ratios, groups = family[1].shape[0], family[5].shape[0]
     numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
-    back, forms, mean, plain = np.empty((3, 3)), np.empty((ratios, 6)), np.zeros(6), np.empty(6)
+    back, forms, mean, plain = scratch(3, 3), np.empty((ratios, 6)), zeroed(6), scratch(6)
     for g in range(groups):
         for m in range(6):
             mean[m] += denominators[g, m] / groups
@@ -134,7 +135,7 @@ def likely_axis(family, p, axis):
     if groups == 1:
         return
     logs, f = np.empty(groups), np.empty(ratios)
-    best, trial = min_log_ratio(family, p, axis, logs, f), np.empty(3)
+    best, trial = min_log_ratio(family, p, axis, logs, f), scratch(3)
     for _ in range(3):
         level = math.exp(best) if best > -20.0 else level
         for k in range(ratios):
@@ -150,11 +151,11 @@ def likely_axis(family, p, axis):
             axis[i] = trial[i]
 
 
-@inner_kernel
+@inner_heap_kernel
 def axis_of_forms(forms, back, level, axis):
     """Fill the axis that the dual of the smallest of several whitened forms suggests."""
     ratios = forms.shape[0]
-    start, matrix, v, multipliers = np.zeros(6), np.empty(6), np.empty(3), np.empty(ratios)
+    start, matrix, v, multipliers = zeroed(6), scratch(6), scratch(3), np.empty(ratios)
     for i in range(3):
         start[i] = 1.0 / 3.0
     dual_multipliers(forms, ratios, np.int64(0), level, math.inf, _ROUGH, start, multipliers, matrix)
@@ -202,7 +203,7 @@ def draw(shift, number, box_low, box_high, p):
         p[i] = box_low[i] + s * (box_high[i] - box_low[i])
 
 
-@kernel
+@heap_kernel
 def search(
     family, domain, axis_field, landmarks, shift, coarse, polished, rounds, patience, best_p, best_u, best_z
 ):
@@ -226,14 +227,14 @@ def search(
     f = np.empty(family[1].shape[0])
     logs = np.empty(family[5].shape[0])
     z = np.empty(f.shape[0])
-    p, u = np.empty(3), np.empty(3)
+    p, u = scratch(3), scratch(3)
     best = -math.inf
     starts = 0
     evaluations = 0
     size = max(coarse, landmarks.shape[0])
     pool_p, pool_u = np.empty((size, 3)), np.empty((size, 3))
     pool = np.empty(size)
-    box_low, box_high = np.empty(3), np.empty(3)
+    box_low, box_high = scratch(3), scratch(3)
     drawn = 0
     idle = 0
     for turn in range(rounds + 1):  # the first turn is the landmarks'

@@ -5,8 +5,17 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 
-__all__ = ["cholesky_factor", "cholesky_solve", "copy_into", "eigen3", "gauss_solve", "tangents"]
+__all__ = [
+    "cholesky_factor",
+    "cholesky_solve",
+    "copy_into",
+    "copy_table",
+    "eigen3",
+    "gauss_solve",
+    "tangents",
+]
 
 _SWEEPS = 30
 
@@ -17,7 +26,8 @@ def eigen3(matrix, values, vectors):
 
     Cyclic Jacobi: slower than the closed form and accurate where that one is not, at close eigenvalues.
     """
-    a = matrix.copy()
+    a = scratch(3, 3)
+    copy_table(matrix, a)
     for i in range(3):
         for j in range(3):
             vectors[i, j] = 1.0 if i == j else 0.0
@@ -135,6 +145,14 @@ def copy_into(source, target):
     """Overwrite a vector with another."""
     for i in range(source.shape[0]):
         target[i] = source[i]
+
+
+@inner_kernel
+def copy_table(source, target):
+    """Overwrite a table with another."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
 
 
 @kernel

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.worst_case_links import loudest
 
 __all__ = ["descend", "into_cone", "ratio_at", "worst_found"]
@@ -38,7 +38,7 @@ def link_gradient(y, q, scale, by_axis, by_offset):
         by_offset[i] -= scale * (2.0 * (q[i] - along * y[i]) / quartic - 4.0 * link * q[i] / square)
 
 
-@inner_kernel
+@inner_heap_kernel
 def ratio_at(ratio, y, offset, places, by_axis, by_offset):
     """Return the ratio at an axis y (unit) and an offset, the jammers at their worst.
 
@@ -71,7 +71,7 @@ def ratio_at(ratio, y, offset, places, by_axis, by_offset):
     return value
 
 
-@inner_kernel
+@inner_heap_kernel
 def into_cone(errors, y):
     """Overwrite y with the unit vector of the cone that is nearest to its line."""
     frame, cosine, sine = errors[:3]
@@ -100,7 +100,7 @@ def into_ball(reach, offset):
             offset[i] *= reach / length
 
 
-@inner_kernel
+@inner_heap_kernel
 def descend(ratio, errors, y, offset, places):
     """Return the ratio at a local minimum over the errors, downhill from y and offset, which it overwrites.
 
@@ -169,7 +169,7 @@ def null_within_reach(ratio, errors, y, offset):
     return side <= reach * reach or side <= 1e-28 * square
 
 
-@inner_kernel
+@inner_heap_kernel
 def worst_found(ratio, errors, y, offset):
     """Return the smallest ratio that descents from several errors end at, and fill that error.
 

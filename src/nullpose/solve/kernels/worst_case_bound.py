@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.worst_case import descend, into_ball, into_cone, ratio_at, worst_found
 from nullpose.solve.kernels.worst_case_links import ROUND, across, clearance, loudest
 
@@ -33,7 +33,7 @@ def axis_at(errors, face, x1, x2, y):
         y[i] = frame[face, i] + x1 * frame[first, i] + x2 * frame[second, i]
 
 
-@inner_kernel
+@inner_heap_kernel
 def curvatures(ratio, c, level, cell, most_across, out):
     """Fill bounds A, B, C: the second derivative of F along (x, d) is at most A|x|^2 + 2B|x||d| + C|d|^2.
 
@@ -99,7 +99,7 @@ def empty_of_errors(errors, cell):
     return ahead * sine * sine * (1.0 + _SLACK) < rest * cosine * cosine
 
 
-@inner_kernel
+@inner_heap_kernel
 def evaluate_corners(ratio, c, errors, level, cell, tolerance, values, sizes, cone, ball, most_across):
     """Fill F from below, the sizes of its terms, and both constraints, at the corners; False near a jammer.
 
@@ -227,7 +227,7 @@ def side_to_split(cell, bends, nu, mu):
     return side
 
 
-@inner_kernel
+@inner_heap_kernel
 def holds(ratio, errors, level, cell, tolerance, values, sizes, cone, ball, most_across):
     """Return (whether the ratio is at least the level all over a cell, the side to split otherwise)."""
     bends, gradient = np.zeros(3), np.empty(5)
@@ -275,7 +275,7 @@ def first_cells(errors, stack):
     return faces
 
 
-@inner_kernel
+@inner_heap_kernel
 def bound_below(ratio, errors, worst, accuracy, most, y, offset):
     """Return (lower bound on the ratio over all errors, least ratio found, cells examined).
 
@@ -341,14 +341,14 @@ def bound_below(ratio, errors, worst, accuracy, most, y, offset):
     return max(0.0, level), worst, cells
 
 
-@inner_kernel
+@inner_heap_kernel
 def better(ratio, errors, worst, y, offset, places):
     """Return whether the ratio at an error is below the worst found."""
     slope_y, slope_d = np.empty(3), np.empty(3)
     return ratio_at(ratio, y, offset, places, slope_y, slope_d) < worst * (1.0 - 1e-9)
 
 
-@kernel
+@heap_kernel
 def worst_case(ratio, errors, accuracy, most, y, offset, places):
     """Return (lower bound on the ratio over all errors, least ratio found, cells examined).
 

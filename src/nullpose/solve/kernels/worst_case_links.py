@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 
 __all__ = ["ROUND", "across", "clearance", "loudest", "loudest_ball", "loudest_ellipsoid"]
 
@@ -186,7 +186,7 @@ def arc_bound(low, high, width):
     return max(low, high)
 
 
-@inner_kernel
+@inner_heap_kernel
 def loudest_ellipsoid(y, q, axes, semi, tolerance, point):
     """Return (attained, upper bound) of the largest ``|y x q'| / |q'|^2`` over an ellipsoid about q.
 
@@ -271,7 +271,7 @@ def least_distance(q, semi):
     return 0.999 * max(math.sqrt(size) - outer, (form - math.sqrt(form)) / math.sqrt(normal))
 
 
-@kernel
+@heap_kernel
 def clearance(radius, axes, semi, j, q):
     """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
     if axes is not None:  # noqa: SIM102 - alone, so that the branch is left out of the types without axes

@@ -1,0 +1,165 @@
+"""Forms at a box's centre, whitened: in coordinates in which the denominators' mean is the identity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.solve.kernels.exclusion import is_level
+from nullpose.solve.kernels.forms import congruence, inverse_factor
+from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.links import link_form
+from nullpose.solve.kernels.node import CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
+from nullpose.solve.kernels.scratch import scratch
+
+__all__ = ["axis_of", "constraint_forms", "fill_values", "half_width", "ratio_form", "whiten", "whiten_axis"]
+
+_THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
+_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
+
+
+@inner_kernel
+def half_width(axis_field):
+    """Return half the width that a cone is given; zero for a band."""
+    if axis_field[0] != 3:
+        return 0.0
+    c = axis_field[1][0]
+    return min(_THIN, _STEEP * min(c, 1.0 - c))
+
+
+@inner_kernel
+def add_plain_form(points, turn, j, basis, centre, weight, isotropic, out):
+    """Add ``isotropic I + weight T`` for point j seen from the centre, in the frame."""
+    r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
+    if turn.shape[0] > 0:
+        basis = turn[j]
+    x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
+    y = basis[0, 1] * r0 + basis[1, 1] * r1 + basis[2, 1] * r2
+    z = basis[0, 2] * r0 + basis[1, 2] * r1 + basis[2, 2] * r2
+    s = x * x + y * y + z * z
+    f = weight / (s * s)
+    out[0] += isotropic + f * (y * y + z * z)
+    out[1] += isotropic + f * (x * x + z * z)
+    out[2] += isotropic + f * (x * x + y * y)
+    out[3] -= f * x * y
+    out[4] -= f * x * z
+    out[5] -= f * y * z
+
+
+@inner_kernel
+def fill_denominators(family, basis, centre, denominators, mean):
+    """Fill every denominator at the centre, in the frame, and their mean."""
+    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
+    groups = d0.shape[0]
+    denominators[:, :] = 0.0
+    mean[:] = 0.0
+    for g in range(groups):
+        for m in range(3):
+            denominators[g, m] = d0[g]
+        for e in range(dstart[g], dstart[g + 1]):
+            add_plain_form(points, turn, dpt[e], basis, centre, dw[e], 0.0, denominators[g])
+        for m in range(6):
+            mean[m] += denominators[g, m] / groups
+
+
+@inner_kernel
+def whiten(family, basis, row, denominator, denominators, mean, back):
+    """Fill what whitens, and with several denominators each of them and their mean W, in the frame.
+
+    A ratio's form is then that of ``N_k + t (W - D_k)``, which exceeds the level t exactly where the ratio
+    does.
+    """
+    if family[5].shape[0] == 1:
+        for m in range(6):
+            mean[m] = -denominator[m] / row[LEVEL]
+    else:
+        fill_denominators(family, basis, row[CENTRE:HALF], denominators, mean)
+    inverse_factor(mean, back)
+
+
+@inner_kernel
+def ratio_form(family, level_axes, basis, row, whitening, k, out):
+    """Fill the whitened form of one ratio at the centre."""
+    denominators, mean, back = whitening
+    den, level, raw = family[4], row[LEVEL], scratch(6)
+    several = family[5].shape[0] > 1
+    for m in range(6):
+        raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
+    add_plain_form(
+        family[0], family[9], family[3][k], basis, row[CENTRE:HALF], family[2][k], family[1][k], raw
+    )
+    congruence(raw, back, out)
+    if level_axes:  # no weight on the vertical: whitening leaves its direction alone
+        out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level
+        out[4] = out[5] = 0.0
+
+
+@inner_kernel
+def constraint_forms(axis_field, basis, row, back, forms):
+    """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are."""
+    raw, turned = scratch(6), scratch(6)
+    sides = np.int64(0)
+    level_axes = is_level(axis_field)
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
+                continue
+            cell_side(int(row[FACE]), row[CELL:SIDE], side, raw)
+            congruence(raw, basis, turned)
+            congruence(turned, back, forms[sides])
+            if level_axes:
+                forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
+            sides += 1
+    if axis_field[0] >= 2 and not level_axes:
+        thin = half_width(axis_field)
+        for end in range(2):
+            c = axis_field[1][end] + (thin if end == 1 else -thin)
+            if 0.0 < c < 1.0:
+                for m in range(6):
+                    raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
+                raw[2] += 1.0 if end == 0 else -1.0
+                congruence(raw, basis, turned)
+                congruence(turned, back, forms[sides])
+                sides += 1
+    return sides
+
+
+@inner_kernel
+def fill_values(family, centre, level, axis, values):
+    """Fill the value of every ratio's form at a whitened unit vector, given as an axis of the world."""
+    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
+    square = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2
+    if d0.shape[0] == 1:
+        for k in range(nw.shape[0]):
+            values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
+        return
+    for k in range(nw.shape[0]):
+        values[k] = level + n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
+    for g in range(d0.shape[0]):
+        total = d0[g] * square
+        for e in range(dstart[g], dstart[g + 1]):
+            total += dw[e] * link_form(points, turn, dpt[e], centre, axis)
+        for k in range(nw.shape[0]):
+            if den[k] == g:
+                values[k] -= level * total
+
+
+@inner_kernel
+def whiten_axis(basis, back, u, w):
+    """Fill an axis of the world in whitened coordinates."""
+    v0 = basis[0, 0] * u[0] + basis[1, 0] * u[1] + basis[2, 0] * u[2]
+    v1 = basis[0, 1] * u[0] + basis[1, 1] * u[1] + basis[2, 1] * u[2]
+    v2 = basis[0, 2] * u[0] + basis[1, 2] * u[1] + basis[2, 2] * u[2]
+    # back is upper triangular: w solves back w = v
+    w[2] = v2 / back[2, 2]
+    w[1] = (v1 - back[1, 2] * w[2]) / back[1, 1]
+    w[0] = (v0 - back[0, 1] * w[1] - back[0, 2] * w[2]) / back[0, 0]
+
+
+@inner_kernel
+def axis_of(basis, back, w, axis):
+    """Fill the axis of the world, of any length, that whitened coordinates stand for."""
+    v = scratch(3)
+    for i in range(3):
+        v[i] = back[i, 0] * w[0] + back[i, 1] * w[1] + back[i, 2] * w[2]
+    for i in range(3):
+        axis[i] = basis[i, 0] * v[0] + basis[i, 1] * v[1] + basis[i, 2] * v[2]
