@@ -239,7 +239,7 @@ def ascend(
                 share[e] = 0.5 * (share[e] + trial[e])
             continue
         axis_of(basis, whitening[2], v, axis)
-        fill_values(family, row[CENTRE:HALF], level, axis, every)
+        fill_values(family, row[CENTRE:HALF], level, axis, 1.0, every)
         reached = every[0]
         for k in range(1, every.shape[0]):
             reached = min(reached, every[k])

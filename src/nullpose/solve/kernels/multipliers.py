@@ -330,7 +330,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
         square = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
-    fill_values(family, row[CENTRE:HALF], level, axis, every)
+    fill_values(family, row[CENTRE:HALF], level, axis, square, every)
     reached = every[0]
     for k in range(1, ratios):
         reached = min(reached, every[k])

@@ -124,8 +124,8 @@ def constraint_forms(axis_field, basis, row, back, forms):
 
 
 @inner_kernel
-def fill_values(family, centre, level, axis, values):
-    """Fill the value of every ratio's form at a whitened unit vector, given as an axis of the world."""
+def fill_values(family, centre, level, axis, size, values):
+    """Fill every ratio's form at an axis of the world, whose squared length when whitened is ``size``."""
     points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
     square = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2
     if d0.shape[0] == 1:
@@ -133,7 +133,7 @@ def fill_values(family, centre, level, axis, values):
             values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
         return
     for k in range(nw.shape[0]):
-        values[k] = level + n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
+        values[k] = level * size + n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
     for g in range(d0.shape[0]):
         total = d0[g] * square
         for e in range(dstart[g], dstart[g + 1]):
