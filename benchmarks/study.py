@@ -180,7 +180,7 @@ def main() -> None:
     """Run what the command line asks for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.study", description=__doc__)
     parser.add_argument("--scenes", type=int, default=400, help="scenes of each run")
-    parser.add_argument("--chunk", type=int, default=10, help="scenes of a part")
+    parser.add_argument("--chunk", type=int, default=30, help="scenes of a part")
     parser.add_argument("--million", action="store_true", help="10^6 quick scenes, and the client's memory")
     options = parser.parse_args()
     if options.million:

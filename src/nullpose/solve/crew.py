@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 _FEWEST_TO_SHARE = 8
 _MOST_WORKERS = 8
 _BLOCK = 32_768
+_DEPTH = 1024  # rows that a stack is given beyond those it begins with: growing it later holds it twice
 
 
 def processors() -> int:
@@ -57,7 +58,7 @@ class _Worker:
 
     def take(self, rows: FloatArray) -> None:
         """Put nodes on the stack."""
-        self.stack = _grown(self.stack, self.top, len(rows) + 16)
+        self.stack = _grown(self.stack, self.top, len(rows) + _DEPTH)
         self.stack[self.top : self.top + len(rows)] = rows
         self.top += len(rows)
 

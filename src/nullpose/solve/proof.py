@@ -27,7 +27,8 @@ _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _STAGE = 0.25  # each stage's gap, as a share of the one before
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
-_MOST_LEAVES = 500_000
+_MOST_LEAVES = 250_000
+_MOST_REFINED = 200_000  # which are then held twice, beside those made of them
 _WIDEST_GAP = 1e6
 INSIDE = 1.0 - 1e-4
 """The gap that is aimed at, of the gap that is asked for: value and bound are rounded."""
@@ -281,6 +282,9 @@ def prove(
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = max(target, _STAGE * gap)
+                if len(start) > _MOST_REFINED:
+                    reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
+                    break
                 done, reason = run.stage(gap, start, run.node_limit - run.nodes, threads)
                 if reason:
                     break
