@@ -26,6 +26,7 @@ DIRECT_NODES = 20_000
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _STAGE = 0.25  # each stage's gap, as a share of the one before
+_NEARLY = 2.0  # a stage that ends so near to the target goes all the way
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
 _MOST_LEAVES = 250_000
 _MOST_REFINED = 200_000  # which are then held twice, beside those made of them
@@ -281,7 +282,7 @@ def prove(
             threads = limits.threads or processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
-                gap = max(target, _STAGE * gap)
+                gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
                 if len(start) > _MOST_REFINED:
                     reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
                     break
