@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
@@ -61,8 +62,9 @@ def value(form: np.ndarray, v: np.ndarray) -> float:
     return float(v @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ v)
 
 
-def test_it_agrees_with_the_interior_point() -> None:
-    """Where it converges, from equal multipliers: same value, reached by the axis."""
+@pytest.mark.parametrize("start", ["equal", "none"])
+def test_it_agrees_with_the_interior_point(start: str) -> None:
+    """Where it converges, from equal multipliers or from none: same value, reached by the axis."""
     rng = np.random.default_rng(5)
     converged = 0
     for number in range(120):
@@ -72,13 +74,14 @@ def test_it_agrees_with_the_interior_point() -> None:
         forms, mean, back = whitened(family, position_m)
         level = float(np.max(forms[:, :3]))
         row = np.zeros(COLUMNS)
-        keep_largest(np.full(ratios, 1.0 / ratios), ratios, row)
+        if start == "equal":
+            keep_largest(np.full(ratios, 1.0 / ratios), ratios, row)
         row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, level, -1.0
         weights, v = np.empty(ratios + 4), np.empty(3)
         found, followed = ascended(family.arrays, row, mean, back, weights, v)
         best, matrix = np.empty(ratios), np.empty(6)
-        start = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
-        wanted = dual_multipliers(forms, ratios, 0, level, math.inf, 1e-9, start, best, matrix)
+        third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
+        wanted = dual_multipliers(forms, ratios, 0, level, math.inf, 1e-9, third, best, matrix)
         if math.isfinite(found):  # multipliers, good or not, bound the dual from above
             mix, top_axis = weights[:ratios] @ forms, np.empty(3)
             assert math.isclose(weights[:ratios].sum(), 1.0, rel_tol=1e-9)

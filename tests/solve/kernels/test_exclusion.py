@@ -287,7 +287,7 @@ AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str) -> None:
     """Whatever the axes, the cell, the denominators, the turns and the borders; and much is excluded."""
     rng = np.random.default_rng([["shared", "groups", "turned"].index(family), len(border), ord(border[0])])
-    for fields, least in ((FREE, 0.35), (AFFINE_FIELDS, 0.3)):
+    for fields in (FREE, AFFINE_FIELDS):
         met, excluded = 0, Counter[int]()
         for number in range(64):
             case = some_case(
@@ -297,8 +297,8 @@ def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str) -> Non
             met += kind >= 0
             excluded[kind] += is_excluded
         assert met >= 24
-        assert excluded.total() >= least * met
+        assert excluded.total() >= 0.6 * met
         if fields is AFFINE_FIELDS:
-            assert excluded[AFFINE] >= 0.2 * met
+            assert excluded[AFFINE] >= 0.6 * met
         else:
-            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= 0.2 * met
+            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= 0.4 * met

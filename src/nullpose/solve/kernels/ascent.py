@@ -155,7 +155,10 @@ def take_in(family, level_axes, basis, row, whitening, below, every, pool, membe
 
 @inner_kernel
 def begin(family, level_axes, basis, row, whitening, constraints, sides, weights, pool, members, share):
-    """Fill the pool with the constraints and the row's own ratios; return how many forms there are."""
+    """Fill the pool with the constraints and the row's own ratios; return how many forms there are.
+
+    Of a row without multipliers the first ratio is taken: any start will do, but none is no mixture at all.
+    """
     total = sides
     for c in range(sides):
         copy_into(constraints[c], pool[c])
@@ -164,6 +167,11 @@ def begin(family, level_axes, basis, row, whitening, constraints, sides, weights
         members[total] = int(row[INDEX + s])
         ratio_form(family, level_axes, basis, row, whitening, members[total], pool[total])
         share[total] = row[WEIGHT + s]
+        total += 1
+    if total == sides:
+        members[total] = 0
+        ratio_form(family, level_axes, basis, row, whitening, 0, pool[total])
+        share[total] = 1.0
         total += 1
     return total
 
@@ -239,10 +247,7 @@ def ascend(
                 share[e] = 0.5 * (share[e] + trial[e])
             continue
         axis_of(basis, whitening[2], v, axis)
-        fill_values(family, row[CENTRE:HALF], level, axis, 1.0, every)
-        reached = every[0]
-        for k in range(1, every.shape[0]):
-            reached = min(reached, every[k])
+        reached = fill_values(family, row[CENTRE:HALF], level, axis, 1.0, every)
         inside = True
         for c in range(sides):
             inside = inside and bilinear(pool[c], v, v) >= -_OUTSIDE

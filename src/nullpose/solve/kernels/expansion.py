@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 
+from nullpose.solve.kernels.forms import seen_from
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
@@ -66,12 +67,9 @@ def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, hal
     box. For the anchor of a frame that turns towards it they hold on the first two axes; the third row and
     column vanish.
     """
-    r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
+    x, y, z = seen_from(points, turn, j, centre, basis)
     if turn.shape[0] > 0:
         basis = turn[j]
-    x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
-    y = basis[0, 1] * r0 + basis[1, 1] * r1 + basis[2, 1] * r2
-    z = basis[0, 2] * r0 + basis[1, 2] * r1 + basis[2, 2] * r2
     anchored = kind == TOWARDS_POINT and j == anchor
     if anchored:
         x = y = 0.0

@@ -7,7 +7,17 @@ import math
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 
-__all__ = ["bilinear", "congruence", "fill_form", "fill_forms", "form_value", "inverse_factor", "turned_back"]
+__all__ = [
+    "add_form",
+    "bilinear",
+    "congruence",
+    "fill_form",
+    "fill_forms",
+    "form_value",
+    "inverse_factor",
+    "seen_from",
+    "turned_back",
+]
 
 
 @kernel
@@ -79,9 +89,21 @@ def turned_back(turn, j, x, y, z):
 
 
 @inner_kernel
-def fill_form(points, turn, j, p, weight, isotropic, out):
-    """Add ``weight * T(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
-    x, y, z = turned_back(turn, j, points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2])
+def seen_from(points, turn, j, p, basis):
+    """Return the direction from p to point j in a frame; in its own coordinates if points are turned."""
+    x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
+    if turn.shape[0] > 0:
+        return turned_back(turn, j, x, y, z)
+    return (
+        basis[0, 0] * x + basis[1, 0] * y + basis[2, 0] * z,
+        basis[0, 1] * x + basis[1, 1] * y + basis[2, 1] * z,
+        basis[0, 2] * x + basis[1, 2] * y + basis[2, 2] * z,
+    )
+
+
+@inner_kernel
+def add_form(x, y, z, weight, isotropic, out):
+    """Add ``weight * T(r)`` and ``isotropic * I`` to a form of six numbers, r being (x, y, z)."""
     rho2 = x * x + y * y + z * z
     s = weight / (rho2 * rho2)
     out[0] += isotropic + s * (y * y + z * z)
@@ -90,6 +112,13 @@ def fill_form(points, turn, j, p, weight, isotropic, out):
     out[3] -= s * x * y
     out[4] -= s * x * z
     out[5] -= s * y * z
+
+
+@inner_kernel
+def fill_form(points, turn, j, p, weight, isotropic, out):
+    """Add ``weight * T(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
+    x, y, z = turned_back(turn, j, points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2])
+    add_form(x, y, z, weight, isotropic, out)
 
 
 @kernel

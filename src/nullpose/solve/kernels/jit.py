@@ -16,9 +16,8 @@ __all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 # no references are counted, which in short kernels is a fifth of the time
 _LEAN: dict[str, Any] = _OPTIONS | {"_nrt": False}
-_HEAP: dict[str, Any] = _OPTIONS | {
-    "_nrt": True
-}  # said, since a kernel inherits it from the first that calls it
+# said, since a kernel inherits what is not said from the first that calls it
+_HEAP: dict[str, Any] = _OPTIONS | {"_nrt": True}
 _INNER = {"no_cpython_wrapper": True}
 
 

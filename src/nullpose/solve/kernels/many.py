@@ -126,6 +126,24 @@ def prove(family, domain, axis_field, log_value, target, axes_above, most, p, u,
     return False, log_value, nodes
 
 
+@inner_heap_kernel
+def prove_directly(family, domain, axis_field, log_value, target, budget, p, u, z, stack, leaves):
+    """Return what ``prove`` does, with axes split late first where that may help, then early."""
+    late, early, most = budget
+    shown, nodes = False, np.int64(0)
+    if may_have_gaps(family, axis_field):
+        shown, log_value, nodes = prove(
+            family, domain, axis_field, log_value, target, LATE, min(late, most), p, u, z, stack, leaves
+        )
+    if not shown:
+        more = min(early, most - nodes)
+        shown, log_value, done = prove(
+            family, domain, axis_field, log_value, target, EARLY, more, p, u, z, stack, leaves
+        )
+        nodes += done
+    return shown, log_value, nodes
+
+
 @heap_kernel
 def settle_many(
     shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, climbs, target, budget,
@@ -179,38 +197,9 @@ def settle_many(
             if bound <= math.exp(value) * (1.0 + target):
                 codes[s] = PROVED
             else:
-                shown = False
-                if may_have_gaps(family, axis_field):
-                    shown, value, nodes[s] = prove(
-                        family,
-                        here,
-                        axis_field,
-                        value,
-                        target,
-                        LATE,
-                        min(budget[0], budget[2]),
-                        p,
-                        u,
-                        z,
-                        stack,
-                        leaves,
-                    )
-                if not shown:
-                    shown, value, more = prove(
-                        family,
-                        here,
-                        axis_field,
-                        value,
-                        target,
-                        EARLY,
-                        min(budget[1], budget[2] - nodes[s]),
-                        p,
-                        u,
-                        z,
-                        stack,
-                        leaves,
-                    )
-                    nodes[s] += more
+                shown, value, nodes[s] = prove_directly(
+                    family, here, axis_field, value, target, budget, p, u, z, stack, leaves
+                )
                 if shown:
                     codes[s] = PROVED
                     bound = min(bound, math.exp(value) * (1.0 + target))

@@ -24,7 +24,7 @@ from nullpose.solve.kernels.node import (
     SIDE,
     keep_largest,
 )
-from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.scratch import scratch, scratch_int
 from nullpose.solve.kernels.symmetric import copy_into
 from nullpose.solve.kernels.whitened import (
     axis_of,
@@ -228,42 +228,18 @@ def sparse_dual(forms, ratios, sides, row, stop, gap, start, weights, matrix):
 
 
 @inner_kernel
-def keep_sides(axis_field, row, weights, ratios):
+def keep_sides(row, places, sides, weights, ratios):
     """Put the multipliers of the cell's sides and of the band into the row."""
     row[SIDE] = row[SIDE + 1] = row[BAND] = 0.0
-    level_axes = is_level(axis_field)
-    c = ratios
-    if row[FACE] >= 0.0:
-        for side in range(2):
-            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
-                continue
-            row[SIDE + side] = weights[c]
-            c += 1
-    if axis_field[0] >= 2 and not level_axes:
-        thin = half_width(axis_field)
-        for end in range(2):
-            if 0.0 < axis_field[1][end] + (thin if end == 1 else -thin) < 1.0:
-                row[BAND] += -weights[c] if end == 0 else weights[c]
-                c += 1
+    for c in range(sides):
+        row[abs(places[c])] += weights[ratios + c] if places[c] > 0 else -weights[ratios + c]
 
 
 @inner_kernel
-def kept_sides(axis_field, row, weights):
-    """Fill a row's multipliers of the cell's sides and of the band: what ``keep_sides`` put there."""
-    level_axes = is_level(axis_field)
-    c = 0
-    if row[FACE] >= 0.0:
-        for side in range(2):
-            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
-                continue
-            weights[c] = row[SIDE + side]
-            c += 1
-    if axis_field[0] >= 2 and not level_axes:
-        thin = half_width(axis_field)
-        for end in range(2):
-            if 0.0 < axis_field[1][end] + (thin if end == 1 else -thin) < 1.0:
-                weights[c] = max(0.0, -row[BAND] if end == 0 else row[BAND])
-                c += 1
+def kept_sides(row, places, sides, weights):
+    """Fill the multipliers of the cell's sides and of the band that a row has."""
+    for c in range(sides):
+        weights[c] = max(0.0, row[places[c]] if places[c] > 0 else -row[-places[c]])
 
 
 @inner_heap_kernel
@@ -302,12 +278,12 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
     level, ratios = row[LEVEL], family[1].shape[0]
     weights, every = room[:2]
     mean, back, v = scratch(6), scratch(3, 3), scratch(3)
-    constraints, start = scratch(4, 6), scratch(4)
+    constraints, places, start = scratch(4, 6), scratch_int(4), scratch(4)
     denominators = room[4]
     whiten(family, basis, row, denominator, denominators, mean, back)
     whitening = (denominators, mean, back)
-    sides = constraint_forms(axis_field, basis, row, back, constraints)
-    kept_sides(axis_field, row, start)
+    sides = constraint_forms(axis_field, basis, row, back, constraints, places)
+    kept_sides(row, places, sides, start)
     tolerance = max(_FINE, _LOOSE * coarseness)
     primal, followed = ascend(
         family, is_level(axis_field), basis, row, whitening, constraints, sides, start, tolerance, every,
@@ -320,7 +296,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
         followed = True
         if primal == math.inf:
             return math.inf, 0.0, False
-    keep_sides(axis_field, row, weights, ratios)
+    keep_sides(row, places, sides, weights, ratios)
     keep_largest(weights, ratios, row)
     if not followed:
         return primal / level, 0.0, False
@@ -330,8 +306,5 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
         square = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
-    fill_values(family, row[CENTRE:HALF], level, axis, square, every)
-    reached = every[0]
-    for k in range(1, ratios):
-        reached = min(reached, every[k])
+    reached = fill_values(family, row[CENTRE:HALF], level, axis, square, every)
     return primal / level, reached / (square * level), True

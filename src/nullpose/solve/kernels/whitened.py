@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.solve.kernels.exclusion import is_level
-from nullpose.solve.kernels.forms import congruence, inverse_factor
+from nullpose.solve.kernels.forms import add_form, congruence, inverse_factor, seen_from
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.links import link_form
-from nullpose.solve.kernels.node import CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
+from nullpose.solve.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
 from nullpose.solve.kernels.scratch import scratch
 
 __all__ = ["axis_of", "constraint_forms", "fill_values", "half_width", "ratio_form", "whiten", "whiten_axis"]
@@ -29,20 +29,8 @@ def half_width(axis_field):
 @inner_kernel
 def add_plain_form(points, turn, j, basis, centre, weight, isotropic, out):
     """Add ``isotropic I + weight T`` for point j seen from the centre, in the frame."""
-    r0, r1, r2 = points[j, 0] - centre[0], points[j, 1] - centre[1], points[j, 2] - centre[2]
-    if turn.shape[0] > 0:
-        basis = turn[j]
-    x = basis[0, 0] * r0 + basis[1, 0] * r1 + basis[2, 0] * r2
-    y = basis[0, 1] * r0 + basis[1, 1] * r1 + basis[2, 1] * r2
-    z = basis[0, 2] * r0 + basis[1, 2] * r1 + basis[2, 2] * r2
-    s = x * x + y * y + z * z
-    f = weight / (s * s)
-    out[0] += isotropic + f * (y * y + z * z)
-    out[1] += isotropic + f * (x * x + z * z)
-    out[2] += isotropic + f * (x * x + y * y)
-    out[3] -= f * x * y
-    out[4] -= f * x * z
-    out[5] -= f * y * z
+    x, y, z = seen_from(points, turn, j, centre, basis)
+    add_form(x, y, z, weight, isotropic, out)
 
 
 @inner_kernel
@@ -94,8 +82,11 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
 
 
 @inner_kernel
-def constraint_forms(axis_field, basis, row, back, forms):
-    """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are."""
+def constraint_forms(axis_field, basis, row, back, forms, places):
+    """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are.
+
+    And the column of a row in which each one's multiplier stands, negative where it stands negated.
+    """
     raw, turned = scratch(6), scratch(6)
     sides = np.int64(0)
     level_axes = is_level(axis_field)
@@ -108,6 +99,7 @@ def constraint_forms(axis_field, basis, row, back, forms):
             congruence(turned, back, forms[sides])
             if level_axes:
                 forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
+            places[sides] = SIDE + side
             sides += 1
     if axis_field[0] >= 2 and not level_axes:
         thin = half_width(axis_field)
@@ -119,28 +111,33 @@ def constraint_forms(axis_field, basis, row, back, forms):
                 raw[2] += 1.0 if end == 0 else -1.0
                 congruence(raw, basis, turned)
                 congruence(turned, back, forms[sides])
+                places[sides] = BAND if end == 1 else -BAND
                 sides += 1
     return sides
 
 
 @inner_kernel
 def fill_values(family, centre, level, axis, size, values):
-    """Fill every ratio's form at an axis of the world, whose squared length when whitened is ``size``."""
+    """Fill every ratio's form at an axis of the world, whose squared length when whitened is ``size``.
+
+    Returns the smallest.
+    """
     points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
     square = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2
-    if d0.shape[0] == 1:
-        for k in range(nw.shape[0]):
-            values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
-        return
     for k in range(nw.shape[0]):
-        values[k] = level * size + n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
-    for g in range(d0.shape[0]):
-        total = d0[g] * square
-        for e in range(dstart[g], dstart[g + 1]):
-            total += dw[e] * link_form(points, turn, dpt[e], centre, axis)
-        for k in range(nw.shape[0]):
-            if den[k] == g:
-                values[k] -= level * total
+        values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
+    if d0.shape[0] > 1:
+        for g in range(d0.shape[0]):
+            total = d0[g] * square
+            for e in range(dstart[g], dstart[g + 1]):
+                total += dw[e] * link_form(points, turn, dpt[e], centre, axis)
+            for k in range(nw.shape[0]):
+                if den[k] == g:
+                    values[k] += level * (size - total)
+    smallest = values[0]
+    for k in range(1, nw.shape[0]):
+        smallest = min(smallest, values[k])
+    return smallest
 
 
 @inner_kernel
