@@ -38,9 +38,11 @@ def empty_page(marks: Marks) -> Iterator[tuple[int, Callable[[], Any], Any, Any]
         nonlocal version
         version += 1
         marks.heard.append((time.time(), version))
-        box.position = event.target.position + np.array([0.0, 6.0, 0.0])
+        place = event.target.position + np.array([0.0, 6.0, 0.0])
+        marks.solved.append((time.time(), version, place))
+        box.position = place
         told.content = _TOLD.format(version, event.target.position)
-        marks.solved.append((time.time(), version))
+        server.flush()
 
     handle.on_update(on_update)
     try:

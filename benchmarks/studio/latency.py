@@ -84,18 +84,20 @@ def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
 
         def tell(event: Any) -> None:
             if isinstance(event, Answer):
-                marks.solved.append((time.time(), event.version))
+                marks.solved.append((time.time(), event.version, event.pose.position_m))
             told(event)
 
         ours.session.move, ours.session._on_event = moved, tell
         start = np.array(scene.jammers[0].position_m)
         grip = start + np.array([0.06 * ours._size_m, 0.0, 0.0])
         to = grip + np.array([0.1 * ours._size_m, 0.0, 0.0])
-        return {how: dragged(page, ours._client.camera, grip, to, marks, steps, how) for how in STEPS}
+        return {
+            how: dragged(page, ours._client.camera, grip, to, marks, steps, how, "/drone-a") for how in STEPS
+        }
 
 
 def _floor(steps: int) -> dict[str, Any]:
     marks = Marks()
     with empty_page(marks) as (port, camera, grip, to), opened(port, scale=1.0) as page:
         page.wait_for_timeout(3000)
-        return {how: dragged(page, camera(), grip, to, marks, steps, how) for how in STEPS}
+        return {how: dragged(page, camera(), grip, to, marks, steps, how, "/box") for how in STEPS}

@@ -174,6 +174,24 @@ class Ground:
         gizmo.on_update(on_update)
         return gizmo
 
+    def hold(self, key: PointKey) -> None:
+        """Let one handle be dragged and take away the others', which only cost time meanwhile.
+
+        Args:
+            key: whose handle.
+        """
+        self.dragged = key
+        self._show_arrows(lambda other: other == key)
+
+    def let_go(self) -> None:
+        """End a drag: every point has its handle again."""
+        self.dragged = None
+        self._show_arrows(lambda other: True)
+
+    def _show_arrows(self, wanted: Callable[[PointKey], bool]) -> None:
+        for key, handle in self._handles.items():
+            handle.disable_axes = handle.disable_sliders = not wanted(key)
+
     def restore(self, view: View) -> None:
         """Put every handle back to where its point is.
 

@@ -104,7 +104,7 @@ class Studio:
     """
 
     def __init__(self, server: ViserServer, scenario: Scenario) -> None:
-        from nullpose.studio.page import camera_m
+        from nullpose.studio.page import camera_m, near_m
 
         self._server, self._scenario = server, scenario
         self._lock = threading.Lock()
@@ -112,6 +112,7 @@ class Studio:
         self._closed = False
         self.pages: dict[int, Any] = {}
         server.initial_camera.position, server.initial_camera.look_at = camera_m(scenario)
+        server.initial_camera.near = near_m(scenario)
         server.on_client_connect(self._connect)
         server.on_client_disconnect(self._disconnect)
 

@@ -20,6 +20,7 @@ POWER_LABEL = "jamming power over node power (dB)"
 _PROOF_LIMIT_S = 30.0
 _ROBUST_LIMIT_S = 20.0
 _CURVE_POINTS = 15
+_CURVE_SHOWN = 4  # a growing plot is drawn after so many points more
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
 
@@ -74,7 +75,7 @@ def proved_answers(
     )
 
 
-def power_curves(version: int, view: View) -> Iterator[PowerCurve]:
+def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: None) -> Iterator[PowerCurve]:
     """Yield the schemes' values against the jamming power, first at few powers and then at more.
 
     The poses are searched for, not proved. Nothing comes without a jamming power to vary.
@@ -82,6 +83,7 @@ def power_curves(version: int, view: View) -> Iterator[PowerCurve]:
     Args:
         version: the version of the scene.
         view: the scene.
+        go_on: called before every search; what it raises ends the curve.
 
     Raises:
         NullposeError: there is no pose at some power.
@@ -97,9 +99,10 @@ def power_curves(version: int, view: View) -> Iterator[PowerCurve]:
             at_power = view.with_power_db(power_db)
             for scheme in schemes:
                 if (power_db, scheme.value) not in rows:
+                    go_on()
                     solution = solve(Case(label="").on(at_power.scenario), scheme, certify=False)
                     rows[power_db, scheme.value] = _row(power_db, solution)
-            if every == 1:
+            if every == 1 and i % _CURVE_SHOWN == _CURVE_SHOWN - 1:
                 yield _curve(version, rows, complete=False)
         yield _curve(version, rows, complete=every == 1)
 

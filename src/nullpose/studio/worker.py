@@ -45,7 +45,8 @@ class Worker:
             may come after a newer version was requested, so that poses follow a moving hand; a proof, a map
             or a curve of an outdated version does not.
         map_kernel: tells when the maps can be worked out.
-        rest_s: how long nothing must have changed before a proof begins, seconds.
+        rest_s: how long nothing must have changed before a proof begins, seconds; as long again, and the plot
+            and the maps do.
     """
 
     def __init__(
@@ -108,6 +109,7 @@ class Worker:
         for case in view.cases:
             last = self._try(request, case, partial(self._prove, request, case))
             best = best or last
+        self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._try(request, view.case, lambda: self._draw_curve(request))
         if best is not None:
             while not self._map_kernel.is_ready():
@@ -124,7 +126,7 @@ class Worker:
         return last
 
     def _draw_curve(self, request: _Request) -> None:
-        for curve in power_curves(request.version, request.view):
+        for curve in power_curves(request.version, request.view, self._go_on):
             self._tell(request, curve)
 
     def _try(

@@ -109,6 +109,11 @@ def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Sessio
     assert _value(page) != pytest.approx(before, rel=1e-3)
 
 
+def _with_arrows(ours: Any) -> set[Any]:
+    """Returns the points that have arrows to drag them by."""
+    return {key for key, handle in ours._ground._handles.items() if not handle.disable_axes}
+
+
 def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running: Studio) -> None:
     """Dragging the jammer's handle moves it along the ground, and the value is the solver's there."""
     ours = next(iter(running.pages.values()))
@@ -125,9 +130,11 @@ def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running
     for share in np.linspace(0.1, 1.0, 12):
         page.mouse.move(x + share * (to[0] - x), y + share * (to[1] - y))
         page.wait_for_timeout(60)
+    assert _with_arrows(ours) == {("jammers", 0)}
     page.mouse.up()
     _settled(page, version)
     page.wait_for_timeout(1500)
+    assert _with_arrows(ours) == set(ours._ground._handles)
     page.wait_for_function(CERTIFIED)
     moved = np.array(session.view.scenario.jammers[0].position_m)
     assert np.linalg.norm(moved - start) > 4.0
