@@ -1,7 +1,7 @@
 """The first compilation, shared between two processes.
 
 A second process fills the cache with the choice of a starting axis and the branch and bound, while this one
-compiles the polish and the search around it.
+compiles a part of that which stands by itself, and then the polish and the search around it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from nullpose.family import AxisField, Family
 
 __all__ = ["ready", "warm_kernels"]
 
-_WAIT_S = 60.0
+_WAIT_S = 300.0  # it is ended then, and all that it compiled is compiled again
 
 
 def warm_kernels(family: Family, axis_field: AxisField) -> None:
@@ -43,6 +43,7 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
     except OSError:
         return
     try:
+        compile_affine(family, axis_field)
         compile_search(family, axis_field)
         other.wait(_WAIT_S)
     except subprocess.TimeoutExpired:
@@ -78,6 +79,20 @@ def compile_branch(family: Family, axis_field: AxisField) -> None:
     node.keep_largest(np.ones(1), 1, row)
     none = (0, rows.copy(), 0, 1, np.empty(3), np.empty(3))
     branch.branch(family.arrays, family.domain, axis_field.arrays, 1.0, 1.0, row, 1.0, rows, *none)
+
+
+def compile_affine(family: Family, axis_field: AxisField) -> None:
+    """Compile the part of the branch and bound for axes that positions give, which needs none of the rest."""
+    import numpy as np
+    from numba import typeof
+
+    from nullpose.solve.kernels import branch, node
+
+    row = np.zeros(node.COLUMNS)
+    scenery = (family.arrays, family.domain, axis_field.arrays, (1.0, row, 1.0))
+    arguments = (*scenery, row, branch.make_room.py_func(family.arrays), np.empty(3))
+    types = tuple(typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
+    branch.examine_affine.compile(types)
 
 
 def compile_search(family: Family, axis_field: AxisField) -> None:
