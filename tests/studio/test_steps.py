@@ -1,10 +1,26 @@
-"""The power curve: its search can be ended before any of its poses."""
+"""What is solved behind a page: poses for a moving hand, and the power curve, which can be ended at once."""
 
 import pytest
 
 from nullpose.scenario import Scenario
-from nullpose.studio.steps import power_curves
+from nullpose.solve import solve
+from nullpose.studio.answer import Stage
+from nullpose.studio.case import cases_of
+from nullpose.studio.steps import power_curves, quick_answer
 from nullpose.studio.view import View
+
+
+@pytest.mark.parametrize("power_db", [-30.0, 0.0, 20.0, 40.0])
+def test_a_quick_answer_is_the_best_pose(paper: Scenario, power_db: float) -> None:
+    """Of every case, though nothing of it is said to be proved."""
+    view = View(scenario=paper).with_power_db(power_db)
+    for case in cases_of(view.scenario):
+        answer = quick_answer(3, view, case)
+        assert answer.version == 3
+        assert answer.stage is Stage.BEST_SO_FAR
+        assert answer.bound is answer.gap is None
+        best = solve(case.on(view.scenario), case.scheme)
+        assert answer.value == pytest.approx(best.objective.value, rel=1e-6)
 
 
 class Enough(BaseException):
