@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["GROUND", "INK", "KIND_COLOURS", "SLOTS", "css", "scale_colours", "scale_range"]
+__all__ = ["GROUND", "INK", "KIND_COLOURS", "SLOTS", "css", "scale_colour", "scale_colours", "scale_range"]
 
 Rgb = tuple[int, int, int]
 
@@ -54,6 +54,18 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
     share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
     index = np.nan_to_num(255.0 * share, nan=0.0, posinf=255.0, neginf=0.0).clip(0.0, 255.0)
     return np.asarray(_table()[index.astype(np.intp)])
+
+
+def scale_colour(value: float, low: float, high: float) -> Rgb:
+    """Return the colour of one value; see :func:`scale_colours`.
+
+    Args:
+        value: one.
+        low: value of the dark end.
+        high: value of the bright end.
+    """
+    red, green, blue = scale_colours(value, low, high).tolist()
+    return red, green, blue
 
 
 def scale_range(values: ArrayLike) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.studio.answer import Answer
-from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colours, scale_range
+from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colour, scale_colours, scale_range
 from nullpose.studio.events import Field
 from nullpose.studio.meshes import (
     antenna_wxyz,
@@ -155,9 +155,8 @@ class Drone:
             add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True)
             return frame
         for i, (band, gain) in enumerate(gain_bands(doughnut_mesh(radius_m))):
-            colour = tuple(int(c) for c in scale_colours(gain, 0.0, 1.0))
             # its near side only: both of them, finely meshed, took a quarter of the time of a picture
-            add_mesh(self._scene, f"{name}/band-{i}", band, colour, opacity=0.5)  # type: ignore[arg-type]
+            add_mesh(self._scene, f"{name}/band-{i}", band, scale_colour(gain, 0.0, 1.0), opacity=0.5)
         return frame
 
 

@@ -56,7 +56,7 @@ def near_m(scenario: Scenario) -> float:
         scenario: the scene.
     """
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
-    # works out one by one though there is no image: a fifth of the time of a picture without a graphics card
+    # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     return 0.02 * scene_size_m(scenario)
 
 

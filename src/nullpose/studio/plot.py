@@ -8,7 +8,7 @@ from html import escape
 
 from nullpose.report.figures.style import CURVES
 from nullpose.report.quantity import Quantity
-from nullpose.studio.colours import css, scale_colours
+from nullpose.studio.colours import css, scale_colour
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB
 
@@ -156,8 +156,8 @@ def scale_svg(low: float, high: float, title: str, unit: str) -> str:
         unit: as in "dB".
     """
     stops = "".join(
-        f'<stop offset="{share:.2f}" stop-color="{css(tuple(int(c) for c in colour))}"/>'  # type: ignore[arg-type]
-        for share, colour in ((i / 8, scale_colours(i / 8, 0.0, 1.0)) for i in range(9))
+        f'<stop offset="{share:.2f}" stop-color="{css(scale_colour(share, 0.0, 1.0))}"/>'
+        for share in (i / 8 for i in range(9))
     )
     texts = "".join(
         f'<text x="{10 + 320 * share:.0f}" y="40" text-anchor="{anchor}">'
