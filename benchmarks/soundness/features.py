@@ -118,6 +118,105 @@ def _together(rng: np.random.Generator) -> Table:
     return together
 
 
+def _extremes(rng: np.random.Generator) -> Table:
+    """Powers and noise over many decades, to jamming of 1e12 times the noise at the keep-out."""
+    plain = _plain(rng)
+    noise_w = float(10.0 ** rng.uniform(-16.0, 0.0))
+    plain["receiver"]["noise_w"] = noise_w
+    for node in plain["nodes"]:
+        node["power_w"] = noise_w * float(10.0 ** rng.uniform(-3.0, 12.0))
+    for jammer in plain["jammers"]:
+        jammer["power_w"] = noise_w * float(10.0 ** rng.uniform(0.0, 12.0)) / len(plain["jammers"])
+    return plain
+
+
+def _one_node_secrecy(rng: np.random.Generator) -> Table:
+    """One node and one eavesdropper low on the ground, often under a low floor."""
+    table = _secrecy(rng)
+    table["airspace"]["altitude_m"] = [float(rng.uniform(2.0, 8.0)), 30.0]
+    table["nodes"] = [{"position_m": [0.0, 0.0, 1.5]}]
+    table["eavesdroppers"] = [
+        {
+            "position_m": [*map(float, rng.uniform(-30.0, 30.0, 2)), 1.5],
+            "noise_w": _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5)),
+        }
+    ]
+    return table
+
+
+def _points(rng: np.random.Generator) -> Table:
+    """An airspace that is one point, a line or a sheet."""
+    plain = _plain(rng)
+    corner, size = rng.uniform([10.0, 10.0, 8.0], [50.0, 50.0, 20.0]), rng.uniform(1.0, 20.0, 3)
+    size[rng.permutation(3)[: int(rng.integers(1, 4))]] = 0.0
+    ends = {key: [float(a), float(a + b)] for key, a, b in zip(_SIDES, corner, size, strict=True)}
+    plain["airspace"] = ends
+    return plain
+
+
+def _slivers(rng: np.random.Generator) -> Table:
+    """A fence or an airspace that is a hair wide."""
+    plain = _plain(rng)
+    width = float(10.0 ** rng.uniform(-6.0, -1.0))
+    x, y = map(float, rng.uniform(10.0, 50.0, 2))
+    if rng.uniform() < 0.5:
+        turn = float(rng.uniform(0.0, np.pi))
+        along, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+        corners = [
+            [x, y] + a * 20.0 * along + b * width * across for a, b in ((-1, 0), (1, 0), (1, 1), (-1, 1))
+        ]
+        plain["airspace"]["geofence_m"] = [list(map(float, corner)) for corner in corners]
+    else:
+        plain["airspace"] |= {"x_m": [x, x + width], "y_m": [y - 20.0, y + 20.0]}
+    return plain
+
+
+def _touching(rng: np.random.Generator) -> Table:
+    """No-fly zones that share a side or a corner, and one whose side is the fence's."""
+    plain = _plain(rng)
+    x, y = map(float, rng.integers(10, 40, 2))
+    size = float(rng.integers(2, 12))
+    zones: list[Table] = [{"x_m": [x, x + size], "y_m": [y, y + size]}]
+    zones.append({"x_m": [x + size, x + 2.0 * size], "y_m": [y, y + size]})
+    zones.append({"x_m": [x + 2.0 * size, x + 3.0 * size], "y_m": [y + size, y + 2.0 * size]})
+    plain["airspace"]["no_fly"] = zones[: int(rng.integers(2, 4))]
+    if rng.uniform() < 0.5:
+        west, south, east, north = x, y - 15.0, x + 40.0, y + 30.0
+        plain["airspace"]["geofence_m"] = [[west, south], [east, south], [east, north], [west, north]]
+    return plain
+
+
+def _shared_place(rng: np.random.Generator) -> Table:
+    """An eavesdropper a hair beside a node, with another noise or the same."""
+    table = _secrecy(rng)
+    beside = np.array(table["nodes"][0]["position_m"]) + rng.normal(0.0, 10.0 ** rng.uniform(-2.0, -0.5), 3)
+    table["eavesdroppers"][0]["position_m"] = beside.tolist()
+    if rng.uniform() < 0.5:
+        table["eavesdroppers"][0]["noise_w"] = _NOISE_W
+    return table
+
+
+def _weights(rng: np.random.Generator) -> Table:
+    """Weights over six decades."""
+    plain = _plain(rng)
+    for node in plain["nodes"]:
+        node["weight"] = float(10.0 ** rng.uniform(-3.0, 3.0))
+    return plain
+
+
+def _tilts(rng: np.random.Generator) -> Table:
+    """Airframes at the ends of what they may be: no tilt or all but 90 degrees, upright or all but level."""
+    ends = [
+        0.0,
+        90.0,
+        float(10.0 ** rng.uniform(-12.0, -3.0)),
+        90.0 - float(10.0 ** rng.uniform(-12.0, -3.0)),
+    ]
+    return _plain(rng) | {"airframe": {"tilt_max_deg": rng.choice(ends), "mount_deg": rng.choice(ends)}}
+
+
+_SIDES = ("x_m", "y_m", "altitude_m")
+
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "airframe": _airframe,
     "secrecy": _secrecy,
@@ -125,6 +224,14 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "no-fly": _no_fly,
     "fence": _fence,
     "together": _together,
+    "extremes": _extremes,
+    "one-node-secrecy": _one_node_secrecy,
+    "points": _points,
+    "slivers": _slivers,
+    "touching": _touching,
+    "shared-place": _shared_place,
+    "weights": _weights,
+    "tilts": _tilts,
 }
 
 

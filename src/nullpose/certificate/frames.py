@@ -46,7 +46,9 @@ class Frames:
         direction: (b, 3) the unit vector to it, zero where the frame stands still.
         rho: (b,) its distance from the centre, and from the box at least.
         rho_least: (b,) the latter.
-        basis: (b, 3, 3) columns: the coordinates that definiteness is asked in.
+        basis: (b, 3, 3) columns: the coordinates that definiteness is asked in. In a turning frame the third
+            is the direction itself, and not a rounded one: the anchor's form then has no third row, however
+            strong the anchor is.
         gram: basis^T basis, as six numbers.
     """
 
@@ -55,7 +57,7 @@ class Frames:
     direction: Interval
     rho: Interval
     rho_least: Interval
-    basis: FloatArray
+    basis: Interval
     gram: list[Interval]
 
 
@@ -72,14 +74,17 @@ def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
     for b in np.flatnonzero(turning):
         q, _ = np.linalg.qr(np.column_stack([third[b], np.eye(3)[np.argmin(np.abs(third[b]))]]), "complete")
         basis[b] = np.column_stack([q[:, 1], q[:, 2], third[b]])
-    gram = [dot(Interval(basis[:, :, i]), basis[:, :, j]) for i, j in PAIRS]
+    axes = Interval(basis.copy(), basis.copy())
+    axes.low[turning, :, 2], axes.high[turning, :, 2] = direction.low[turning], direction.high[turning]
+    one = Interval(np.ones(len(boxes)))
+    gram = [dot(axes[:, :, i], axes[:, :, j]) if (i, j) != (2, 2) else one for i, j in PAIRS]
     least = Interval(boxes.nearest2(family.points_m[anchor])).sqrt()
-    return Frames(turning, anchor, direction, rho, Interval(least.low), basis, gram)
+    return Frames(turning, anchor, direction, rho, Interval(least.low), axes, gram)
 
 
 def turned(frames: Frames, vector: Interval) -> list[Interval]:
     """Return basis^T v as three numbers."""
-    return [dot(Interval(frames.basis[:, :, i]), vector) for i in range(3)]
+    return [dot(frames.basis[:, :, i], vector) for i in range(3)]
 
 
 def expansion(
@@ -137,9 +142,11 @@ def finite(x: FloatArray) -> FloatArray:
 
 
 def projector(frames: Frames) -> list[Interval]:
-    """Return I - d d^T in the basis, as six numbers."""
+    """Return I - d d^T in the basis, as six numbers: in a turning frame the third row is zero."""
     d = turned(frames, frames.direction)
-    return [g - d[i] * d[j] for g, (i, j) in zip(frames.gram, PAIRS, strict=True)]
+    plain = [g - d[i] * d[j] for g, (i, j) in zip(frames.gram, PAIRS, strict=True)]
+    zero = Interval(np.zeros(len(frames.turning)))
+    return [choose(frames.turning & (j == 2), zero, p) for p, (_, j) in zip(plain, PAIRS, strict=True)]
 
 
 def choose(mask: np.ndarray, a: Interval, b: Interval) -> Interval:
@@ -150,7 +157,7 @@ def choose(mask: np.ndarray, a: Interval, b: Interval) -> Interval:
 def congruent(frames: Frames, q: Interval) -> list[Interval]:
     """Return basis^T Q basis as six numbers."""
     columns = [stack([dot(q[:, i, :], frames.basis[:, :, c]) for i in range(3)]) for c in range(3)]
-    return [dot(Interval(frames.basis[:, :, i]), columns[j]) for i, j in PAIRS]
+    return [dot(frames.basis[:, :, i], columns[j]) for i, j in PAIRS]
 
 
 def turning_rate(frames: Frames, q: Interval, e: int) -> Interval:

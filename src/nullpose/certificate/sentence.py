@@ -92,7 +92,7 @@ def _numbers(certificate: Certificate) -> tuple[str, str, str]:
 
 
 def _rounded(number: float, direction: str, digits: int = 9) -> str:
-    """Return a number with so many decimals that claims no more than it does; in full if it is small."""
-    if 0.0 < number < 1e-3:
+    """Return a number with so many decimals that claims no more than it does; in full if small or large."""
+    if 0.0 < number < 1e-3 or number >= 1e9:
         return repr(number)
     return format(Decimal(number).quantize(Decimal(1).scaleb(-digits), rounding=direction), "f")

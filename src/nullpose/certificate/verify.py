@@ -61,12 +61,12 @@ class Verdict:
 
 
 def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | None = None) -> Verdict:
-    """Return whether a certificate proves its claim, by code that shares nothing with the solver.
+    """Return whether a certificate proves its claim, by code that imports nothing from the solver.
 
     The pose must be allowed and have the value that is stated (exact arithmetic); the leaves must cover
     every position and axis that could exceed the bound, and each leaf's test must hold (outward-rounded
     interval arithmetic). The scenario's units are converted to a family of ratios in double precision
-    before: the claim is about those numbers.
+    before, by the function that the solver uses too: the claim is about those numbers.
 
     Args:
         certificate: what to check.

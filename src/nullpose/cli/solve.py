@@ -24,7 +24,7 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
 )
-from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.output import Ticker, compiling_announced, show, show_json
 from nullpose.cli.robust import refuse_with_robust, solve_robustly
 
 if TYPE_CHECKING:
@@ -70,6 +70,10 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    verify: Annotated[
+        bool,
+        typer.Option("--verify", help="Check the proof in outward-rounded arithmetic, as `verify` does."),
+    ] = False,
     geojson: Annotated[
         Path | None,
         typer.Option(
@@ -106,6 +110,7 @@ def solve(
         "scheme": scheme if scheme is not SchemeName.OPTIMUM else None,
         "null_jammer": null_jammer,
         "certificate": certificate,
+        "verify": verify,
         "geojson": geojson,
     }
     common: dict[str, Any] = {"gap": gap, "certify": not fast, "seed": seed, "json_output": json_output}
@@ -119,16 +124,20 @@ def solve(
         solve_with_array(scenario, (combining or CombiningName.DIGITAL).value, **common)
         return
     from nullpose.certificate import write_certificate
-    from nullpose.errors import UsageError
+    from nullpose.errors import SolveError, UsageError
     from nullpose.report.export import require_origin, write_geojson
-    from nullpose.solve import certificate_of, default_gap_of
+    from nullpose.solve import Rigour, certificate_of, default_gap_of, require_certificate, verified
     from nullpose.solve import solve as solve_scenario
     from nullpose.study import prepare_folder
 
     if combining is not None:
         raise UsageError("--combining: given for a scenario without an [array]; add one, or leave it out")
-    if fast and certificate is not None:
-        raise UsageError("--certificate: given with --fast, which proves nothing; leave out one of the two")
+    checked = verify or certificate is not None
+    if checked:
+        option = "--certificate" if certificate is not None else "--verify"
+        if fast:
+            raise UsageError(f"{option}: given with --fast, which proves nothing; leave out one of the two")
+        require_certificate(scenario, scheme.value, null_jammer)
     if geojson is not None:
         require_origin(scenario)
         prepare_folder(geojson.parent)
@@ -146,7 +155,11 @@ def solve(
             null_jammer=null_jammer,
             on_progress=bar,
         )
-    if certificate is not None:
+    if checked:
+        with Ticker("checking leaves") as ticker:
+            solution = verified(solution, ticker)
+    rejected = checked and solution.rigour is not Rigour.VERIFIED
+    if certificate is not None and not rejected:
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:
         write_geojson(solution, geojson)
@@ -157,6 +170,10 @@ def solve(
         from nullpose.report.tables import solution_view
 
         show(solution_view(solution))
+    if rejected:
+        raise SolveError(
+            f"{solution.reason}; this is a fault of nullpose: please report it with the scenario"
+        )
     if solution.interrupted:
         raise typer.Exit(INTERRUPTED)
 

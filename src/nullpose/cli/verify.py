@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import JsonOutput
-from nullpose.cli.output import Ticker, show_json
+from nullpose.cli.output import Ticker, show, show_json
+
+if TYPE_CHECKING:
+    from nullpose.certificate import Certificate, Verdict
 
 __all__ = ["verify"]
 
@@ -18,18 +21,45 @@ def verify(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Certificate from solve --certificate.", show_default=False)
     ],
+    scenario: Annotated[
+        Path | None,
+        typer.Option(
+            "--scenario",
+            metavar="FILE",
+            help="Say whether the certificate is about this scenario (TOML), and if not, what differs.",
+            show_default=False,
+        ),
+    ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a certificate by code that shares nothing with the solver, in outward-rounded arithmetic."""
-    from nullpose.certificate import read_certificate
+    """Check a certificate in outward-rounded arithmetic, by code that imports nothing from the solver."""
+    from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
+    from nullpose.scenario import load
 
     certificate = read_certificate(file)
+    unlike = () if scenario is None else differences(certificate, load(scenario))
     with Ticker("checking leaves") as ticker:
         verdict = verify_certificate(certificate, on_progress=ticker)
     if json_output:
-        show_json({"proved": verdict.proved, "message": verdict.message, "leaves": verdict.leaves})
+        about = {} if scenario is None else {"about_scenario": not unlike, "differences": list(unlike)}
+        checked = {"proved": verdict.proved, "message": verdict.message, "leaves": verdict.leaves}
+        show_json(checked | about | subject(certificate))
     else:
-        typer.echo(verdict.message, err=not verdict.proved)
-    if not verdict.proved:
+        _show(verdict, certificate)
+        if scenario is not None:
+            told = f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"
+            typer.echo("\n  ".join([told, *unlike]), err=bool(unlike))
+    if unlike or not verdict.proved:
         raise typer.Exit(INTERNAL)
+
+
+def _show(verdict: Verdict, certificate: Certificate) -> None:
+    from nullpose.certificate import subject
+    from nullpose.report.scenario_tables import scenario_view
+    from nullpose.report.summary import summarise
+
+    typer.echo(verdict.message, err=not verdict.proved)
+    if verdict.proved:
+        typer.echo(f"case {certificate.scheme}, scenario SHA-256 {subject(certificate)['scenario_sha256']}\n")
+        show(scenario_view(summarise(certificate.scenario)))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from nullpose.report.certainty import short
+from nullpose.report.certainty import rigour_lines, short
 from nullpose.report.quantity import Quantity, bound_text
 from nullpose.report.tables import fixed, new_table
 from nullpose.solve import Status
@@ -117,6 +117,7 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     if any(result.status is Status.BEST_FOUND for result in dipoles):
         lines.append("Without proofs each value is the best of a search.")
     lines += _array_proof(comparison)
+    lines += rigour_lines((r.case.label, r.objective.rigour) for r in comparison.results if r.objective)
     if comparison.scenario.is_uncertain:
         lines.append(_guaranteed_line(comparison))
         lines += ["Nothing is guaranteed of arrays."] if comparison.arrays else []

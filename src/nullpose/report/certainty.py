@@ -6,10 +6,18 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from nullpose.solve import Scheme, Status
+from nullpose.solve import Rigour, Scheme, Status
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["Certainty", "at_least", "at_most", "certainty_by_scheme", "certainty_lines", "short"]
+__all__ = [
+    "Certainty",
+    "at_least",
+    "at_most",
+    "certainty_by_scheme",
+    "certainty_lines",
+    "rigour_lines",
+    "short",
+]
 
 _PROVED = " (relative): each point is proved to be so close to its case's global optimum"
 
@@ -116,6 +124,19 @@ def certainty_lines(table: SweepTable) -> list[str]:
     if kinds["searched"]:
         lines.append(f"{_who(kinds['searched'], curves)}best found by searching, nothing is proved")
     return [line[0].upper() + line[1:] for line in lines]
+
+
+def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
+    """Return how sure bounds are, in a sentence for each rigour that occurs.
+
+    Args:
+        rigours: the label of each answer, and its rigour; labels may repeat.
+    """
+    labels: dict[Rigour, dict[str, None]] = {}
+    for label, rigour in rigours:
+        labels.setdefault(rigour, {})[label] = None
+    who = {rigour: f"{', '.join(names)}: " if len(labels) > 1 else "" for rigour, names in labels.items()}
+    return [f"{who[rigour]}{rigour.message}." for rigour in labels if rigour is not Rigour.NONE]
 
 
 def _widest(schemes: Sequence[str], curves: Mapping[str, Certainty]) -> str:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from nullpose.report.certainty import rigour_lines
 from nullpose.report.comparison import Comparison
 from nullpose.report.geometry import null_angle_rad, tilt_rad
 from nullpose.report.quantity import Quantity, bound_text
@@ -71,6 +72,7 @@ def _certainty(solutions: Sequence[Solution]) -> list[str]:
             lines.append(
                 f"{status.message[0].upper()}{status.message[1:]}." if alone else f"{who}: {status.message}."
             )
+    lines += rigour_lines((solution.scheme.label, solution.rigour) for solution in solutions)
     lines += [f"{solution.scheme.label}: {solution.reason}" for solution in solutions if solution.reason]
     work = [count_words(sum(solution.stats.starts for solution in solutions), "start")]
     boxes = sum(solution.stats.boxes for solution in solutions)

@@ -103,7 +103,8 @@ def _status_words(solution: RobustSolution) -> str:
         count_words(stats.starts, "start"),
         count_words(stats.boxes, "box", "boxes"),
     )
-    return f"{solution.status.value}{reason}\n{', '.join(effort)}, {stats.wall_s:.2g} s"
+    rigour = solution.rigour.message
+    return f"{solution.status.value}{reason}\n{rigour}\n{', '.join(effort)}, {stats.wall_s:.2g} s"
 
 
 def _gain_words(solution: RobustSolution, quantity: Quantity) -> str:

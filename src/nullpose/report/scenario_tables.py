@@ -124,7 +124,8 @@ def _vehicle_rows(summary: ScenarioSummary) -> list[tuple[str, str]]:
     if scenario.array is not None:
         rows.append(("array", array_words(scenario.array)))
     if airframe is not None:
-        rows += [("airframe", airframe_words(airframe)), ("it reaches", reach_words(airframe))]
+        rows.append(("airframe", airframe_words(airframe)))
+    rows.append(("antenna", f"short dipole, {reach_words(airframe)}"))
     errors = (
         ("attitude error", receiver.attitude_error_deg, "deg"),
         ("position error", receiver.position_error_m, "m"),

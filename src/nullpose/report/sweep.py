@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nullpose.report.certainty import certainty_lines
+from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.quantity import Quantity, bound_text
@@ -65,6 +65,7 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
     lines = not_applicable_lines((Scheme(scheme), reason) for scheme, reason in table.left_out.items())
     lines += [f"One row in {step} is shown."] if step > 1 else []
     lines += [f"{line}." for line in certainty_lines(table)]
+    lines += rigour_lines((Scheme(row.scheme).label, row.objective.rigour) for row in table.rows)
     lines += _reasons(table)
     lines += [f"Wrote {path}" for path in files]
     return Group(view, Text("\n".join(lines)))

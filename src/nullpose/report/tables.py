@@ -60,7 +60,8 @@ def status_words(solution: Solution | ArraySolution) -> str:
     effort = [count_words(solution.stats.starts, "start")]
     if solution.stats.boxes:
         effort.append(count_words(solution.stats.boxes, "box", "boxes"))
-    return f"{solution.status.message}{reason}\n{', '.join(effort)}, {solution.stats.wall_s:.2g} s"
+    rigour = f"\n{solution.objective.rigour.message}" if solution.objective.upper_bound is not None else ""
+    return f"{solution.status.message}{reason}{rigour}\n{', '.join(effort)}, {solution.stats.wall_s:.2g} s"
 
 
 def count_words(number: int, noun: str, nouns: str = "") -> str:

@@ -4,9 +4,10 @@ from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.array import solve_array
 from nullpose.solve.array_solution import ArraySolution, ArrayStats
 from nullpose.solve.compiling import announce_compiling
-from nullpose.solve.evidence import certificate_of
+from nullpose.solve.evidence import certificate_of, require_certificate, verified
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
 from nullpose.solve.many import ManySolutions, solve_many
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
@@ -18,6 +19,7 @@ __all__ = [
     "ArrayStats",
     "ManySolutions",
     "Objective",
+    "Rigour",
     "Scheme",
     "Solution",
     "Stats",
@@ -30,7 +32,9 @@ __all__ = [
     "default_gap",
     "default_gap_of",
     "not_applicable",
+    "require_certificate",
     "solve",
     "solve_array",
     "solve_many",
+    "verified",
 ]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.certificate import claimed_axes
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.physics import Link, Pose, evaluate, maximum_gain_sinr_as_printed, to_db
@@ -19,6 +20,7 @@ from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_
 from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable, require_applicable
 from nullpose.solve.schemes import maximum_gain, maximum_gain_printed, optimum, vertical, zero_interference
 from nullpose.solve.settle import Settled, settle
@@ -89,13 +91,16 @@ def solve(
     settled = _settle(scenario, scheme, effort, null_jammer)
     pose = Pose.of_airframe(scenario, settled.found.position_m, settled.found.axis)
     links = _links(scenario, scheme, pose)
+    objective = objective_of(scenario, links, settled.upper_bound)
+    if settled.proofs and claimed_axes(scenario, scheme, null_jammer) is not None:
+        objective = replace(objective, rigour=Rigour.VERIFIABLE)
     status = _status(settled)
     return Solution(
         scenario=scenario,
         scheme=scheme,
         status=status,
         reason=settled.reason if status is not Status.CERTIFIED else "",
-        objective=objective_of(scenario, links, settled.upper_bound),
+        objective=objective,
         pose=pose,
         links=links,
         stats=Stats(

@@ -95,8 +95,6 @@ def solve_array(
     pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
     weights, links = _evaluated(scenario, array, kind, pose, state[4:])
     objective = objective_of(scenario, links, None if bound is None else bound.value)
-    if bound is not None and objective.value > bound.value:  # by rounding
-        objective = replace(objective, upper_bound=objective.value, relative_gap=0.0)
     status = _status(objective, target)
     return ArraySolution(
         scenario=scenario,

@@ -125,13 +125,8 @@ class ArraySolution:
             },
             "status": self.status.value,
             "reason": self.reason,
-            "objective": {
-                "name": self.objective.name,
-                "value": self.objective.value,
-                "value_db": _finite(self.objective.value_db),
-                "upper_bound": self.objective.upper_bound,
-                "relative_gap": self.objective.relative_gap,
-            },
+            "rigour": self.objective.rigour.value,
+            "objective": self.objective.to_dict(),
             "pose": {
                 "position_m": [float(x) for x in self.pose.position_m],
                 "roll_rad": self.pose.roll_rad,

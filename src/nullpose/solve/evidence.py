@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes
+from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
 from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
 from nullpose.errors import UsageError
-from nullpose.family import build_family
+from nullpose.family import AxisField, build_family
+from nullpose.scenario import Scenario
 from nullpose.solve.proof import Proof
+from nullpose.solve.rigour import Rigour, bound_above
 from nullpose.solve.solution import Solution
 
-__all__ = ["certificate_of"]
+__all__ = ["certificate_of", "require_certificate", "verified"]
+
+
+def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField]:
+    """Return the axis fields that a certificate of a scheme needs a tree for, by name.
+
+    Args:
+        scenario: what is solved.
+        scheme: the case.
+        null_jammer: zero interference only: the jammer to be nulled, or None for any.
+
+    Raises:
+        UsageError: the scheme has no certificate for this scenario.
+    """
+    fields = claimed_axes(scenario, scheme, null_jammer)
+    if fields is None:
+        raise UsageError(
+            f"certificate: scheme {scheme} has none in this scenario: its bound is not a proof about its own "
+            "axes; solve another scheme, or leave out --certificate and --verify"
+        )
+    return fields
 
 
 def certificate_of(solution: Solution) -> Certificate:
@@ -27,10 +51,9 @@ def certificate_of(solution: Solution) -> Certificate:
     Raises:
         UsageError: nothing was proved, or the scheme has no certificate for this scenario.
     """
-    fields = claimed_axes(solution.scenario, solution.scheme, solution.null_jammer)
-    if solution.objective.upper_bound is None or fields is None:
-        reason = solution.reason or "it was solved without a proof; leave out --fast (certify=False)"
-        raise UsageError(f"certificate: scheme {solution.scheme.value} has none here: {reason}")
+    fields = require_certificate(solution.scenario, solution.scheme, solution.null_jammer)
+    if solution.objective.upper_bound is None:
+        raise UsageError("certificate: nothing was proved; leave out --fast (certify=False)")
     pose = solution.pose
     value, bound = _ratios(solution)
     return Certificate(
@@ -51,16 +74,39 @@ def certificate_of(solution: Solution) -> Certificate:
     )
 
 
+def verified(solution: Solution, on_progress: Callable[[int, int], None] | None = None) -> Solution:
+    """Return a solution after the verifier has checked its certificate: its rigour is the verdict.
+
+    It is ``verified``; or, should the verifier reject what the solver proved in floating point,
+    ``floating-point`` with the verifier's reason.
+
+    Args:
+        solution: one with a proof.
+        on_progress: called with the leaves checked and how many there are.
+
+    Raises:
+        UsageError: nothing was proved, or the scheme has no certificate for this scenario.
+    """
+    verdict = verify(certificate_of(solution), on_progress)
+    rigour = Rigour.VERIFIED if verdict.proved else Rigour.FLOATING_POINT
+    return replace(
+        solution,
+        objective=replace(solution.objective, rigour=rigour),
+        reason=solution.reason if verdict.proved else f"its certificate is {verdict.message}",
+    )
+
+
 def _ratios(solution: Solution) -> tuple[float, float]:
     """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
     objective = solution.objective
     if not objective.is_rate:
-        return objective.value, max(objective.value, objective.upper_bound or 0.0)
+        assert objective.upper_bound is not None
+        return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
     position = [Fraction(float(x)) for x in pose.position_m]
     value = float(smallest_ratio(build_family(solution.scenario), position, axis))
-    return value, max(value, *(proof.upper_bound for proof in solution.proofs))
+    return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))
 
 
 def leaves_of(proof: Proof) -> Leaves:

@@ -18,6 +18,7 @@ from nullpose.solve.batch import Batch, Settlement, same_shape
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
 from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.rigour import Rigour, bound_above
 from nullpose.solve.solution import Status
 
 __all__ = ["NOWHERE", "ManySolutions", "solve_many"]
@@ -60,6 +61,11 @@ class ManySolutions:
     yaw_rad: FloatArray
     binding_node: IntArray
     boxes: IntArray
+
+    @property
+    def rigour(self) -> Rigour:
+        """How sure the bounds are: no certificates are kept of many scenes."""
+        return Rigour.FLOATING_POINT if np.any(np.isfinite(self.upper_bound)) else Rigour.NONE
 
     @property
     def relative_gap(self) -> FloatArray:
@@ -223,7 +229,7 @@ def _fill(
     margins = margins_of_many(here, position_m, axis)
     results.binding_node[some, column] = np.argmin(margins, axis=1)
     results.value[some, column] = value = np.min(margins, axis=1)
-    results.upper_bound[some, column] = np.maximum(known.bound[placed], value)
+    results.upper_bound[some, column] = bound_above(value, known.bound[placed])
     results.position_m[some, column] = position_m
     for angle, name in ((roll, "roll_rad"), (pitch, "pitch_rad"), (yaw, "yaw_rad")):
         getattr(results, name)[some, column] = angle

@@ -16,6 +16,7 @@ from nullpose.family import AxisField, Family
 from nullpose.solve.crew import Crew, Task, processors
 from nullpose.solve.found import Found
 from nullpose.solve.limits import Limits
+from nullpose.solve.rigour import bound_above
 
 __all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "Proof", "Spent", "late_nodes", "prove"]
 
@@ -118,11 +119,11 @@ class _Run:
         low, high = np.empty(3), np.empty(3)
         level = self.found.log_value
         if np.any(self.family.numerator_isotropic):  # ratios tend to one far away, however little that is
-            level += math.log1p(self.target)
-        level -= (
-            1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
-        )  # a hair wider than the cut, which is rounded
+            level = min(level + math.log1p(self.target), math.log(self.proved))  # the bound that is stated
+        # a hair wider than the cut, which is rounded
+        level -= 1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
         cut_box(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
+        high = np.maximum(low, high)  # empty where two ratios are out of reach of each other: any place does
         row = self.favourite.copy()
         row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
         row[self.node.HALF : self.node.LEVEL] = 0.5 * (high - low) * (1.0 + 1e-12)
@@ -213,7 +214,7 @@ class _Run:
         side = root[0, self.node.HALF : self.node.HALF + 3]
         return Proof(
             found=self.found,
-            upper_bound=max(self.proved, self.value),
+            upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
             leaves=leaves,
             reason=reason,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
@@ -13,6 +12,7 @@ from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
 from nullpose.solve.objective import Objective
 from nullpose.solve.proof import INTERRUPT, Proof
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.scheme import Scheme
 
 __all__ = ["Objective", "Solution", "Stats", "Status"]
@@ -105,6 +105,11 @@ class Solution:
         return link.sinr if link.margin is None else link.margin
 
     @property
+    def rigour(self) -> Rigour:
+        """How sure the bound is."""
+        return self.objective.rigour
+
+    @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended its proof."""
         return self.reason == INTERRUPT
@@ -117,13 +122,8 @@ class Solution:
             "scheme": self.scheme.value,
             "status": self.status.value,
             "reason": self.reason,
-            "objective": {
-                "name": self.objective.name,
-                "value": self.objective.value,
-                "value_db": _finite(self.objective.value_db),
-                "upper_bound": self.objective.upper_bound,
-                "relative_gap": self.objective.relative_gap,
-            },
+            "rigour": self.rigour.value,
+            "objective": self.objective.to_dict(),
             "pose": {
                 "position_m": [float(x) for x in pose.position_m],
                 "roll_rad": pose.roll_rad,
@@ -149,7 +149,3 @@ class Solution:
 
 def _rebuilt(state: dict[str, Any]) -> Solution:
     return Solution(**state)
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -147,7 +147,7 @@ def status_words(version: int, answer: Answer | None) -> str:
         return "best so far"
     reach = short(answer.gap) if math.isfinite(answer.gap) else "no gap that is finite"
     if answer.stage is Stage.CERTIFIED:
-        return f"certified to {reach}"
+        return f"certified to {reach}, {answer.solution.rigour.value}"
     return f"best so far, proved to {reach}"
 
 

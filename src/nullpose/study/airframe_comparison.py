@@ -93,15 +93,8 @@ class AirframeResult:
             "array": self._array_dict(),
             "status": None if self.status is None else self.status.value,
             "reason": self.reason,
-            "objective": None
-            if objective is None
-            else {
-                "name": objective.name,
-                "value": objective.value,
-                "value_db": objective.value_db,
-                "upper_bound": objective.upper_bound,
-                "relative_gap": objective.relative_gap,
-            },
+            "rigour": None if objective is None else objective.rigour.value,
+            "objective": None if objective is None else objective.to_dict(),
             "pose": None
             if pose is None
             else {

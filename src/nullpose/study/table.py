@@ -79,6 +79,7 @@ class SweepRow:
             "value": self.value,
             "scheme": self.scheme,
             "status": self.status,
+            "rigour": self.objective.rigour.value,
             "reason": self.reason,
             "objective": objective.name,
             **own,
@@ -174,11 +175,11 @@ class SweepTable:
         links = [f"sinr_{node}_db" for node in nodes]
         with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([self.path, "scheme", "status", *taken, *links, "note", "reason"])
+            writer.writerow([self.path, "scheme", "status", "rigour", *taken, *links, "note", "reason"])
             for row in self.rows:
                 numbers = [take(row) for take in taken.values()] + [link.sinr_db for link in row.links]
                 texts = ["" if number is None else repr(float(number)) for number in numbers]
-                words = (repr(float(row.value)), row.scheme, row.status)
+                words = (repr(float(row.value)), row.scheme, row.status, row.objective.rigour.value)
                 writer.writerow([*words, *texts, row.note, row.reason])
         return path
 

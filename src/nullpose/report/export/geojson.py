@@ -111,6 +111,7 @@ def _pose_properties(solution: Solution) -> dict[str, object]:
         "kind": "pose",
         "name": solution.scheme.label,
         "status": solution.status.value,
+        "rigour": solution.rigour.value,
         "objective": objective.name,
         "value": objective.value,
         "value_db": objective.value_db,

@@ -202,7 +202,8 @@ def _effort(summary: Summary, figures: Collection[str]) -> list[str]:
         "## Proofs, gaps and time",
         "Rows of all combinations by status. *Certified*: no pose exceeds the value by more than the gap "
         "asked for. *Gap not reached*: a limit ended the proof. *Best found*: nothing is proved. *Failed*: "
-        "there is no pose, and the row is in no distribution.",
+        "there is no pose, and the row is in no distribution. The rigour of all bounds is *floating-point*: "
+        "a study keeps no certificates.",
         tables.status_table(summary),
         *_figure("effort", figures, "Time of a solve, and relative gap between bound and value."),
         tables.effort_table(summary),

@@ -15,6 +15,7 @@ from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
 from nullpose.solve.solution import Stats, Status
@@ -141,6 +142,11 @@ class RobustSolution:
         return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
 
     @property
+    def rigour(self) -> Rigour:
+        """How sure the guarantee and the bound are: robust poses have no certificates."""
+        return Rigour.FLOATING_POINT
+
+    @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended its search or its proof."""
         return self.reason == INTERRUPT
@@ -158,6 +164,7 @@ class RobustSolution:
             "scenario": self.scenario.to_dict(),
             "objective": self.scenario.objective,
             "status": self.status.value,
+            "rigour": self.rigour.value,
             "reason": self.reason,
             "robust": self.robust.to_dict(),
             "nominal": self.nominal.to_dict(),

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from nullpose.solve import Rigour
 from nullpose.study.monte_carlo.lock import holder
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.store import Store
@@ -51,7 +52,7 @@ class StudyStatus:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the status as plain data."""
-        return asdict(self) | {"complete": self.complete}
+        return asdict(self) | {"complete": self.complete, "rigour": Rigour.FLOATING_POINT.value}
 
 
 def study_status(out: str | os.PathLike[str]) -> StudyStatus:
