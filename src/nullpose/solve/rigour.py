@@ -1,0 +1,56 @@
+"""How sure a bound is, apart from how near it is: what checked it, or could."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.errors import SolveError
+
+__all__ = ["Rigour", "bound_above"]
+
+_ROUNDING = 1e-9  # relative: far more than the rounding of a value and of its bound
+
+
+class Rigour(StrEnum):
+    """How sure a bound is. A status says how near it is to the value."""
+
+    VERIFIED = "verified"
+    VERIFIABLE = "verifiable"
+    FLOATING_POINT = "floating-point"
+    NONE = "none"
+
+    @property
+    def message(self) -> str:
+        """The rigour as a sentence."""
+        return _MESSAGES[self]
+
+
+_MESSAGES = {
+    Rigour.VERIFIED: "verified: the bound was checked in outward-rounded arithmetic",
+    Rigour.VERIFIABLE: "verifiable: a certificate of the bound can be written and checked",
+    Rigour.FLOATING_POINT: "floating-point: the bound has no certificate",
+    Rigour.NONE: "none: there is no bound",
+}
+
+
+def bound_above(value: ArrayLike, bound: ArrayLike) -> NDArray[np.float64]:
+    """Return a bound that is not below its value: the larger of both, which differ by rounding if at all.
+
+    Args:
+        value: power ratios, any shape.
+        bound: what was proved of them, the same shape.
+
+    Raises:
+        SolveError: a bound is below its value by more than 1e-9, relative: a fault of nullpose.
+    """
+    value, bound = np.asarray(value, dtype=float), np.asarray(bound, dtype=float)
+    wrong = bound < value * (1.0 - _ROUNDING)
+    if np.any(wrong):
+        raise SolveError(
+            f"the bound {float(bound[wrong][0])!r} is below the value {float(value[wrong][0])!r} of a pose; "
+            "this is a fault of nullpose: please report it with the scenario"
+        )
+    return np.asarray(np.maximum(value, bound))
