@@ -177,7 +177,7 @@ def test_constant_forms_are_enclosed(
         assert u @ dense_band(band, ends[0]) @ u >= -1e-12 * (u @ u)
         x = rng.uniform(-1.0, 1.0, 3) * boxes.half[0]
         centre = boxes.centre[0]
-        turn = carried(frames, family.points_m[point[0]], centre, centre + x) @ frames.basis[0]
+        turn = carried(frames, family.points_m[point[0]], centre, centre + x) @ frames.basis[0].middle()
         bound = full(total.matrix) + sum(h * full(s) for h, s in zip(x, total.slopes, strict=True))
         error = turn.T @ constant @ turn - bound
         assert np.abs(np.linalg.eigvalsh(error)).max() <= float(total.rest.high[0]) + 1e-11
@@ -201,7 +201,7 @@ def test_the_remainder_near_a_null_is_a_bound(
         frames = frames_of(family, make_leaves(1, test=test, point=np.array([anchor])), boxes)
         near_null = (point_m - centre) / np.linalg.norm(point_m - centre)
         near_null = near_null + rng.normal(size=3) * 10.0 ** rng.uniform(-4.0, 0.0)
-        vector = np.linalg.solve(frames.basis[0], near_null / np.linalg.norm(near_null))
+        vector = np.linalg.solve(frames.basis[0].middle(), near_null / np.linalg.norm(near_null))
         form, slopes, _, down = expansion(family, frames, boxes, np.array([point]))
         plain = down * boxes.half2 * 0.5
         share, rest = sharper(form, vector[None], boxes, frames, np.array([point]), point_m[None], plain)
@@ -211,7 +211,7 @@ def test_the_remainder_near_a_null_is_a_bound(
         assert share[0] * here + rest.high[0] <= plain.high[0] * (1.0 + 1e-12)
         corners = rng.choice([-1.0, 1.0], (20, 3)) * rng.choice([1.0, rng.uniform()], (20, 1))
         for x in corners * half:
-            turn = carried(frames, anchor_m, centre, centre + x) @ frames.basis[0]
+            turn = carried(frames, anchor_m, centre, centre + x) @ frames.basis[0].middle()
             bound = full(form) + sum(h * full(each) for h, each in zip(x, slopes, strict=True))
             exact = turn.T @ link_matrix(point_m - centre - x) @ turn
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]

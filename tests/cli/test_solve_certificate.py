@@ -49,6 +49,17 @@ def test_a_bound_that_was_not_closed_is_certified_too(run: Run, paper: str, tmp_
     assert run("verify", path).exit_code == 0
 
 
+def test_a_proof_is_verified_in_one_go(run: Run, paper: str) -> None:
+    """With --verify the rigour is verified; without it the answer says that it could be."""
+    assert json.loads(run("solve", paper, "--json").stdout)["rigour"] == "verifiable"
+    checked = run("solve", paper, "--verify")
+    assert checked.exit_code == 0
+    assert "verified: the bound was checked in outward-rounded arithmetic" in checked.stdout
+    assert json.loads(run("solve", paper, "--verify", "--json").stdout)["rigour"] == "verified"
+    refused = run("solve", paper, "--verify", "--fast")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+
+
 def test_without_a_proof_there_is_no_certificate(run: Run, paper: str, tmp_path: Path) -> None:
     """--fast, a scheme without a proof and a folder that is not there are bad input; nothing is written."""
     path = tmp_path / "proof.json"

@@ -28,6 +28,7 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
         "scheme",
         "status",
         "reason",
+        "rigour",
         "objective",
         "pose",
         "links",
