@@ -1,10 +1,14 @@
-"""What every test runs under: figures without a screen, and the same hypothesis examples on every run."""
+"""What every test runs under: figures without a screen, the same hypothesis examples on every run, scenes."""
 
 import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
+
+from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 
 os.environ["MPLBACKEND"] = "Agg"
 
@@ -13,6 +17,66 @@ settings.register_profile("house", derandomize=True, deadline=None)
 settings.load_profile("house")
 
 LONG_FILE_LINES = 350
+
+Place = tuple[float, float, float]
+
+
+@pytest.fixture(scope="session")
+def scene() -> Callable[..., Scenario]:
+    """Returns a builder: nodes and jammers with their powers (1 W if left out), altitudes and airspace."""
+
+    def build(
+        nodes_m: Sequence[Place],
+        jammers_m: Sequence[Place] = (),
+        *,
+        node_powers_w: Sequence[float] | float = 1.0,
+        jammer_powers_w: Sequence[float] | float = 1.0,
+        altitude_m: tuple[float, float] = (8.0, 30.0),
+        noise_w: float = 1e-3,
+        **airspace: object,
+    ) -> Scenario:
+        return Scenario(
+            airspace=Airspace(altitude_m=altitude_m, **airspace),
+            receiver=Receiver(noise_w=noise_w, reference_gain_db=0.0),
+            nodes=tuple(
+                Node(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(nodes_m, np.broadcast_to(node_powers_w, len(nodes_m)), strict=True)
+            ),
+            jammers=tuple(
+                Jammer(position_m=tuple(map(float, at)), power_w=float(power))
+                for at, power in zip(jammers_m, np.broadcast_to(jammer_powers_w, len(jammers_m)), strict=True)
+            ),
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def paper(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: the paper's scene at a jamming-to-transmission power ratio, in any airspace."""
+
+    def build(ratio: float = 1.0, **airspace: object) -> Scenario:
+        return scene([(0, 0, 0), (0, 50, 0)], [(17, 15, 4)], jammer_powers_w=ratio, **airspace)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def random_scene(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
+    """Returns a builder: so many nodes and jammers on a field of 100 m, of a total jamming power."""
+
+    def build(
+        rng: np.random.Generator, nodes: int, jammers: int, jamming_w: float = 1.0, **airspace: object
+    ) -> Scenario:
+        return scene(
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (nodes, 3)),
+            rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (jammers, 3)),
+            node_powers_w=10.0 ** rng.uniform(-0.5, 0.5, nodes),
+            jammer_powers_w=jamming_w / max(jammers, 1),
+            **airspace,
+        )
+
+    return build
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

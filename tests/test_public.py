@@ -40,9 +40,7 @@ def test_solve_is_the_function_whatever_was_imported_before(before: str) -> None
 
 def test_the_room_can_still_be_imported_from() -> None:
     """Names inside the room `nullpose.solve` are reached by a from-import after the function was used."""
-    code = (
-        "import nullpose; nullpose.solve; from nullpose.solve.scheme import Scheme; print(Scheme('optimum'))"
-    )
+    code = "import nullpose; nullpose.solve; from nullpose.schemes import Scheme; print(Scheme('optimum'))"
     assert _python(code) == "optimum"
 
 

@@ -1,6 +1,6 @@
 """Scenes, certificates and plain algebra that the tests of the verifier share."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -12,7 +12,7 @@ from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
 from nullpose.family import Family, build_family
-from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+from nullpose.scenario import Scenario
 from nullpose.solve import certificate_of, solve
 from nullpose.solve.effort import Effort
 from nullpose.solve.evidence import leaves_of
@@ -23,45 +23,6 @@ Place = tuple[float, float, float]
 
 _COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "band", "ball", "ball_multiplier")
 _ENOUGH_S = 600.0  # the kernels may have to be compiled first
-
-
-@pytest.fixture(scope="session")
-def scene() -> Callable[..., Scenario]:
-    """Returns a builder: nodes and jammers with their powers (1 W if left out), altitudes and airspace."""
-
-    def build(
-        nodes_m: Sequence[Place],
-        jammers_m: Sequence[Place] = (),
-        *,
-        node_powers_w: Sequence[float] | float = 1.0,
-        jammer_powers_w: Sequence[float] | float = 1.0,
-        altitude_m: tuple[float, float] = (8.0, 30.0),
-        **airspace: object,
-    ) -> Scenario:
-        return Scenario(
-            airspace=Airspace(altitude_m=altitude_m, **airspace),
-            receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-            nodes=tuple(
-                Node(position_m=tuple(map(float, at)), power_w=float(power))
-                for at, power in zip(nodes_m, np.broadcast_to(node_powers_w, len(nodes_m)), strict=True)
-            ),
-            jammers=tuple(
-                Jammer(position_m=tuple(map(float, at)), power_w=float(power))
-                for at, power in zip(jammers_m, np.broadcast_to(jammer_powers_w, len(jammers_m)), strict=True)
-            ),
-        )
-
-    return build
-
-
-@pytest.fixture(scope="session")
-def paper(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
-    """Returns a builder: the paper's scene at a jamming power, in any airspace."""
-
-    def build(jammer_w: float = 1.0, **airspace: object) -> Scenario:
-        return scene([(0, 0, 0), (0, 50, 0)], [(17, 15, 4)], jammer_powers_w=jammer_w, **airspace)
-
-    return build
 
 
 @pytest.fixture(scope="session")

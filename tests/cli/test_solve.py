@@ -14,7 +14,7 @@ from typer.testing import Result
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.gap_bar import GapBar
-from nullpose.cli.options import SchemeName
+from nullpose.schemes import Scheme
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
@@ -74,12 +74,12 @@ def test_the_same_seed_gives_the_same_answer(run: Run, paper: str) -> None:
     assert first["provenance"]["seed"] == 7
 
 
-@pytest.mark.parametrize("scheme", list(SchemeName))
-def test_every_scheme_prints_tables(run: Run, paper: str, scheme: SchemeName) -> None:
+@pytest.mark.parametrize("scheme", list(Scheme))
+def test_every_scheme_prints_tables(run: Run, paper: str, scheme: Scheme) -> None:
     """Each scheme's tables name the value, the pose, the links and the jammer."""
     result = run("solve", paper, "--scheme", scheme.value)
     assert result.exit_code == 0
-    proved = scheme is not SchemeName.MAXIMUM_GAIN_PRINTED
+    proved = scheme is not Scheme.MAXIMUM_GAIN_PRINTED
     status = "certified" if proved else "not proved"
     for words in ("smallest SINR", "position", "roll", "deg from vertical", "Links", "Jammers", status):
         assert words in result.stdout

@@ -20,7 +20,6 @@ from nullpose.solve import (
     best_axis,
     compare,
     default_gap,
-    not_applicable,
     solve,
 )
 
@@ -300,7 +299,7 @@ def test_compare_leaves_out_what_does_not_apply(scene: Callable) -> None:
     solutions = compare(
         quiet, schemes=list(Scheme), on_progress=lambda done, total: calls.append((done, total))
     )
-    expected = [scheme for scheme in Scheme if not_applicable(quiet, scheme) is None]
+    expected = [scheme for scheme in Scheme if scheme.not_applicable(quiet) is None]
     assert [solution.scheme for solution in solutions] == expected
     assert expected == [Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL]
     assert calls == [(1, 3), (2, 3), (3, 3)]

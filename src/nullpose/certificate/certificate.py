@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField
 from nullpose.scenario import Scenario
+from nullpose.schemes import RECORDS
 
 __all__ = [
     "AFFINE",
@@ -120,7 +121,7 @@ class Certificate:
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
 
-def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField] | None:
+def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField] | None:
     """Return the axis fields of a scheme by the names they have in a certificate; None if there are none.
 
     They are those of one dipole in the scene as stated, uncertainties and arrays left out.
@@ -128,21 +129,9 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> di
     Args:
         scenario: nodes, jammers and airframe.
         scheme: the case.
-        null_jammer: zero interference only: the jammer to be nulled, or None for any.
+        null_jammer: for a scheme that nulls a jammer: which, or None for any.
     """
-    if null_jammer is not None and scheme != "zero-interference":
+    record = RECORDS.get(scheme)
+    if record is None or (null_jammer is not None and not record.nulls_a_jammer):
         return None
-    jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
-    if scheme == "optimum":
-        field = AxisField.within(*scenario.axis_band)
-        if not field.is_free:
-            return {"vertical": field}
-        return {"free" if field.band == (0.0, 1.0) else "band": field}
-    if scheme == "vertical":
-        return {"vertical": AxisField.vertical()}
-    if scheme == "maximum-gain" and len(scenario.nodes) == 2:
-        return {"broadside": AxisField.broadside(*scenario.node_positions_m)}
-    if scheme == "zero-interference" and (null_jammer is None or null_jammer in jammers):
-        names = jammers if null_jammer is None else (null_jammer,)
-        return {f"null {name}": AxisField.towards(jammers[name]) for name in names} or None
-    return None
+    return record.fields(scenario, null_jammer)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 
 import numpy as np
@@ -31,7 +32,7 @@ _TILT_RAD = 1e-9
 _MOST_RAD = 4.0
 
 
-def claim_fault(certificate: Certificate, family: Family, fields: dict[str, AxisField] | None) -> str:
+def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField] | None) -> str:
     """Return why a certificate states nothing that can be proved, or an empty string.
 
     Args:
@@ -54,7 +55,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: dict[str, Axis
     return ""
 
 
-def pose_fault(certificate: Certificate, family: Family, fields: dict[str, AxisField]) -> str:
+def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField]) -> str:
     """Return why a pose is not allowed or has another value than stated, or an empty string.
 
     Args:
@@ -113,7 +114,7 @@ def _tilt_fault(airframe: Airframe, attitude_rad: tuple[float, float, float]) ->
     return ""
 
 
-def _axis_fault(fields: dict[str, AxisField], position: list[Fraction], axis: list[Fraction]) -> str:
+def _axis_fault(fields: Mapping[str, AxisField], position: list[Fraction], axis: list[Fraction]) -> str:
     affine = [field for field in fields.values() if not field.is_free]
     most2 = Fraction(_AXIS_RAD) ** 2
     if affine and not any(field_offset(field, position, axis) <= most2 for field in affine):

@@ -7,15 +7,9 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
+from nullpose.schemes import RECORDS
 
 __all__ = ["sentence"]
-
-_AXES = {
-    "optimum": "and no antenna axis",
-    "vertical": "with a vertical antenna",
-    "zero-interference": "with an antenna whose null is on a jammer",
-    "maximum-gain": "with an antenna broadside to both nodes",
-}
 
 
 def sentence(certificate: Certificate, leaves: int) -> str:
@@ -26,9 +20,10 @@ def sentence(certificate: Certificate, leaves: int) -> str:
         leaves: how many were checked.
     """
     most, least, near = _numbers(certificate)
+    axes = RECORDS[certificate.scheme].sentence(certificate.scenario, certificate.null_jammer)
     return (
         f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
-        f"{_axes(certificate)} gives every node {_quantity(certificate)} above {most}, and the stated pose "
+        f"{axes} gives every node {_quantity(certificate)} above {most}, and the stated pose "
         f"gives every node {least} or more, which is within {near} of it; {leaves} leaves checked"
     )
 
@@ -53,19 +48,6 @@ def _places(certificate: Certificate) -> str:
     if zones:
         words.append("outside the no-fly zone" if zones == 1 else f"outside the {zones} no-fly zones")
     return f" {' and '.join(words)}" if words else ""
-
-
-def _axes(certificate: Certificate) -> str:
-    airframe = certificate.scenario.airframe
-    if certificate.null_jammer is not None:
-        return f"with an antenna whose null is on jammer {certificate.null_jammer}"
-    if certificate.scheme != "optimum" or airframe is None or airframe.is_omnidirectional:
-        return _AXES[certificate.scheme]
-    tilt, mount = math.degrees(airframe.tilt_max_rad), airframe.mount_deg
-    return (
-        f"and no antenna axis within the airframe's reach (tilt at most {tilt:.10g} degrees, dipole mounted "
-        f"at {mount:.10g} degrees)"
-    )
 
 
 def _numbers(certificate: Certificate) -> tuple[str, str, str]:

@@ -17,20 +17,9 @@ __all__ = [
     "OutFolder",
     "Overrides",
     "ScenarioFile",
-    "SchemeName",
     "Seed",
     "TimeLimit",
 ]
-
-
-class SchemeName(StrEnum):
-    """The schemes by name, spelled out here because importing the solver would slow down every help page."""
-
-    OPTIMUM = "optimum"
-    ZERO_INTERFERENCE = "zero-interference"
-    MAXIMUM_GAIN = "maximum-gain"
-    VERTICAL = "vertical"
-    MAXIMUM_GAIN_PRINTED = "maximum-gain-printed"
 
 
 class CombiningName(StrEnum):

@@ -20,12 +20,12 @@ from nullpose.cli.options import (
     NodeLimit,
     Overrides,
     ScenarioFile,
-    SchemeName,
     Seed,
     TimeLimit,
 )
 from nullpose.cli.output import Ticker, compiling_announced, show, show_json
 from nullpose.cli.robust import refuse_with_robust, solve_robustly
+from nullpose.schemes import Scheme
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,9 +37,7 @@ __all__ = ["solve"]
 
 def solve(
     file: ScenarioFile,
-    scheme: Annotated[
-        SchemeName, typer.Option("--scheme", help="How the pose is chosen.")
-    ] = SchemeName.OPTIMUM,
+    scheme: Annotated[Scheme, typer.Option("--scheme", help="How the pose is chosen.")] = Scheme.OPTIMUM,
     overrides: Overrides = None,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
@@ -107,7 +105,7 @@ def solve(
 
     scenario = apply_overrides(load(file), overrides or [])
     special = {
-        "scheme": scheme if scheme is not SchemeName.OPTIMUM else None,
+        "scheme": scheme if scheme is not Scheme.OPTIMUM else None,
         "null_jammer": null_jammer,
         "certificate": certificate,
         "verify": verify,

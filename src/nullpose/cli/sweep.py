@@ -13,11 +13,11 @@ from nullpose.cli.options import (
     NodeLimit,
     OutFolder,
     ScenarioFile,
-    SchemeName,
     Seed,
     TimeLimit,
 )
 from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.schemes import Scheme
 
 __all__ = ["sweep"]
 
@@ -41,7 +41,7 @@ def sweep(
         bool, typer.Option("--log/--linear", help="Space the values by a constant ratio, or evenly.")
     ] = False,
     scheme: Annotated[
-        list[SchemeName] | None,
+        list[Scheme] | None,
         typer.Option("--scheme", help="Only this scheme. Can be repeated.", show_default="all four"),
     ] = None,
     gap: Gap = None,

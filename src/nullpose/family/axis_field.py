@@ -107,6 +107,16 @@ class AxisField:
         matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         return cls.affine(np.cross(first, second), matrix)
 
+    def axis_at(self, position_m: ArrayLike) -> NDArray[np.float64]:
+        """Return the unit axis of an affine field, shape (..., 3); not a number where the field vanishes.
+
+        Args:
+            position_m: shape (..., 3), metres.
+        """
+        axis = self.offset + np.asarray(position_m, dtype=float) @ self.matrix.T
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(axis / np.linalg.norm(axis, axis=-1, keepdims=True))
+
     @property
     def arrays(self) -> AxisFieldArrays:
         """The field as the kernels take it: (kind, offset, matrix).

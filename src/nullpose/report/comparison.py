@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
-from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, Solution, compare, not_applicable
+from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, Solution, compare
 
 __all__ = ["Comparison", "compare_all"]
 
@@ -64,7 +64,7 @@ def compare_all(
         seed: the random seed of every solve.
         on_progress: called after each solve with how many are done and how many there are.
     """
-    reasons = [(scheme, not_applicable(scenario, scheme)) for scheme in PAPER_SCHEMES]
+    reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in PAPER_SCHEMES]
     return Comparison(
         scenario=scenario,
         solutions=compare(

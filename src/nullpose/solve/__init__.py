@@ -1,5 +1,6 @@
 """From a scenario to a solution: the paper's four cases."""
 
+from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.array import solve_array
 from nullpose.solve.array_solution import ArraySolution, ArrayStats
@@ -8,7 +9,6 @@ from nullpose.solve.evidence import certificate_of, require_certificate, verifie
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
 from nullpose.solve.many import ManySolutions, solve_many
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
 from nullpose.solve.solution import Objective, Solution, Stats, Status
 
 __all__ = [
@@ -31,7 +31,6 @@ __all__ = [
     "compare",
     "default_gap",
     "default_gap_of",
-    "not_applicable",
     "require_certificate",
     "solve",
     "solve_array",

@@ -13,16 +13,16 @@ from numpy.typing import ArrayLike
 from nullpose.certificate import claimed_axes
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
-from nullpose.physics import Link, Pose, evaluate, maximum_gain_sinr_as_printed, to_db
+from nullpose.physics import Link, Pose, evaluate, to_db
 from nullpose.scenario import Scenario
+from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
+from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
 from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.scheme import PAPER_SCHEMES, Scheme, as_scheme, not_applicable, require_applicable
-from nullpose.solve.schemes import maximum_gain, maximum_gain_printed, optimum, vertical, zero_interference
 from nullpose.solve.settle import Settled, settle
 from nullpose.solve.solution import Solution, Stats, Status
 
@@ -70,13 +70,13 @@ def solve(
         SolveError: no pose reaches every node.
     """
     scheme = as_scheme(scheme)
-    require_applicable(scenario, scheme)
+    scheme.require_applicable(scenario)
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise UsageError(f"seed: given {seed!r}; allowed: a whole number of at least 0")
-    if null_jammer is not None and scheme is not Scheme.ZERO_INTERFERENCE:
+    if null_jammer is not None and not scheme.record.nulls_a_jammer:
+        nulling = ", ".join(each.value for each in Scheme if each.record.nulls_a_jammer)
         raise UsageError(
-            f"null jammer: given {null_jammer!r} with scheme {scheme.value}; "
-            "it goes with zero-interference only"
+            f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
     target = default_gap_of(scenario) if gap is None else gap
     limits = Limits(
@@ -88,7 +88,7 @@ def solve(
     )
     effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
     began = time.perf_counter()
-    settled = _settle(scenario, scheme, effort, null_jammer)
+    settled = solve_scheme(scenario, scheme.record, effort, null_jammer)
     pose = Pose.of_airframe(scenario, settled.found.position_m, settled.found.axis)
     links = _links(scenario, scheme, pose)
     objective = objective_of(scenario, links, settled.upper_bound)
@@ -145,7 +145,7 @@ def compare(
         UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
-    applicable = [s for s in map(as_scheme, schemes) if not_applicable(scenario, s) is None]
+    applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
         solution = solve(
@@ -214,18 +214,6 @@ _NO_BORDERS: dict[str, Any] = {
 }
 
 
-def _settle(scenario: Scenario, scheme: Scheme, effort: Effort, null_jammer: str | None) -> Settled:
-    if scheme is Scheme.ZERO_INTERFERENCE:
-        return zero_interference.find(scenario, effort, null_jammer=null_jammer)
-    finders = {
-        Scheme.OPTIMUM: optimum.find,
-        Scheme.MAXIMUM_GAIN: maximum_gain.find,
-        Scheme.VERTICAL: vertical.find,
-        Scheme.MAXIMUM_GAIN_PRINTED: maximum_gain_printed.find,
-    }
-    return finders[scheme](scenario, effort)
-
-
 def _status(settled: Settled) -> Status:
     if settled.upper_bound is None:
         return Status.BEST_FOUND
@@ -233,9 +221,10 @@ def _status(settled: Settled) -> Status:
 
 
 def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:
-    if scheme is not Scheme.MAXIMUM_GAIN_PRINTED:
+    ratios_at = scheme.record.ratios_at
+    if ratios_at is None:
         return evaluate(scenario, pose)
-    ratios = maximum_gain_sinr_as_printed(scenario, pose.position_m)
+    ratios = ratios_at(scenario, pose.position_m)
     return tuple(
         Link(node=name, sinr=float(ratio), sinr_db=float(to_db(ratio)))
         for name, ratio in zip(scenario.node_names, ratios, strict=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -22,7 +22,7 @@ from nullpose.solve.solution import Solution
 __all__ = ["certificate_of", "require_certificate", "verified"]
 
 
-def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None) -> dict[str, AxisField]:
+def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField]:
     """Return the axis fields that a certificate of a scheme needs a tree for, by name.
 
     Args:

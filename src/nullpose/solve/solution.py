@@ -10,10 +10,10 @@ from typing import Any
 
 from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
+from nullpose.schemes import Scheme
 from nullpose.solve.objective import Objective
 from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.scheme import Scheme
 
 __all__ = ["Objective", "Solution", "Stats", "Status"]
 

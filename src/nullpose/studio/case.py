@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme, not_applicable
+from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
 __all__ = ["OPTIMUM", "Case", "all_cases", "case_named", "cases_of"]
@@ -46,7 +46,7 @@ class Case:
         """
         if self.robust and not scenario.is_uncertain:
             return "the scenario states no errors to guard against"
-        return not_applicable(self.on(scenario), self.scheme)
+        return self.scheme.not_applicable(self.on(scenario))
 
 
 OPTIMUM = Case(label="Optimum pose")

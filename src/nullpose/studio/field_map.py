@@ -10,14 +10,11 @@ from numpy.typing import NDArray
 from nullpose.family import build_family
 from nullpose.physics import (
     antenna_gain,
-    maximum_gain_axis,
     objective_value,
     to_db,
-    zero_interference_axis,
 )
 from nullpose.report.quantity import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve import Scheme
 from nullpose.studio.answer import Answer
 from nullpose.studio.events import Field, FieldMap
 
@@ -109,16 +106,13 @@ def _usable(scenario: Scenario, grid: FloatArray) -> NDArray[np.bool_]:
 
 def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     scenario, scheme = answer.scenario, answer.case.scheme
-    if scheme is Scheme.VERTICAL:
-        return objective_value(scenario, positions_m, np.array([0.0, 0.0, 1.0]))
-    if scheme is Scheme.ZERO_INTERFERENCE:
-        each = [
-            objective_value(scenario, positions_m, zero_interference_axis(positions_m, jammer))
-            for jammer in scenario.jammer_positions_m
-        ]
-        return np.asarray(np.max(each, axis=0))
-    if scheme is Scheme.MAXIMUM_GAIN:
+    fields = scheme.record.fields(scenario, None)
+    if fields is None:
         return objective_value(scenario, positions_m, _gain_axes(scenario, positions_m, go_on))
+    given = [field for field in fields.values() if not field.is_free]
+    if given:
+        each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in given]
+        return np.asarray(np.max(each, axis=0))
     if scenario.axis_band == (0.0, 1.0) and scenario.objective == "min-sinr":
         return objective_value(scenario, positions_m, _exact_axes(scenario, positions_m, go_on))
     axes = _spread_axes(*scenario.axis_band)
@@ -142,9 +136,8 @@ def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[],
 
 
 def _gain_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
+    """Return the axes that serve the nodes best, the jammers ignored."""
     nodes = scenario.node_positions_m
-    if len(nodes) == 2:
-        return maximum_gain_axis(scenario, positions_m)
     axes = _spread_axes(0.0, 1.0)
     chosen = np.empty_like(positions_m)
     for i, position_m in enumerate(positions_m):

@@ -8,6 +8,7 @@ from html import escape
 
 from nullpose.report.figures.style import CURVES
 from nullpose.report.quantity import Quantity
+from nullpose.schemes import Curve, Scheme
 from nullpose.studio.colours import css, scale_colour
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB
@@ -16,13 +17,6 @@ __all__ = ["power_plot_svg", "scale_svg"]
 
 _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 8, 30, 34
-_DASHES = {"optimum": "", "zero-interference": "7 3", "maximum-gain": "2 2", "vertical": "7 2 2 2"}
-_SHORT = {
-    "optimum": "optimum",
-    "zero-interference": "zero interf.",
-    "maximum-gain": "max. gain",
-    "vertical": "vertical",
-}
 
 
 def power_plot_svg(
@@ -75,7 +69,7 @@ def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
         value = Quantity.named(row.objective.name).in_unit(row.objective.value)
         if math.isfinite(value):
             lines.setdefault(row.scheme, []).append((row.value, value))
-    return {scheme: lines[scheme] for scheme in _DASHES if scheme in lines}
+    return {scheme: lines[scheme] for scheme in CURVES if scheme in lines}
 
 
 def _limits(values: Sequence[float]) -> tuple[float, float]:
@@ -126,23 +120,27 @@ def _frame(low: float, high: float, step: float, unit: str) -> str:
 
 def _polyline(scheme: str, points: list[tuple[float, float]], low: float, high: float) -> str:
     path = " ".join(f"{_x(x):.1f},{_y(y, low, high):.1f}" for x, y in points)
-    width = 2.6 if scheme == "optimum" else 1.6
+    curve = CURVES[scheme]
     return (
-        f'<polyline points="{path}" fill="none" stroke="{CURVES[scheme].colour}" stroke-width="{width}" '
-        f'stroke-dasharray="{_DASHES[scheme]}"/>'
+        f'<polyline points="{path}" fill="none" stroke="{curve.colour}" stroke-width="{curve.width}" '
+        f'stroke-dasharray="{_dashes(curve)}"/>'
     )
+
+
+def _dashes(curve: Curve) -> str:
+    return "" if isinstance(curve.line, str) else " ".join(f"{length:g}" for length in curve.line[1])
 
 
 def _legend(lines: dict[str, list[tuple[float, float]]]) -> list[str]:
     parts, x = [], 4.0
     for scheme in lines:
-        colour = CURVES[scheme].colour
+        curve, short = CURVES[scheme], Scheme(scheme).record.short
         parts.append(
-            f'<line x1="{x:.0f}" y1="10" x2="{x + 20:.0f}" y2="10" stroke="{colour}" stroke-width="2.4" '
-            f'stroke-dasharray="{_DASHES[scheme]}"/>'
-            f'<text x="{x + 24:.0f}" y="14" fill="#111">{_SHORT[scheme]}</text>'
+            f'<line x1="{x:.0f}" y1="10" x2="{x + 20:.0f}" y2="10" stroke="{curve.colour}" '
+            f'stroke-width="2.4" stroke-dasharray="{_dashes(curve)}"/>'
+            f'<text x="{x + 24:.0f}" y="14" fill="#111">{short}</text>'
         )
-        x += 30 + 5.6 * len(_SHORT[scheme])
+        x += 30 + 5.6 * len(short)
     return parts
 
 

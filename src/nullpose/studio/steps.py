@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, Status, not_applicable, solve
+from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, Status, solve
 from nullpose.solve.robust import solve_robust
 from nullpose.studio.answer import Answer, Stage, answer_of, robust_answer_of
 from nullpose.studio.case import Case
@@ -104,7 +104,7 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
     """
     if view.power_db is None:
         return
-    schemes = [one for one in PAPER_SCHEMES if not_applicable(view.scenario, one) is None]
+    schemes = [one for one in PAPER_SCHEMES if one.not_applicable(view.scenario) is None]
     low_db, high_db = POWER_DB
     rows: dict[tuple[float, str], SweepRow] = {}
     for every in (7, 1):

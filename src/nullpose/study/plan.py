@@ -10,7 +10,6 @@ from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, apply_overrides
 from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap_of
 from nullpose.solve.limits import Limits
-from nullpose.solve.scheme import require_applicable
 from nullpose.study.files import prepare_folder
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import scenarios_along, sweep
@@ -114,5 +113,5 @@ def plan_sweep(
     if schemes is not None:
         for scheme in wanted:
             for _, at_value in scenarios:
-                require_applicable(at_value, scheme)
+                scheme.require_applicable(at_value)
     return SweepPlan(base, path, values, wanted, prepare_folder(out), seed, limits if certify else None)

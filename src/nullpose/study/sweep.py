@@ -13,7 +13,6 @@ from nullpose.solve import (
     TIME_LIMIT_S,
     Scheme,
     Solution,
-    not_applicable,
     solve,
 )
 from nullpose.study.table import SweepRow, SweepTable
@@ -112,7 +111,7 @@ def scenarios_along(
 
 def _not_applicable_along(scenarios: Sequence[tuple[float, Scenario]], scheme: Scheme) -> str:
     """Return why a scheme has no meaning at some value, and at which; empty if it has at all of them."""
-    reasons = [(value, not_applicable(varied, scheme)) for value, varied in scenarios]
+    reasons = [(value, scheme.not_applicable(varied)) for value, varied in scenarios]
     found = [(value, reason) for value, reason in reasons if reason is not None]
     if not found:
         return ""

@@ -16,6 +16,7 @@ from nullpose.report.claims.maximum_gain import equidistant, null_at_jammer
 from nullpose.report.claims.saturation import saturation
 from nullpose.report.claims.study import JammingStudy
 from nullpose.report.claims.vertical import above_jammer, pose_optimisation_wins
+from nullpose.schemes import Scheme
 
 __all__ = ["CLAIM_COUNT", "check_claims"]
 
@@ -30,7 +31,7 @@ _CHECKS: tuple[Callable[[JammingStudy], Claim], ...] = (
     saturation,
 )
 
-_PRINTED = "maximum-gain-printed"  # nothing is ever proved of it, which the claims that use it say
+_PRINTED = Scheme.MAXIMUM_GAIN_PRINTED  # nothing is ever proved of it, which the claims that use it say
 
 CLAIM_COUNT = len(_CHECKS)
 """How many claims there are to check."""

@@ -10,6 +10,7 @@ from nullpose.physics import Pose
 from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, bound_db
+from nullpose.schemes import Scheme
 
 __all__ = ["strong_jamming", "weak_jamming", "zero_interference_constant"]
 
@@ -25,12 +26,16 @@ def weak_jamming(study: JammingStudy) -> Claim:
         study: the data.
     """
     weakest = study.levels[0]
-    evidence, slope = _approach(study, "maximum-gain", (weakest, 10 * weakest, 100 * weakest, 1000 * weakest))
-    lag_db = study.lead_db("optimum", "maximum-gain", weakest)
-    limit = study.holds_up_to(lambda level: study.lead_db("optimum", "maximum-gain", level) <= _COINCIDE_DB)
+    evidence, slope = _approach(
+        study, Scheme.MAXIMUM_GAIN, (weakest, 10 * weakest, 100 * weakest, 1000 * weakest)
+    )
+    lag_db = study.lead_db(Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, weakest)
+    limit = study.holds_up_to(
+        lambda level: study.lead_db(Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, level) <= _COINCIDE_DB
+    )
     end = f"up to P_M/P = {limit:.3g}" if limit is not None else "at no swept level"
-    _, most_db = study.lead_range_db("optimum", "maximum-gain", weakest)
-    least_db, _ = study.lead_range_db("optimum", "maximum-gain", 10 * weakest)
+    _, most_db = study.lead_range_db(Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, weakest)
+    least_db, _ = study.lead_range_db(Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, 10 * weakest)
     return Claim(
         id="weak-jamming-maximum-gain",
         claim="When the jamming is weak, the maximum-gain solution is the optimum.",
@@ -58,13 +63,13 @@ def strong_jamming(study: JammingStudy) -> Claim:
         study: the data.
     """
     strongest = study.levels[-1]
-    evidence, slope = _approach(study, "zero-interference", (1.0, 10.0, 100.0, 1000.0, strongest))
-    lag_db = study.lead_db("optimum", "zero-interference", strongest)
+    evidence, slope = _approach(study, Scheme.ZERO_INTERFERENCE, (1.0, 10.0, 100.0, 1000.0, strongest))
+    lag_db = study.lead_db(Scheme.OPTIMUM, Scheme.ZERO_INTERFERENCE, strongest)
     limit = study.holds_from(
-        lambda level: study.lead_db("optimum", "zero-interference", level) <= _COINCIDE_DB
+        lambda level: study.lead_db(Scheme.OPTIMUM, Scheme.ZERO_INTERFERENCE, level) <= _COINCIDE_DB
     )
     start = f"from P_M/P = {limit:.3g} on" if limit is not None else "at no swept level"
-    _, most_db = study.lead_range_db("optimum", "zero-interference", strongest)
+    _, most_db = study.lead_range_db(Scheme.OPTIMUM, Scheme.ZERO_INTERFERENCE, strongest)
     return Claim(
         id="strong-jamming-zero-interference",
         claim="When the jamming is strong, the zero-interference solution is the optimum.",
@@ -87,7 +92,7 @@ def _strong_proved(study: JammingStudy, limit: float | None, most_db: float) -> 
     end = f"The true shortfall is at most {at_most(most_db)} dB at P_M/P = {study.levels[-1]:g}"
     if limit is None:
         return end + "."
-    _, at_limit_db = study.lead_range_db("optimum", "zero-interference", limit)
+    _, at_limit_db = study.lead_range_db(Scheme.OPTIMUM, Scheme.ZERO_INTERFERENCE, limit)
     return (
         f"{end}, and at most {at_most(at_limit_db, 5)} dB at every power from {limit:.3g} on, between the "
         "swept ones too: more jamming never raises the optimum, and does not touch zero interference."
@@ -96,10 +101,10 @@ def _strong_proved(study: JammingStudy, limit: float | None, most_db: float) -> 
 
 def _approach(study: JammingStudy, scheme: str, levels: tuple[float, ...]) -> tuple[dict[str, object], float]:
     """Return how far a scheme is from the optimum at some levels, and the exponent between the first two."""
-    lags_db = [study.lead_db("optimum", scheme, level) for level in levels]
+    lags_db = [study.lead_db(Scheme.OPTIMUM, scheme, level) for level in levels]
     rows: list[dict[str, float]] = []
     for level, lag_db in zip(levels, lags_db, strict=True):
-        best, other = study.at("optimum", level), study.at(scheme, level)
+        best, other = study.at(Scheme.OPTIMUM, level), study.at(scheme, level)
         rows.append(
             {
                 "jamming_to_transmission_ratio": level,
@@ -127,7 +132,7 @@ def zero_interference_constant(study: JammingStudy) -> Claim:
     Args:
         study: the data.
     """
-    rows = study.curve("zero-interference")
+    rows = study.curve(Scheme.ZERO_INTERFERENCE)
     sinrs_db = [row.min_sinr_db for row in rows]
     positions_m = np.array([row.pose.position_m for row in rows])
     spread_db = max(sinrs_db) - min(sinrs_db)

@@ -10,10 +10,11 @@ from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.equidistant import best_equidistant
 from nullpose.report.claims.study import JammingStudy, bound_db, lead_range_db
 from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.schemes import Scheme
 
 __all__ = ["equidistant", "null_at_jammer"]
 
-_SCHEME = "maximum-gain"
+_SCHEME = Scheme.MAXIMUM_GAIN
 _POINTED_DEG = 1.0
 _BETTER_DB = 1e-4
 _NOISE_M = 1e-6  # what is smaller is told as at most this
@@ -161,7 +162,7 @@ def _row(study: JammingStudy, level: float) -> dict[str, object]:
 def _printed_evidence(study: JammingStudy) -> dict[str, float]:
     """Return how far from equidistant, and from the best equidistant value, eq. 3.5 as printed ever is."""
     nodes = study.scenario.node_positions_m
-    rows = study.curve("maximum-gain-printed")
+    rows = study.curve(Scheme.MAXIMUM_GAIN_PRINTED)
     differences = [abs(distance_m(row.pose, nodes[0]) - distance_m(row.pose, nodes[1])) for row in rows]
     leads_db = [
         row.min_sinr_db - float(to_db(best_equidistant(study.scenario_at(row.value), as_printed=True)[1]))

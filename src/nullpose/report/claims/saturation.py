@@ -8,11 +8,12 @@ from nullpose.report.certainty import at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, lead_range_db
 from nullpose.report.geometry import distance_m
+from nullpose.schemes import Scheme
 
 __all__ = ["saturation"]
 
-_SCHEMES = ("optimum", "zero-interference", "maximum-gain", "vertical")
-_PRINTED = "maximum-gain-printed"
+_SCHEMES = (Scheme.OPTIMUM, Scheme.ZERO_INTERFERENCE, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL)
+_PRINTED = Scheme.MAXIMUM_GAIN_PRINTED
 _FLAT_DB = 1e-3
 _NEAR_DB = 0.01
 
@@ -45,7 +46,10 @@ def saturation(study: JammingStudy) -> Claim:
         f"{'saturates too' if abs(falls_db) <= _FLAT_DB else 'never saturates'}: it changes by "
         f"{falls_db:.2f} dB over the last decade, its position staying equidistant from the nodes to "
         f"{max(apart_m, 1e-9):.1g} m.",
-        evidence={**evidence, "printed_form_largest_distance_difference_m": apart_m},
+        evidence={
+            **{scheme.value: end for scheme, end in evidence.items()},
+            "printed_form_largest_distance_difference_m": apart_m,
+        },
         proved=_flatness_proved(study),
         unproved="What lies beyond the strongest jamming swept, but for the optimum and zero interference; "
         "what is said of eq. 3.5 as printed, which is searched and not bounded.",

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from nullpose.report.paper import JAMMER_POWER, with_jamming
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.schemes import Scheme
 from nullpose.study import SweepRow, SweepTable, sweep
 
 __all__ = ["JammingStudy", "bound_db", "lead_range_db"]
@@ -76,7 +77,7 @@ class JammingStudy:
         """
         north_m = float(self.scenario.node_positions_m[:, 1].mean())
         plane = apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
-        return self._row((_EQUIDISTANT, float(level)), "maximum-gain", plane)
+        return self._row((_EQUIDISTANT, float(level)), Scheme.MAXIMUM_GAIN, plane)
 
     def _row(self, key: tuple[str, float], scheme: str, scenario: Scenario) -> SweepRow:
         if key not in self._rows:

@@ -10,6 +10,7 @@ import numpy as np
 from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, lead_range_db
+from nullpose.schemes import Scheme
 
 __all__ = ["above_jammer", "pose_optimisation_wins"]
 
@@ -47,8 +48,8 @@ def above_jammer(study: JammingStudy) -> Claim:
                 {
                     "jamming_to_transmission_ratio": level,
                     "horizontal_distance_m": _offset_m(study, level),
-                    "position_m": [float(x) for x in study.at("vertical", level).pose.position_m],
-                    "value_db": study.at("vertical", level).min_sinr_db,
+                    "position_m": [float(x) for x in study.at(Scheme.VERTICAL, level).pose.position_m],
+                    "value_db": study.at(Scheme.VERTICAL, level).min_sinr_db,
                 }
                 for level in levels
             ]
@@ -62,7 +63,7 @@ def above_jammer(study: JammingStudy) -> Claim:
 
 
 def _offset_m(study: JammingStudy, level: float) -> float:
-    away = study.at("vertical", level).pose.position_m - study.scenario.jammer_positions_m[0]
+    away = study.at(Scheme.VERTICAL, level).pose.position_m - study.scenario.jammer_positions_m[0]
     return math.hypot(float(away[0]), float(away[1]))
 
 
@@ -72,13 +73,19 @@ def pose_optimisation_wins(study: JammingStudy) -> Claim:
     Args:
         study: the data.
     """
-    leads_db = np.array([study.lead_db("optimum", "vertical", level) for level in study.levels])
+    leads_db = np.array([study.lead_db(Scheme.OPTIMUM, Scheme.VERTICAL, level) for level in study.levels])
     levels = np.array(study.levels)
     weak_db, strong_db = leads_db[levels <= _WEAK], leads_db[levels >= _STRONG]
     peak = int(np.argmax(leads_db))
-    limit = study.holds_from(lambda level: study.lead_db("optimum", "vertical", level) >= _SIGNIFICANT_DB)
-    zero_from = study.holds_from(lambda level: study.lead_db("zero-interference", "vertical", level) >= 0.0)
-    gain_from = study.holds_from(lambda level: study.lead_db("maximum-gain", "vertical", level) >= 0.0)
+    limit = study.holds_from(
+        lambda level: study.lead_db(Scheme.OPTIMUM, Scheme.VERTICAL, level) >= _SIGNIFICANT_DB
+    )
+    zero_from = study.holds_from(
+        lambda level: study.lead_db(Scheme.ZERO_INTERFERENCE, Scheme.VERTICAL, level) >= 0.0
+    )
+    gain_from = study.holds_from(
+        lambda level: study.lead_db(Scheme.MAXIMUM_GAIN, Scheme.VERTICAL, level) >= 0.0
+    )
     start = f"from P_M/P = {limit:.3g} on" if limit is not None else "at no swept level"
     return Claim(
         id="pose-optimisation-wins",
@@ -118,7 +125,9 @@ def pose_optimisation_wins(study: JammingStudy) -> Claim:
 
 def _lead_proved(study: JammingStudy, zero_from: float | None) -> str:
     """Return what the bounds show of the lead over the vertical case, at the swept powers and between."""
-    leads_db = {level: study.lead_range_db("optimum", "vertical", level)[0] for level in study.levels}
+    leads_db = {
+        level: study.lead_range_db(Scheme.OPTIMUM, Scheme.VERTICAL, level)[0] for level in study.levels
+    }
     strong_db = min(lead_db for level, lead_db in leads_db.items() if level >= _STRONG)
     words = (
         f"The true lead is at least {at_least(min(leads_db.values()))} dB at every swept level, and at least "
@@ -126,7 +135,7 @@ def _lead_proved(study: JammingStudy, zero_from: float | None) -> str:
     )
     # between two levels the optimum is at least as good as at the upper, the vertical at most as at the lower
     between_db = min(
-        lead_range_db(study.at("optimum", upper), study.at("vertical", lower))[0]
+        lead_range_db(study.at(Scheme.OPTIMUM, upper), study.at(Scheme.VERTICAL, lower))[0]
         for lower, upper in pairwise(study.levels)
     )
     if between_db > 0.0:
@@ -135,7 +144,7 @@ def _lead_proved(study: JammingStudy, zero_from: float | None) -> str:
             f"{at_least(between_db)} dB."
         )
     if zero_from is not None:
-        least_db, _ = study.lead_range_db("zero-interference", "vertical", zero_from)
+        least_db, _ = study.lead_range_db(Scheme.ZERO_INTERFERENCE, Scheme.VERTICAL, zero_from)
         behind = "" if least_db >= 0.0 else f", or behind by at most {at_most(-least_db)} dB"
         words += (
             f" From P_M/P = {zero_from:.3g} on, between the levels too, zero interference is ahead of the "

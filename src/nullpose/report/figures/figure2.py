@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nullpose.report.certainty import Certainty, short
 from nullpose.report.figures.style import CURVES, house_style
 from nullpose.report.figures.sweep import draw_bounds, draw_caption, draw_curve
+from nullpose.schemes import Scheme
 from nullpose.study import SweepTable
 
 if TYPE_CHECKING:
@@ -17,10 +18,10 @@ __all__ = ["draw_figure2"]
 
 _SINR_DB = (-3.6, 2.15)  # the four cases fill it; the printed form leaves it at the bottom
 _LABELS = {  # scheme: (P_M/P, smallest SINR in dB) of the label's left end, beside its own curve alone
-    "optimum": (0.3, 1.38),
-    "zero-interference": (3e2, 0.53),
-    "maximum-gain": (3e2, -0.97),
-    "vertical": (3e2, -2.02),
+    Scheme.OPTIMUM: (0.3, 1.38),
+    Scheme.ZERO_INTERFERENCE: (3e2, 0.53),
+    Scheme.MAXIMUM_GAIN: (3e2, -0.97),
+    Scheme.VERTICAL: (3e2, -2.02),
 }
 
 
@@ -65,8 +66,8 @@ def _certainty(table: SweepTable) -> str:
 
 
 def _mark_printed_form(axes: Axes, table: SweepTable) -> None:
-    curve = CURVES["maximum-gain-printed"]
-    last_db = table.of("maximum-gain-printed")[-1].min_sinr_db
+    curve = CURVES[Scheme.MAXIMUM_GAIN_PRINTED]
+    last_db = table.of(Scheme.MAXIMUM_GAIN_PRINTED)[-1].min_sinr_db
     axes.text(
         3.2,
         -2.95,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
+from nullpose.schemes import Curve, Scheme
 from nullpose.study import prepare_folder, replacing
 
 if TYPE_CHECKING:
@@ -32,38 +32,8 @@ GREY = "#6b6b6b"
 _FORMATS = (".png", ".svg")
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """How one scheme is drawn: told apart by colour, by line and by marker, so that any one is enough.
-
-    Args:
-        label: its name in words.
-        colour: the paper's colour.
-        line: a Matplotlib line style.
-        marker: a Matplotlib marker, or nothing.
-        width: line width, points.
-        order: drawing order, later ones on top.
-    """
-
-    label: str
-    colour: str
-    line: str | tuple[int, tuple[float, ...]]
-    marker: str
-    width: float
-    order: float
-
-
-CURVES: Mapping[str, Curve] = MappingProxyType(
-    {
-        "optimum": Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
-        "zero-interference": Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
-        "maximum-gain": Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
-        "vertical": Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
-        "maximum-gain-printed": Curve(
-            "maximum gain, eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)), "", 1.6, 2.0
-        ),
-    }
-)
+CURVES: Mapping[str, Curve] = MappingProxyType({scheme.value: scheme.record.curve for scheme in Scheme})
+"""How schemes are drawn."""
 
 VEHICLES: Mapping[str, Curve] = MappingProxyType(
     {

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Airframe
-from nullpose.solve.scheme import Scheme
+from nullpose.schemes import Scheme
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL
 from nullpose.study.monte_carlo import StudyCase, StudySpec
@@ -135,9 +135,9 @@ def _case(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
             plain, phrase=f"a level vehicle with an array of {case.array.elements} with {how}", tilt_deg=None
         )
     airframe = own if case.airframe is None else case.airframe
-    if case.scheme == Scheme.VERTICAL.value:
+    if case.scheme is Scheme.VERTICAL:
         return replace(plain, phrase=_LEVEL.phrase, role=_LEVEL.name, tilt_deg=0.0)
-    if case.scheme not in (None, Scheme.OPTIMUM.value):
+    if case.scheme not in (None, Scheme.OPTIMUM):
         return replace(plain, phrase=f"the {Scheme(case.scheme).label.lower()} pose")
     if airframe is None:
         return replace(plain, robust=bool(case.robust))

@@ -20,7 +20,7 @@ from nullpose.scenario.names import Label
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import AttitudeDegrees, Count, Position, Quantity
 from nullpose.scenario.wording import described, listed, nearest
-from nullpose.solve.scheme import Scheme
+from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
 
 __all__ = ["CaseArray", "FixedPose", "Gap", "NodeLimit", "Seconds", "StudyCase"]
@@ -29,11 +29,7 @@ Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth o
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
-_SCHEMES = tuple(scheme.value for scheme in Scheme)
-_SchemeName = Annotated[
-    Literal["optimum", "zero-interference", "maximum-gain", "vertical", "maximum-gain-printed"],
-    Choice("a scheme", _SCHEMES),
-]
+_SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
 _Combining = Annotated[
     Literal["digital", "analogue"], Choice("a way to combine elements", ("digital", "analogue"))
 ]

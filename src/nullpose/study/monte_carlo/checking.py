@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Scenario
 from nullpose.scenario.faults import path_of
-from nullpose.solve.scheme import Scheme, not_applicable
+from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws, draw_scene
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -111,6 +111,6 @@ def _meaningless(case: StudyCase, scene: Scenario) -> str:
         return ""
     if case.array is not None:
         return "" if scene.objective == "min-sinr" else "an array is for hearing nodes (min-sinr) only"
-    scheme = Scheme(case.scheme or "optimum")
-    reason = None if case.pose is not None else not_applicable(scene, scheme)
+    scheme = case.scheme or Scheme.OPTIMUM
+    reason = None if case.pose is not None else scheme.not_applicable(scene)
     return f"scheme {scheme.value}: {reason}; try another scheme" if reason else ""

@@ -9,6 +9,7 @@ from typing import Any
 from nullpose.errors import NullposeError
 from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
+from nullpose.schemes import Scheme
 from nullpose.solve import NODE_LIMIT, Status, solve, solve_array
 from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
@@ -84,7 +85,7 @@ def _solved(spec: StudySpec, case: StudyCase, scene: Scenario) -> dict[str, Any]
         gap = limits_of(spec, case).get("gap")
         found = solve_array(scene, case.array.combining, gap=gap, certify=case.certify is not False)
     else:
-        found = solve(scene, case.scheme or "optimum", **limits_of(spec, case))
+        found = solve(scene, case.scheme or Scheme.OPTIMUM, **limits_of(spec, case))
     return _row(
         found.status,
         found.reason,

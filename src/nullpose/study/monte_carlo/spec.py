@@ -15,6 +15,7 @@ from nullpose.scenario.members import Members
 from nullpose.scenario.names import Title
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Count
+from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
 from nullpose.study.monte_carlo.scene import POINT_LISTS, SceneBase
@@ -86,7 +87,7 @@ class StudySpec(Section):
         description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
     )
     cases: Annotated[tuple[StudyCase, ...], Members("cases", StudyCase.letter, at_least=1)] = Field(
-        default=(StudyCase(name="optimum"),),
+        default=(StudyCase(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
         "the optimum with the scene's own vehicle.",
     )

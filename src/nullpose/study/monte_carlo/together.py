@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from nullpose.scenario import Airframe, Scenario
+from nullpose.schemes import Scheme
 from nullpose.solve import ManySolutions, solve_many
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row
@@ -48,7 +49,9 @@ def _groups(spec: StudySpec) -> list[list[int]]:
 
 
 def _is_usual(case: StudyCase) -> bool:
-    return not case.robust and case.array is None and case.pose is None and case.scheme in (None, "optimum")
+    return (
+        not case.robust and case.array is None and case.pose is None and case.scheme in (None, Scheme.OPTIMUM)
+    )
 
 
 def _by_vehicles(

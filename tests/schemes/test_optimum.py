@@ -9,7 +9,7 @@ import pytest
 
 from nullpose.solve import PAPER_SCHEMES, Scheme, Status, solve
 
-KNOWN = Path(__file__).parents[2] / "reference" / "paper_scenario" / "known_answers.csv"
+KNOWN = Path(__file__).parents[1] / "reference" / "paper_scenario" / "known_answers.csv"
 
 
 def known(scheme: Scheme) -> list[tuple[float, float, float]]:

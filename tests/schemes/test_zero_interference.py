@@ -10,10 +10,11 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
 from nullpose.scenario import Scenario
+from nullpose.schemes.zero_interference import ZERO_INTERFERENCE
 from nullpose.solve import Scheme, solve
+from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import Limits
-from nullpose.solve.schemes.zero_interference import find
 
 
 @pytest.fixture(scope="module")
@@ -88,12 +89,12 @@ def test_the_null_is_on_the_one_named(name: str, three_jammers: Scenario) -> Non
 def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
     """Another name is refused, with those there are."""
     with pytest.raises(UsageError, match="given 'X'; the scenario's jammers are M1, M2, M3"):
-        find(three_jammers, Effort(), null_jammer="X")
+        solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), "X")
 
 
 def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
     """The field's axis at the position found is the axis found, of the length of the way to the jammer."""
-    found = find(three_jammers, Effort(), null_jammer="M2").found
+    found = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), "M2").found
     np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
     assert build_family(three_jammers).low_m[2] <= found.position_m[2]
 
@@ -117,12 +118,12 @@ def test_an_end_on_a_ball_and_the_floor_is_exact(seed: int, scene: Callable) -> 
 
 def test_every_jammer_s_null_is_proved(three_jammers: Scenario) -> None:
     """With no jammer named there is a proof for each, all of the same bound: that of the best."""
-    settled = find(three_jammers, Effort(limits=Limits(gap=1e-6)))
+    settled = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(limits=Limits(gap=1e-6)), None)
     assert settled.reason == ""
     assert len(settled.proofs) == 3
     assert settled.nodes == sum(proof.nodes for proof in settled.proofs)
     value = np.exp(settled.found.log_value)
     assert value <= settled.upper_bound <= value * (1.0 + 1e-6)
-    alone = find(three_jammers, Effort(limits=Limits(gap=1e-6)), null_jammer="M2")
+    alone = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(limits=Limits(gap=1e-6)), "M2")
     assert len(alone.proofs) == 1
-    assert find(three_jammers, Effort()).upper_bound is None
+    assert solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), None).upper_bound is None

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from nullpose.errors import UsageError
-from nullpose.solve import PAPER_SCHEMES, Scheme, as_scheme, not_applicable
+from nullpose.solve import PAPER_SCHEMES, Scheme, as_scheme
 
 
 def test_names_are_a_contract() -> None:
@@ -41,21 +41,21 @@ def test_an_unknown_name_is_refused(name: str) -> None:
 def test_zero_interference_needs_a_jammer(scene: Callable) -> None:
     """Without a jammer there is nothing to point the null at; with any number there is."""
     nodes = [(0, 0, 0), (0, 50, 0)]
-    assert "needs a jammer" in not_applicable(scene(nodes), Scheme.ZERO_INTERFERENCE)
+    assert "needs a jammer" in Scheme.ZERO_INTERFERENCE.not_applicable(scene(nodes))
     for jammers in ([(9, 9, 1)], [(9, 9, 1), (20, 9, 1)]):
-        assert not_applicable(scene(nodes, jammers), Scheme.ZERO_INTERFERENCE) is None
+        assert Scheme.ZERO_INTERFERENCE.not_applicable(scene(nodes, jammers)) is None
 
 
 @pytest.mark.parametrize("nodes", [1, 2, 3])
 def test_the_printed_form_needs_two_nodes(nodes: int, scene: Callable) -> None:
     """Eq. 3.5 as printed is for two nodes; the reason says how many there are."""
     places = [(0, 0, 0), (0, 50, 0), (30, 0, 0)][:nodes]
-    reason = not_applicable(scene(places, [(9, 9, 1)]), Scheme.MAXIMUM_GAIN_PRINTED)
+    reason = Scheme.MAXIMUM_GAIN_PRINTED.not_applicable(scene(places, [(9, 9, 1)]))
     assert reason is None if nodes == 2 else f"has {nodes}" in reason
 
 
 @pytest.mark.parametrize("scheme", [Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL])
 def test_the_others_always_apply(scheme: Scheme, scene: Callable) -> None:
     """Optimum, maximum gain and vertical have a meaning for any number of nodes and jammers."""
-    assert not_applicable(scene([(0, 0, 0)]), scheme) is None
-    assert not_applicable(scene([(0, 0, 0), (5, 0, 0), (9, 9, 0)], [(1, 1, 1)]), scheme) is None
+    assert scheme.not_applicable(scene([(0, 0, 0)])) is None
+    assert scheme.not_applicable(scene([(0, 0, 0), (5, 0, 0), (9, 9, 0)], [(1, 1, 1)])) is None

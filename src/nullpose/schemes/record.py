@@ -1,0 +1,102 @@
+"""What a scheme states of itself, for everything that solves, checks, prints or draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from nullpose.family import AxisField
+    from nullpose.scenario import Scenario
+
+__all__ = ["Curve", "SchemeRecord"]
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """How a curve is drawn: told apart by colour, by line and by marker, so that any one is enough.
+
+    Args:
+        label: its name in words.
+        colour: as in ``#0a3fd6``.
+        line: a Matplotlib line style.
+        marker: a Matplotlib marker, or nothing.
+        width: line width, points.
+        order: drawing order, later ones on top.
+    """
+
+    label: str
+    colour: str
+    line: str | tuple[int, tuple[float, ...]]
+    marker: str
+    width: float
+    order: float
+
+
+def _nothing_against(scenario: Scenario) -> str | None:
+    return None
+
+
+def _no_note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
+    return ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SchemeRecord:
+    """One way to choose the pose.
+
+    A scheme either names the axis fields that it allows, and is then proved over each of them; or it names
+    the axis at a position, and is then searched by values, under the bound of a free axis.
+
+    Args:
+        name: as in a file or an option.
+        label: for tables.
+        short: for the narrowest legends.
+        curve: how it is drawn.
+        in_paper: whether it is one of the paper's four cases.
+        sentence: from a scenario and the jammer to be nulled: which axes a certificate speaks of, in words.
+        fields: from a scenario and the jammer to be nulled: the axis fields by the names that they have in a
+            certificate; None where the scheme names none.
+        note: from a scenario, the names of the fields and the index of the best: a sentence for the solution.
+        reason_against: from a scenario: why the scheme has no meaning there, or None.
+        any_objective: whether it has a meaning for a drone that transmits.
+        any_airframe: whether it has a meaning for a vehicle that does not reach every axis.
+        nulls_a_jammer: whether the jammer to be nulled may be named.
+        axis_at: from a scenario and a position, (3,): the axis there; for schemes without fields. None: the
+            axis that serves the nodes best, the jammers ignored.
+        ratios_at: from a scenario and positions, (..., 3): every node's ratio, where it is not eq. 2.1 at the
+            pose. Nothing is proved of such a scheme.
+        unproved: why it is not certified where it has no fields.
+    """
+
+    name: str
+    label: str
+    short: str
+    curve: Curve
+    sentence: Callable[[Scenario, str | None], str]
+    fields: Callable[[Scenario, str | None], Mapping[str, AxisField] | None]
+    in_paper: bool = True
+    note: Callable[[Scenario, tuple[str, ...], int], str] = _no_note
+    reason_against: Callable[[Scenario], str | None] = _nothing_against
+    any_objective: bool = False
+    any_airframe: bool = False
+    nulls_a_jammer: bool = False
+    axis_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
+    ratios_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
+    unproved: str = ""
+
+    def not_applicable(self, scenario: Scenario) -> str | None:
+        """Return why the scheme has no meaning for a scenario, or None if it has.
+
+        Args:
+            scenario: any.
+        """
+        if scenario.objective == "secrecy-rate" and not self.any_objective:
+            return "the paper states it for a drone that receives, and here it transmits (secrecy rate)"
+        if scenario.axis_band != (0.0, 1.0) and not self.any_airframe:
+            return "it may ask for any antenna axis, and the airframe does not reach every one"
+        return self.reason_against(scenario)
