@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import socket
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from io import StringIO
@@ -130,6 +131,8 @@ class Studio:
         self._server, self._scenario = server, scenario
         self._lock, self._room = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)
         self._map_kernel = MapKernel()
+        # a page may be closed at any moment, also while it is sent what was found
+        warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
         self.pages: dict[int, Any] = {}
         server.initial_camera.position, server.initial_camera.look_at = camera_m(scenario)

@@ -11,6 +11,7 @@ import sys
 import urllib.error
 import urllib.request
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Browser
@@ -75,15 +76,21 @@ def test_interrupt_ends_it_without_a_trace() -> None:
 
 
 def test_the_printed_address_opens_in_a_browser(browser: Browser) -> None:
-    """It shows the scene with its proof, also when it is loaded again; the bare address shows nothing."""
+    """The scene with its proof, also loaded again, from nowhere else; the bare address shows nothing."""
     process = _command("--port", str(_free_port()))
     address = _address(process)
     page = browser.new_page()
     page.set_default_timeout(90_000)
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("websocket", lambda websocket: asked.append(websocket.url))
     page.goto(address)
     page.wait_for_function(CERTIFIED)
     page.reload()
     page.wait_for_function(CERTIFIED)
+    assert {urlsplit(url).netloc for url in asked if not url.startswith(("blob:", "data:"))} == {
+        urlsplit(address).netloc
+    }
     bare = page.goto(address.partition("?")[0])
     assert bare is not None
     assert bare.status == 403

@@ -104,9 +104,11 @@ def _client_of(scheduler: str) -> Client:
 
 
 async def _reached(scheduler: str) -> None:
+    from distributed import Security
     from distributed.comm import connect
 
-    comm = await connect(scheduler, timeout=CONNECT_S)
+    # the certificate that Dask's configuration names, which a tls:// address needs
+    comm = await connect(scheduler, timeout=CONNECT_S, **Security().get_connection_args("client"))
     await comm.close()
 
 
