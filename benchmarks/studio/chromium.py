@@ -16,11 +16,11 @@ _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable
 
 
 @contextmanager
-def opened(port: int, *, scale: float = 0.5) -> Iterator[Any]:
-    """Give a page of the studio at a port, its first proof being there.
+def opened(address: str, *, scale: float = 0.5) -> Iterator[Any]:
+    """Give a page of the studio, its first proof being there.
 
     Args:
-        port: where the studio is.
+        address: what the studio says to open, with its token.
         scale: pixels along each side for one of the page's; without a graphics card they take the time.
     """
     from playwright.sync_api import sync_playwright
@@ -32,7 +32,7 @@ def opened(port: int, *, scale: float = 0.5) -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=path, args=_FLAGS)
         page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=scale)
         page.set_default_timeout(120_000)
-        page.goto(f"http://127.0.0.1:{port}")
+        page.goto(address)
         page.wait_for_function(CERTIFIED)
         for button in page.locator("button.mantine-Notification-closeButton").all():
             button.click()  # the notice that there is no graphics card

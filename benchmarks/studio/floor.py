@@ -18,13 +18,13 @@ _TOLD = '<div data-np="numbers-0" data-version="{}"><div data-np="status-0">cert
 
 
 @contextmanager
-def empty_page(marks: Marks) -> Iterator[tuple[int, Callable[[], Any], Any, Any]]:
-    """Give a port, the camera of the page that is opened there, and from where to where to drag.
+def empty_page(marks: Marks) -> Iterator[tuple[str, Callable[[], Any], Any, Any]]:
+    """Give an address, the camera of the page that is opened there, and from where to where to drag.
 
     Args:
         marks: where the server notes what it hears and answers.
     """
-    server = open_server("127.0.0.1", 0)
+    server, address = open_server("127.0.0.1", 0)
     server.initial_camera.position, server.initial_camera.look_at = (60.0, -40.0, 45.0), (0.0, 0.0, 0.0)
     server.gui.main_panel.dock_right()
     told = server.gui.add_html(_TOLD.format(0, 0))
@@ -47,6 +47,6 @@ def empty_page(marks: Marks) -> Iterator[tuple[int, Callable[[], Any], Any, Any]
     handle.on_update(on_update)
     try:
         grip = np.array([4.8, 0.0, 0.0])
-        yield server.get_port(), lambda: next(iter(server.get_clients().values())).camera, grip, 2.0 * grip
+        yield address, lambda: next(iter(server.get_clients().values())).camera, grip, 2.0 * grip
     finally:
         server.stop()

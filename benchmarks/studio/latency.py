@@ -71,7 +71,7 @@ def _server(scene: Scenario, steps: int) -> dict[str, float]:
 
 
 def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
-    with studio(scene, port=0) as running, opened(running.port, scale=1.0) as page:
+    with studio(scene, port=0) as running, opened(running.address, scale=1.0) as page:
         page.wait_for_timeout(6000)
         ours = next(iter(running.pages.values()))
         marks = Marks()
@@ -98,6 +98,6 @@ def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
 
 def _floor(steps: int) -> dict[str, Any]:
     marks = Marks()
-    with empty_page(marks) as (port, camera, grip, to), opened(port, scale=1.0) as page:
+    with empty_page(marks) as (address, camera, grip, to), opened(address, scale=1.0) as page:
         page.wait_for_timeout(3000)
         return {how: dragged(page, camera(), grip, to, marks, steps, how, "/box") for how in STEPS}

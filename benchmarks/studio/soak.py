@@ -39,7 +39,7 @@ def soak(steps: int, most_minutes: float) -> dict[str, Any]:
     logging.getLogger().addHandler(records)
     before = set(threading.enumerate())
     began = time.perf_counter()
-    with studio(load(_EXAMPLES / "paper.toml"), port=0) as running, opened(running.port):
+    with studio(load(_EXAMPLES / "paper.toml"), port=0) as running, opened(running.address):
         page = next(iter(running.pages.values()))
         early_mb, done = 0.0, 0
         until = time.perf_counter() + 60.0 * most_minutes

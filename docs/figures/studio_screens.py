@@ -38,7 +38,7 @@ def take(name: str) -> None:
     example, change = SCREENS[name]
     with (
         studio(load(ROOT / "examples" / f"{example}.toml"), port=0) as running,
-        opened(running.port, scale=1.0) as page,
+        opened(running.address, scale=1.0) as page,
     ):
         page.get_by_role("button", name="Got it").click()
         ours: Any = next(iter(running.pages.values()))

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 __all__ = ["studio"]
 
 _LOOPBACK = "127.0.0.1"
-_ANYWHERE = ("0.0.0.0", "::")
 
 
 def studio(
@@ -34,17 +33,19 @@ def studio(
     from nullpose.studio.server import studio as running_studio
 
     with _until_ended() as ended, running_studio(scenario, host=host, port=port) as running:
-        _announce(host, running.port)
+        _announce(host, running.address)
         while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
             pass
     typer.echo("stopped")
 
 
-def _announce(host: str, port: int) -> None:
-    shown = "localhost" if host in _ANYWHERE else f"[{host}]" if ":" in host else host
-    typer.echo(f"nullpose studio: http://{shown}:{port}   (Ctrl-C ends it)")
+def _announce(host: str, address: str) -> None:
+    typer.echo(f"nullpose studio: {address}   (Ctrl-C ends it)")
     if host not in (_LOOPBACK, "localhost", "::1"):
-        typer.echo(f"listening at {host}: other machines can open it too, and nothing asks them who they are")
+        typer.echo(
+            f"listening at {host}: whoever has this address with its token can open the studio from another "
+            "machine; what is sent is not encrypted"
+        )
 
 
 @contextmanager

@@ -82,8 +82,7 @@ def scene_html(
 
     view = session.view
     answers = [_current(session, slot) for slot in range(len(view.cases))]
-    with redirect_stdout(StringIO()):
-        server = open_server("127.0.0.1", 0)
+    server, _ = open_server("127.0.0.1", 0)
     try:
         server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
         Ground(server.scene, None).draw(view, freed=False)

@@ -49,7 +49,7 @@ def open_page(browser: Browser, running: Studio) -> Open:
         context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=0.5)
         page = context.new_page()
         page.set_default_timeout(PATIENCE_MS)
-        page.goto(f"http://127.0.0.1:{running.port}")
+        page.goto(running.address)
         page.wait_for_function(CERTIFIED)
         for button in page.locator("button.mantine-Notification-closeButton").all():
             button.click()  # the notice that there is no graphics card

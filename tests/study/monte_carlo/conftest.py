@@ -110,11 +110,11 @@ class Farm:
         self.started.append(process)
         return process
 
-    def scheduler(self) -> subprocess.Popen[str]:
+    def scheduler(self, *more: object) -> subprocess.Popen[str]:
         """Starts a scheduler on a free port of this machine, and waits until it can be reached."""
         file = self.folder / f"scheduler-{len(self.started)}.json"
         options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file)
-        process = self.start("dask", "scheduler", *options)
+        process = self.start("dask", "scheduler", *options, *more)
         self.until(lambda: file.exists() and file.read_text(encoding="utf-8").strip().endswith("}"))
         self.address = json.loads(file.read_text(encoding="utf-8"))["address"]
         return process

@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from distributed import Security
 
 from nullpose.errors import ClusterError
 from nullpose.study.monte_carlo import StudyProgress, StudySpec, run_study
@@ -52,6 +53,31 @@ def test_workers_may_come_late(farm: Any, quick: Spec, tmp_path: Path) -> None:
 
     assert run_study(quick(), tmp_path / "out", scheduler=farm.address, chunk=4, on_progress=note).complete
     assert notes[0] == f"no worker at {farm.address} yet: waiting for one"
+
+
+def test_a_scheduler_behind_tls(farm: Any, spec_file: Callable[..., Path], tmp_path: Path) -> None:
+    """With the certificate that Dask's configuration names it is reached; without it, it is not."""
+    own, spec = Security.temporary(), spec_file(tmp_path)
+    named = {"CA_FILE": own.tls_ca_file}
+    for role in ("client", "scheduler", "worker"):
+        named[f"{role.upper()}__CERT"] = own.tls_client_cert
+        named[f"{role.upper()}__KEY"] = own.tls_client_key
+    without = farm.environment
+    farm.environment = dict(without)
+    for name, text in named.items():
+        (tmp_path / name).write_text(text, encoding="ascii")
+        farm.environment[f"DASK_DISTRIBUTED__COMM__TLS__{name}"] = str(tmp_path / name)
+    farm.scheduler("--protocol", "tls")
+    assert farm.address.startswith("tls://")
+    farm.worker()
+    run = farm.client(spec, tmp_path / "out")
+    said, _ = run.communicate(timeout=60)
+    assert run.returncode == 0, said
+    farm.environment = without
+    run = farm.client(spec, tmp_path / "other")
+    said, _ = run.communicate(timeout=60)
+    assert run.returncode == 2
+    assert "no Dask scheduler answers at tls://" in said
 
 
 def test_a_server_that_is_no_scheduler(quick: Spec, tmp_path: Path) -> None:

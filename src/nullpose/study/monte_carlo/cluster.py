@@ -8,7 +8,9 @@ import signal
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing import resource_tracker
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import ClusterError
@@ -21,6 +23,9 @@ __all__ = ["CONNECT_S", "connected"]
 
 CONNECT_S = 5.0
 """How long a scheduler has to answer, seconds."""
+
+# Nothing is served over HTTP: no password would guard it.
+_NO_PAGES: dict[str, Any] = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
 
 # One thread for each worker, also in the libraries that would start more by themselves.
 _ONE_THREAD = dict.fromkeys(
@@ -55,21 +60,30 @@ def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
 @contextmanager
 def _embedded(workers: int) -> Iterator[Client]:
     import dask
-    from distributed import Client, LocalCluster
+    from distributed import Client, LocalCluster, Security
 
     environment = dask.config.get("distributed.nanny.pre-spawn-environ", {}) | _ONE_THREAD
-    with dask.config.set({"distributed.nanny.pre-spawn-environ": environment}):
-        with _deaf_to_ctrl_c():
+    settings = _NO_PAGES | {"distributed.nanny.pre-spawn-environ": environment}
+    running = ExitStack()
+    try:
+        with _ctrl_c_put_off():
+            scratch = TemporaryDirectory(prefix="nullpose-study-", ignore_cleanup_errors=True)
+            settings["temporary-directory"] = running.enter_context(scratch)
+            running.enter_context(dask.config.set(settings))
             cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
+                security=Security.temporary(),  # else anybody on this machine could run programs as us
                 dashboard_address="127.0.0.1:0",  # its usual port may be another cluster's
                 scheduler_kwargs={"dashboard": False},
                 silence_logs=logging.CRITICAL,
             )
-        with cluster, Client(cluster) as client:
-            yield client
+            client = running.enter_context(Client(running.enter_context(cluster)))
+        yield client
+    finally:
+        with _ctrl_c_put_off():
+            running.close()
 
 
 def _client_of(scheduler: str) -> Client:
@@ -90,9 +104,11 @@ def _client_of(scheduler: str) -> Client:
 
 
 async def _reached(scheduler: str) -> None:
+    from distributed import Security
     from distributed.comm import connect
 
-    comm = await connect(scheduler, timeout=CONNECT_S)
+    # the certificate that Dask's configuration names, which a tls:// address needs
+    comm = await connect(scheduler, timeout=CONNECT_S, **Security().get_connection_args("client"))
     await comm.close()
 
 
@@ -104,16 +120,24 @@ def _first_line(error: Exception) -> str:
 
 
 @contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Start processes in the block that leave Ctrl-C to this one, which ends them in order."""
+def _ctrl_c_put_off() -> Iterator[None]:
+    """Hear Ctrl-C at the end of the block; processes that the block starts never hear it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    heard: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    if has_mask := hasattr(signal, "pthread_sigmask"):
+        resource_tracker.ensure_running()  # it would take the mask away if it were started in the block
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
+        if has_mask:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         signal.signal(signal.SIGINT, before)
+        if heard:
+            signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from nullpose.errors import UsageError
 
 __all__ = ["require_extra"]
 
-_PACKAGES = ("pyarrow", "pandas", "xarray", "dask", "distributed")
+_PACKAGES = ("pyarrow", "pandas", "xarray", "dask", "distributed", "cryptography")
 
 
 def require_extra() -> None:

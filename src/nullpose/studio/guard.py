@@ -1,0 +1,104 @@
+"""Who is let in: requests with this run's token, to the studio's own address, that no foreign page sent."""
+
+from __future__ import annotations
+
+import hmac
+import logging
+import secrets
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from http import HTTPStatus
+from ipaddress import ip_address
+from typing import Any
+from urllib.parse import parse_qs
+
+__all__ = ["Guard"]
+
+_LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
+_HEADERS = {"Referrer-Policy": "no-referrer", "Content-Security-Policy": "frame-ancestors 'none'"}
+
+_NO_TOKEN = "The token is missing or of another run: open the whole address that nullpose studio printed.\n"
+_NOT_OURS = "The studio answers only at the address that it printed, and only to its own page.\n"
+
+_patching = threading.Lock()
+_log = logging.getLogger("nullpose.studio.requests")
+# what others send that is no HTTP is no fault of ours, and fills no terminal
+_log.addFilter(lambda record: record.getMessage() != "opening handshake failed")
+
+
+class Guard:
+    """Sees every request before viser does, for a page and for a websocket alike.
+
+    No cookie is set: browsers send one to every port of a host, thus to other people's servers on it too.
+    The token is in the page's address, and viser is told by its parameter ``websocket`` to use it there.
+
+    Args:
+        host: address that is listened at, as it was given.
+        bound: the same as a number.
+    """
+
+    def __init__(self, host: str, bound: str) -> None:
+        self._host, self._token = host.lower(), secrets.token_urlsafe(32)
+        self._anywhere = ip_address(bound).is_unspecified
+        self._names = {self._host, bound} | (_LOOPBACK_NAMES if ip_address(bound).is_loopback else set())
+        self.stands = False
+
+    def address(self, port: int) -> str:
+        """Return the address to open in a browser, with the token.
+
+        Args:
+            port: where the server listens.
+        """
+        name = "localhost" if self._anywhere else self._host
+        return f"http://{_bracketed(name)}:{port}/?token={self._token}"
+
+    @contextmanager
+    def before_viser(self) -> Iterator[None]:
+        """Stand before the server that viser opens in the block; ``stands`` tells whether that came about."""
+        from websockets.asyncio import server
+
+        serve = server.serve
+
+        def guarded(*arguments: Any, process_request: Any = None, **options: Any) -> Any:
+            self.stands = process_request is not None
+            options |= {"process_request": partial(self._answer, process_request), "logger": _log}
+            return serve(*arguments, **options)
+
+        with _patching:
+            server.serve = guarded  # the only way in: viser hands none of its settings through
+            try:
+                yield
+            finally:
+                server.serve = serve
+
+    def _answer(self, viser: Callable[[Any, Any], Any], connection: Any, request: Any) -> Any:
+        """Return the response to a request; None lets a websocket be opened."""
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        if not self._ours(hosts, origins, connection.local_address[1]):
+            return connection.respond(HTTPStatus.FORBIDDEN, _NOT_OURS)
+        path, _, query = request.path.partition("?")
+        given = parse_qs(query)
+        if not hmac.compare_digest(given.get("token", [""])[0].encode(), self._token.encode()):
+            return connection.respond(HTTPStatus.FORBIDDEN, _NO_TOKEN)
+        if path == "/" and "Upgrade" not in request.headers and "websocket" not in given:
+            response = connection.respond(HTTPStatus.FOUND, "")
+            response.headers["Location"] = f"/?{query}&websocket=ws://{hosts[0]}/?token={self._token}"
+        else:
+            response = viser(connection, request)
+        if response is not None:
+            response.headers.update(_HEADERS)
+        return response
+
+    def _ours(self, hosts: list[str], origins: list[str], port: int) -> bool:
+        """Return whether a request is to the address listened at, and from no other's page."""
+        if len(hosts) != 1 or any(origin.lower() != f"http://{hosts[0].lower()}" for origin in origins):
+            return False
+        names = {_bracketed(name) for name in self._names}
+        allowed = {f"{name}:{port}" for name in names} | (names if port == 80 else set())
+        return self._anywhere or hosts[0].lower() in allowed
+
+
+def _bracketed(name: str) -> str:
+    return f"[{name}]" if ":" in name else name
