@@ -24,7 +24,7 @@ def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     scenario = solution.scenario
     names = {*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names}
     assert names <= {text.get_text() for text in axes.texts}
-    assert solution.objective.words in figure.get_suptitle()
+    assert solution.objective.quantity.smallest in figure.get_suptitle()
     assert ("bits/s/Hz" in figure.get_suptitle()) == (name == "eavesdropper")
     picture = imread(write_figure_file(figure, tmp_path / f"{name}.png"))
     assert picture[..., :3].std() > 0.03

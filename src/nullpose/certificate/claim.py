@@ -18,6 +18,7 @@ from nullpose.certificate.pose_value import (
     smallest_ratio,
 )
 from nullpose.family import AxisField, Family
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Airframe
 
 __all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]
@@ -76,15 +77,10 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
         return f"pose: {fault}"
     value = smallest_ratio(family, position, axis)
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
-        what = _quantity(certificate)
+        quantity = Quantity.of(certificate.scenario)
+        what = "ratio" if quantity.is_rate else quantity.noun
         return f"pose: its smallest {what} is {float(value):.15g}, not {certificate.value:.15g}"
     return ""
-
-
-def _quantity(certificate: Certificate) -> str:
-    if certificate.scenario.objective == "secrecy-rate":
-        return "ratio"
-    return "margin" if certificate.scenario.has_margins else "SINR"
 
 
 def _place_fault(certificate: Certificate, family: Family, position: list[Fraction]) -> str:

@@ -7,6 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
+from nullpose.physics.quantity import Quantity
 from nullpose.schemes import RECORDS
 
 __all__ = ["sentence"]
@@ -23,7 +24,7 @@ def sentence(certificate: Certificate, leaves: int) -> str:
     axes = RECORDS[certificate.scheme].sentence(certificate.scenario, certificate.null_jammer)
     return (
         f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
-        f"{axes} gives every node {_quantity(certificate)} above {most}, and the stated pose "
+        f"{axes} gives every node {Quantity.of(certificate.scenario).one} above {most}, and the stated pose "
         f"gives every node {least} or more, which is within {near} of it; {leaves} leaves checked"
     )
 
@@ -33,12 +34,6 @@ def _left_out(certificate: Certificate) -> str:
     scenario = certificate.scenario
     words = [word for word, holds in (("errors", scenario.is_uncertain), ("array", scenario.array)) if holds]
     return f", its {' and '.join(words)} left out," if words else ""
-
-
-def _quantity(certificate: Certificate) -> str:
-    if certificate.scenario.objective == "secrecy-rate":
-        return "a secrecy rate"
-    return "a margin" if certificate.scenario.has_margins else "an SINR"
 
 
 def _places(certificate: Certificate) -> str:
@@ -53,7 +48,7 @@ def _places(certificate: Certificate) -> str:
 def _numbers(certificate: Certificate) -> tuple[str, str, str]:
     """Return bound, value and how near they are, in words."""
     bound, value = certificate.upper_bound, certificate.value
-    if certificate.scenario.objective == "secrecy-rate":
+    if Quantity.of(certificate.scenario).is_rate:
         most, least = (
             max(0.0, math.log2(bound) + 1e-12),
             max(0.0, math.log2(value * (1.0 - VALUE_RTOL)) - 1e-12),

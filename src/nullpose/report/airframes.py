@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from nullpose.physics.quantity import Quantity
 from nullpose.report.certainty import rigour_lines, short
-from nullpose.report.quantity import Quantity, bound_text
+from nullpose.report.quantity import bound_text
 from nullpose.report.tables import fixed, new_table
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult

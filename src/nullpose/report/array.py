@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nullpose.report.airframe import array_words
 from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import distance_m
-from nullpose.report.quantity import Quantity, bound_words, value_words
+from nullpose.report.quantity import bound_words, value_words
 from nullpose.report.requirements import requirement_words
 from nullpose.report.tables import binding_nodes, degrees_text, fixed, new_table, status_words
 from nullpose.scenario import Array
@@ -74,7 +74,7 @@ def _pose_table(solution: ArraySolution) -> Table:
 def _links_table(solution: ArraySolution) -> Table:
     from rich.markup import escape
 
-    scenario, quantity = solution.scenario, Quantity.named(solution.objective.name)
+    scenario, quantity = solution.scenario, solution.objective.quantity
     margins = quantity.noun != quantity.ratio
     columns = (*(["margin (dB)"] if margins else []), "SINR (dB)", "SINR", "distance (m)")
     table = new_table("Links", columns, first="node")

@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from nullpose.physics.quantity import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.comparison import Comparison
 from nullpose.report.geometry import null_angle_rad, tilt_rad
-from nullpose.report.quantity import Quantity, bound_text
+from nullpose.report.quantity import bound_text
 from nullpose.report.requirements import requirement_words
 from nullpose.report.tables import (
     azimuth_text,

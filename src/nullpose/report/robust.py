@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from nullpose.report.quantity import Quantity
+from nullpose.physics.quantity import Quantity
 from nullpose.report.tables import azimuth_text, count_words, degrees_text, fixed, new_table
 from nullpose.scenario import Scenario
 from nullpose.solve.robust import GuardedPose, RobustSolution

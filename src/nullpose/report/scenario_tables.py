@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nullpose.physics.quantity import Quantity
 from nullpose.report.airframe import airframe_words, array_words, reach_words
 from nullpose.report.frames import place_words
-from nullpose.report.quantity import Quantity
 from nullpose.report.summary import PointSummary, ScenarioSummary
 from nullpose.report.tables import new_table
 from nullpose.scenario import Airspace, NoFlyZone, Scenario

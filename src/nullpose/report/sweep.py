@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
-from nullpose.report.quantity import Quantity, bound_text
+from nullpose.report.quantity import bound_text
 from nullpose.report.tables import not_applicable_lines
 from nullpose.solve import Scheme, Status
 from nullpose.study import SweepRow, SweepTable
@@ -72,7 +72,7 @@ def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
 
 
 def _cell(row: SweepRow) -> str:
-    value = f"{Quantity.named(row.objective.name).in_unit(row.objective.value):.4f}"
+    value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
     if row.status != Status.GAP_NOT_REACHED or row.upper_bound is None:
         return value
     return f"{value}\nat most {bound_text(row.objective, 2)}"

@@ -10,7 +10,7 @@ from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, received_powe
 from nullpose.report.airframe import airframe_words
 from nullpose.report.frames import frame_rows
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
-from nullpose.report.quantity import Quantity, bound_words, value_words
+from nullpose.report.quantity import bound_words, value_words
 from nullpose.report.requirements import requirement_words
 from nullpose.solve import ArraySolution, Scheme, Solution
 
@@ -43,7 +43,7 @@ def binding_nodes(solution: Solution | ArraySolution) -> frozenset[str]:
     Args:
         solution: what was found.
     """
-    quantity = Quantity.named(solution.objective.name)
+    quantity = solution.objective.quantity
     smallest = min(map(quantity.at, solution.links))
     return frozenset(
         link.node for link in solution.links if quantity.at(link) <= smallest * (1.0 + BINDING_RTOL)
@@ -157,11 +157,11 @@ def solution_view(solution: Solution) -> RenderableType:
     lines = (bound_words(objective), status_words(solution), requirement_words(solution), solution.note)
     head.append("".join(f"\n{line}" for line in lines if line))
     parts: list[RenderableType] = [head, Text(), _pose_table(solution), _links_table(solution)]
-    if scenario.jammers and not objective.is_rate:
+    if scenario.jammers and not objective.quantity.is_rate:
         parts.append(_jammers_table(solution))
     if scenario.eavesdroppers:
         parts.append(_eavesdroppers_table(solution))
-    if scenario.jammers and objective.is_rate:
+    if scenario.jammers and objective.quantity.is_rate:
         parts.append(Text("Jamming does not depend on the pose; it is counted in the noise of the nodes."))
     return Group(*parts)
 
@@ -192,7 +192,7 @@ def _links_table(solution: Solution) -> Table:
     from rich.markup import escape
 
     scenario, pose = solution.scenario, solution.pose
-    quantity = Quantity.named(solution.objective.name)
+    quantity = solution.objective.quantity
     gains_db = to_db(antenna_gain(pose.position_m, pose.antenna_axis, scenario.node_positions_m))
     binding = binding_nodes(solution)
     own = _own_columns(solution)
@@ -221,7 +221,7 @@ def _links_table(solution: Solution) -> Table:
 def _own_columns(solution: Solution) -> dict[str, list[str]]:
     """Return the columns that only an objective other than the SINR has: heading and cells."""
     scenario, links = solution.scenario, solution.links
-    if solution.objective.is_rate:
+    if solution.objective.quantity.is_rate:
         columns = {"secrecy rate (bits/s/Hz)": [f"{link.secrecy_rate_bps_hz or 0.0:.6g}" for link in links]}
         if scenario.jammers or len(set(scenario.node_noise_w)) > 1:
             columns["noise (dBm)"] = [

@@ -109,7 +109,7 @@ class ArraySolution:
     @property
     def binding_node(self) -> str:
         """Name of the node with the smallest margin (the first, if several share it)."""
-        return min(self.links, key=lambda link: link.sinr if link.margin is None else link.margin).node
+        return min(self.links, key=self.objective.quantity.at).node
 
     def to_dict(self) -> dict[str, Any]:
         """Return the solution as plain data for JSON; a weight is [real part, imaginary part]."""

@@ -99,7 +99,7 @@ def verified(solution: Solution, on_progress: Callable[[int, int], None] | None 
 def _ratios(solution: Solution) -> tuple[float, float]:
     """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
     objective = solution.objective
-    if not objective.is_rate:
+    if not objective.quantity.is_rate:
         assert objective.upper_bound is not None
         return objective.value, objective.upper_bound
     pose = solution.pose

@@ -7,17 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from nullpose.physics import Link, to_db
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.rigour import Rigour, bound_above
 
 __all__ = ["Objective", "objective_of"]
-
-_WORDS = {
-    "min_sinr": "smallest SINR",
-    "min_margin": "smallest margin",
-    "min_secrecy_rate": "smallest secrecy rate",
-}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,14 +38,9 @@ class Objective:
     rigour: Rigour = Rigour.NONE
 
     @property
-    def is_rate(self) -> bool:
-        """Whether it is a rate in bits/s/Hz, and not a power ratio."""
-        return self.name == "min_secrecy_rate"
-
-    @property
-    def words(self) -> str:
-        """What the number is, in words."""
-        return _WORDS[self.name]
+    def quantity(self) -> Quantity:
+        """What the number is of, and its unit."""
+        return Quantity.named(self.name)
 
     def to_dict(self) -> dict[str, Any]:
         """Return value and bound as plain data for JSON; the decibels of a rate are None."""
@@ -74,30 +64,18 @@ def objective_of(scenario: Scenario, links: tuple[Link, ...], ratio_bound: float
     Raises:
         SolveError: the bound is below the value: a fault of nullpose.
     """
-    rigour = Rigour.NONE if ratio_bound is None else Rigour.FLOATING_POINT
-    if scenario.objective == "secrecy-rate":
-        rate = min(link.secrecy_rate_bps_hz or 0.0 for link in links)
-        bound = None
-        if ratio_bound is not None:
-            most = float(bound_above(2.0**rate, max(1.0, ratio_bound)))
-            bound = max(rate, math.log2(most))  # the logarithm is rounded
-        gap = None if bound is None else (bound - rate) / max(rate, LEAST_RATE_BPS_HZ)
-        return Objective(
-            name="min_secrecy_rate",
-            value=rate,
-            value_db=math.nan,
-            upper_bound=bound,
-            relative_gap=gap,
-            rigour=rigour,
-        )
-    name = "min_margin" if scenario.has_margins else "min_sinr"
-    value = min(link.sinr if link.margin is None else link.margin for link in links)
-    bound = None if ratio_bound is None else float(bound_above(value, ratio_bound))
+    quantity = Quantity.of(scenario)
+    value = quantity.least(links)
+    bound = gap = None
+    if ratio_bound is not None:
+        ratio = 2.0**value if quantity.is_rate else value
+        bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
+        gap = (bound - value) / (max(value, LEAST_RATE_BPS_HZ) if quantity.is_rate else value)
     return Objective(
-        name=name,
+        name=quantity.name,
         value=value,
-        value_db=float(to_db(value)),
+        value_db=math.nan if quantity.is_rate else float(to_db(value)),
         upper_bound=bound,
-        relative_gap=None if bound is None else bound / value - 1.0,
-        rigour=rigour,
+        relative_gap=gap,
+        rigour=Rigour.NONE if bound is None else Rigour.FLOATING_POINT,
     )

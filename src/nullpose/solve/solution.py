@@ -97,12 +97,7 @@ class Solution:
     @property
     def binding_node(self) -> str:
         """Name of the node that decides: least SINR, margin or rate (the first, if several share it)."""
-        return min(self.links, key=self._deciding).node
-
-    def _deciding(self, link: Link) -> float:
-        if self.objective.is_rate:
-            return link.secrecy_rate_bps_hz or 0.0
-        return link.sinr if link.margin is None else link.margin
+        return min(self.links, key=self.objective.quantity.at).node
 
     @property
     def rigour(self) -> Rigour:

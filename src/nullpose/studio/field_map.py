@@ -13,7 +13,7 @@ from nullpose.physics import (
     objective_value,
     to_db,
 )
-from nullpose.report.quantity import Quantity
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
 from nullpose.studio.events import Field, FieldMap

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from html import escape
 
 from nullpose.report.figures.style import CURVES
-from nullpose.report.quantity import Quantity
 from nullpose.schemes import Curve, Scheme
 from nullpose.studio.colours import css, scale_colour
 from nullpose.studio.events import PowerCurve
@@ -66,7 +65,7 @@ def power_plot_svg(
 def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
     lines: dict[str, list[tuple[float, float]]] = {}
     for row in curve.table.rows:
-        value = Quantity.named(row.objective.name).in_unit(row.objective.value)
+        value = row.objective.quantity.in_unit(row.objective.value)
         if math.isfinite(value):
             lines.setdefault(row.scheme, []).append((row.value, value))
     return {scheme: lines[scheme] for scheme in CURVES if scheme in lines}

@@ -9,6 +9,7 @@ from typing import Any
 
 from nullpose.errors import SolveError
 from nullpose.physics import Pose
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve import (
     NODE_LIMIT,
@@ -24,7 +25,6 @@ from nullpose.solve import (
 from nullpose.solve.limits import Limits
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust import guarantee, solve_robust
-from nullpose.solve.robust.solution import worth
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
 
 __all__ = ["TOLERANCE", "AirframeComparison", "AirframeResult", "Guaranteed", "compare_airframes"]
@@ -322,7 +322,7 @@ def _dipole_result(
 def _guaranteed(solution: Solution, limits: Limits | None, certify: bool) -> Guaranteed:
     """Return what the pose that was found guarantees, and the robust pose unless the work was interrupted."""
     scenario, pose = solution.scenario, solution.pose
-    nominal = worth(scenario, guarantee(scenario, pose.position_m, pose.antenna_axis).lower)
+    nominal = Quantity.of(scenario).of_ratio(guarantee(scenario, pose.position_m, pose.antenna_axis).lower)
     if limits is None:
         return Guaranteed(nominal_pose=nominal, robust_pose=None, upper_bound=None)
     robust = solve_robust(

@@ -62,7 +62,7 @@ class SweepRow:
     @property
     def upper_bound_db(self) -> float | None:
         """The same, dB; None for a rate, or if nothing is proved."""
-        if self.upper_bound is None or self.objective.is_rate:
+        if self.upper_bound is None or self.objective.quantity.is_rate:
             return None
         return float(to_db(self.upper_bound))
 

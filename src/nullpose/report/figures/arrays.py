@@ -79,7 +79,7 @@ def _view(solution: ArraySolution) -> View:
 
 def _title(solution: ArraySolution) -> str:
     objective = solution.objective
-    value = f"{objective.words} {objective.value_db:.2f} dB"
+    value = f"{objective.quantity.smallest} {objective.value_db:.2f} dB"
     yaw = f"yaw {math.degrees(solution.yaw_rad):.1f}°"
     words = f"{solution.label}: {value}, {yaw}".replace("-", "\N{MINUS SIGN}")
     return f"{plain_name(solution.scenario)}\n{words}".strip()

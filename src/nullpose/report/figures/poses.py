@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nullpose.physics import Pose
+from nullpose.physics.quantity import Quantity
 from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.scene import (
     ALONE,
@@ -23,7 +24,6 @@ from nullpose.report.figures.scene import (
 )
 from nullpose.report.figures.style import house_style
 from nullpose.report.geometry import null_angle_rad
-from nullpose.report.quantity import Quantity
 from nullpose.report.robust import error_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution
@@ -106,9 +106,9 @@ def plain_name(scenario: Scenario) -> str:
 
 
 def _value_words(objective: Objective) -> str:
-    if objective.is_rate:
-        return f"{objective.words} {objective.value:.3f} bits/s/Hz"
-    return f"{objective.words} {objective.value_db:.2f} dB".replace("-", _MINUS)
+    if objective.quantity.is_rate:
+        return f"{objective.quantity.smallest} {objective.value:.3f} bits/s/Hz"
+    return f"{objective.quantity.smallest} {objective.value_db:.2f} dB".replace("-", _MINUS)
 
 
 def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nullpose.physics.quantity import Quantity
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, GREY, Curve, house_style
-from nullpose.report.quantity import Quantity
 from nullpose.study import SweepRow, SweepTable
 
 if TYPE_CHECKING:
@@ -47,12 +47,12 @@ def quantity_of(table: SweepTable) -> Quantity:
 
 
 def _value(row: SweepRow) -> float:
-    return Quantity.named(row.objective.name).in_unit(row.objective.value)
+    return row.objective.quantity.in_unit(row.objective.value)
 
 
 def _bound(row: SweepRow) -> float | None:
     bound = row.objective.upper_bound
-    return None if bound is None else Quantity.named(row.objective.name).in_unit(bound)
+    return None if bound is None else row.objective.quantity.in_unit(bound)
 
 
 def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.report.quantity import Quantity
+from nullpose.physics.quantity import Quantity
 
 __all__ = ["count_of", "escaped", "listed", "number", "percent", "span", "with_interval", "with_unit"]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from nullpose.errors import OutputError, UsageError
+from nullpose.physics.quantity import Quantity
 from nullpose.report.figures.style import write_figure
-from nullpose.report.quantity import Quantity
 from nullpose.report.study.answer import answer_of
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of

@@ -12,6 +12,7 @@ import numpy as np
 
 from nullpose.physics import Pose
 from nullpose.physics.error_case import ErrorCase
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.proof import INTERRUPT
@@ -20,17 +21,7 @@ from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
 from nullpose.solve.solution import Stats, Status
 
-__all__ = ["GuardedPose", "RobustSolution", "worth"]
-
-
-def worth(scenario: Scenario, ratio: float) -> float:
-    """Return the objective's value for a smallest ratio: itself, or ``max(0, log2)`` of it for secrecy rates.
-
-    Args:
-        scenario: has the objective.
-        ratio: the smallest ratio.
-    """
-    return math.log2(max(1.0, ratio)) if scenario.objective == "secrecy-rate" else ratio
+__all__ = ["GuardedPose", "RobustSolution"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,17 +41,17 @@ class GuardedPose:
     @property
     def nominal(self) -> float:
         """The objective without errors: a power ratio, or bits/s/Hz."""
-        return worth(self.scenario, self.guarantee.nominal)
+        return Quantity.of(self.scenario).of_ratio(self.guarantee.nominal)
 
     @property
     def guaranteed(self) -> float:
         """A proved lower bound on the objective over all errors together."""
-        return worth(self.scenario, self.guarantee.lower)
+        return Quantity.of(self.scenario).of_ratio(self.guarantee.lower)
 
     @property
     def worst(self) -> float:
         """The objective in the worst case found; the smallest over all errors lies between the two."""
-        return worth(self.scenario, self.guarantee.worst)
+        return Quantity.of(self.scenario).of_ratio(self.guarantee.worst)
 
     @property
     def binding_node(self) -> str:
@@ -137,7 +128,7 @@ class RobustSolution:
         if self.upper_bound is None:
             return None
         guaranteed = self.robust.guaranteed
-        if self.scenario.objective == "secrecy-rate":
+        if Quantity.of(self.scenario).is_rate:
             return (self.upper_bound - guaranteed) / max(guaranteed, LEAST_RATE_BPS_HZ)
         return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
 

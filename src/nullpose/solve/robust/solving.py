@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from nullpose.family import AxisField
 from nullpose.physics import Pose
+from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits
@@ -15,7 +16,7 @@ from nullpose.solve.provenance import provenance
 from nullpose.solve.robust.exchange import Exchange
 from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
 from nullpose.solve.robust.inner import Inner
-from nullpose.solve.robust.solution import GuardedPose, RobustSolution, worth
+from nullpose.solve.robust.solution import GuardedPose, RobustSolution
 from nullpose.solve.solution import Stats, Status
 from nullpose.solve.warming import ready
 
@@ -79,7 +80,9 @@ def solve_robust(
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
     robust = _best(exchange)
-    upper_bound = None if exchange.upper_bound is None else worth(scenario, exchange.upper_bound)
+    upper_bound = (
+        None if exchange.upper_bound is None else Quantity.of(scenario).of_ratio(exchange.upper_bound)
+    )
     status, reason = _status(exchange, robust.guarantee.lower)
     return RobustSolution(
         scenario=scenario,
