@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from nullpose import Link, Scenario, load
-from nullpose.report.quantity import Quantity, bound_text, bound_words, value_words
+from nullpose.physics.quantity import Quantity
+from nullpose.report.quantity import bound_text, bound_words, value_words
 from nullpose.solve import Objective
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -2,7 +2,7 @@
 
 import math
 
-from nullpose.report.quantity import Quantity
+from nullpose.physics.quantity import Quantity
 from nullpose.report.study.wording import count_of, escaped, listed, number, percent, with_interval
 
 RATE = Quantity.named("min_secrecy_rate")

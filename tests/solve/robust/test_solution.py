@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from nullpose.physics.quantity import Quantity
 from nullpose.solve.robust import RobustSolution
-from nullpose.solve.robust.solution import worth
 
 
 def test_as_plain_data(solved: RobustSolution) -> None:
@@ -50,6 +50,6 @@ def test_the_answer_cannot_be_changed(solved: RobustSolution) -> None:
 
 def test_ratios_are_worth_a_rate_with_secrecy(paper: Callable, listened: Callable) -> None:
     """A ratio is worth itself, or with secrecy rates its logarithm to base 2, never below zero."""
-    assert worth(paper(1.0), 0.25) == 0.25
-    assert worth(listened(paper(1.0)), 8.0) == 3.0
-    assert worth(listened(paper(1.0)), 0.5) == 0.0
+    assert Quantity.of(paper(1.0)).of_ratio(0.25) == 0.25
+    assert Quantity.of(listened(paper(1.0))).of_ratio(8.0) == 3.0
+    assert Quantity.of(listened(paper(1.0))).of_ratio(0.5) == 0.0
