@@ -3,9 +3,11 @@
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nullpose.errors import ScenarioError
 from nullpose.family import Family, build_family
 from nullpose.physics.objective import margin, objective_value
 from nullpose.physics.secrecy import secrecy_rate
@@ -144,3 +146,42 @@ def test_the_sense_of_rotation_does_not_matter(random_scene: Callable) -> None:
     for name in ("zone_edges", "piece_sides"):
         rows, others = (np.unique(np.round(getattr(each, name), 9), axis=0) for each in (one, other))
         np.testing.assert_array_equal(rows, others)
+
+
+@pytest.mark.parametrize(
+    ("jammer", "path"),
+    [({"power_w": 1e18}, "jammers[1].power_w"), ({"power_dbm": 210.0}, "jammers[1].power_dbm")],
+)
+def test_jamming_beyond_arithmetic_is_refused(jammer: dict[str, float], path: str) -> None:
+    """A jammer so strong that rounding fills its null is refused by the path of its power."""
+    data = {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}],
+        "jammers": [
+            {"position_m": [30, 5, 4], "power_w": 1e15},
+            {"position_m": [17, 15, 4], **jammer},
+        ],
+    }
+    with pytest.raises(ScenarioError) as caught:
+        build_family(Scenario.from_dict(data))
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert "198 dB over the noise" in fault.message
+    assert "at most 180 dB" in fault.message
+    data["airspace"]["altitude_m"] = [300.0, 400.0]
+    build_family(Scenario.from_dict(data))
+
+
+def test_an_ear_beyond_arithmetic_is_refused() -> None:
+    """So is a transmitter that an eavesdropper hears so far above its noise."""
+    data = {
+        "objective": "secrecy-rate",
+        "transmitter": {"power_w": 1e10},
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0, 0, 0]}],
+        "eavesdroppers": [{"position_m": [17, 15, 4], "noise_w": 1e-30}],
+    }
+    with pytest.raises(ScenarioError, match=r"eavesdroppers\[0\]: got a signal 388 dB over the noise"):
+        build_family(Scenario.from_dict(data))

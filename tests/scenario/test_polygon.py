@@ -1,5 +1,8 @@
 """Simple polygons."""
 
+import time
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +11,7 @@ from matplotlib.path import Path
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace
-from nullpose.scenario.polygon import area_m2, depth_m
+from nullpose.scenario.polygon import MOST_CORNERS, area_m2, depth_m
 
 SEEDS = st.integers(0, 2**32 - 1)
 SQUARE = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
@@ -137,3 +140,31 @@ def test_what_is_no_polygon(vertices: object, path: str, words: str) -> None:
     (fault,) = caught.value.faults
     assert fault.path == path
     assert words in fault.message
+
+
+def test_as_many_corners_as_are_allowed_take_little() -> None:
+    """A star of 5,000 corners is judged in a few seconds and little memory, whole or with a crossing."""
+    count = MOST_CORNERS
+    angles = (np.arange(count) + np.random.default_rng(3).uniform(0.0, 0.9, count)) * 2.0 * np.pi / count
+    radii = np.random.default_rng(4).uniform(16.0, 40.0, count)
+    vertices = radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    crossed = vertices.copy()
+    crossed[2000] *= -1.0
+    tracemalloc.start()
+    began = time.process_time()
+    np.testing.assert_array_equal(accepted(vertices.tolist()), vertices)
+    with pytest.raises(ScenarioError, match="meets the one from"):
+        accepted(crossed.tolist())
+    depth_m(np.zeros((3000, 2)), vertices)
+    assert time.process_time() - began < 6.0
+    assert tracemalloc.get_traced_memory()[1] < 150e6
+    tracemalloc.stop()
+
+
+def test_more_corners_are_refused() -> None:
+    """A polygon of more corners is refused with how many it has and how many it may have."""
+    angles = np.arange(MOST_CORNERS + 1) * 2.0 * np.pi / (MOST_CORNERS + 1)
+    with pytest.raises(
+        ScenarioError, match="got a list of 5001 values, must be at most 5000 vertices; leave out"
+    ):
+        accepted(np.stack([np.cos(angles), np.sin(angles)], axis=1).tolist())

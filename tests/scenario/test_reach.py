@@ -1,6 +1,7 @@
 """Whether an airspace has room, and whether what is uncertain reaches into it."""
 
 import re
+import time
 from typing import Any
 
 import numpy as np
@@ -172,3 +173,32 @@ def test_parts_with_faults_of_their_own_are_not_judged() -> None:
     assert paths == ["airspace.altitude_m"]
     paths = [fault.path for fault in faults(jammer={"uncertainty_m": 9.0}, receiver={"position_error_m": -1})]
     assert paths == ["receiver.position_error_m", "jammers[0].uncertainty_m"]
+
+
+def ring(count: int, radius_m: float) -> list[list[float]]:
+    """Returns a polygon of many corners around the middle of the scene."""
+    angles = np.arange(count) * 2.0 * np.pi / count
+    return (radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1) + [5.0, 25.0]).tolist()
+
+
+def test_corners_are_counted_in_all() -> None:
+    """A fence and zones with too many corners together are refused; one corner less is accepted."""
+    zones = [{"polygon_m": ring(1200, 5.0 + size)} for size in range(4)]
+    assert not faults(
+        {"geofence_m": ring(199, 80.0), "no_fly": [*zones, {"centre_m": [0, 9], "radius_m": 1}]}
+    )
+    (fault,) = faults(
+        {"geofence_m": ring(200, 80.0), "no_fly": [*zones, {"centre_m": [0, 9], "radius_m": 1}]}
+    )
+    assert fault.path == "airspace"
+    assert "have 5001 corners, must be at most 5000 in all; leave out" in fault.message
+
+
+def test_intricate_airspaces_are_judged_quickly() -> None:
+    """Where room is hard to find among 5,000 corners, it is not looked for longer than some seconds."""
+    spikes = np.array(ring(4990, 40.0))
+    spikes[::2] = 0.5 * spikes[::2] + [2.5, 12.5]
+    walls = [{"x_m": [-60, 5], "y_m": [-60, 90]}, {"x_m": [5, 70], "y_m": [-60, 90]}]
+    began = time.process_time()
+    assert not faults({"geofence_m": spikes.tolist(), "no_fly": walls})
+    assert time.process_time() - began < 10.0

@@ -75,3 +75,100 @@ def test_a_domain_without_a_value_is_said(scene: Callable) -> None:
     point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
     with pytest.raises(SolveError, match="widen the airspace or reduce keep_out_m"):
         multistart(build_family(point), VERTICAL, seed=0)
+
+
+def rectangle(west: float, east: float, south: float, north: float) -> dict[str, object]:
+    """Returns a no-fly zone as a polygon."""
+    return {"polygon_m": [(west, south), (east, south), (east, north), (west, north)]}
+
+
+SQUARE = {"x_m": (0.0, 10.0), "y_m": (0.0, 40.0)}
+NARROW = {
+    "a fence two micrometres wide": {"geofence_m": [(0, 0), (40, 37), (40 - 2e-6, 37 + 2e-6), (-2e-6, 2e-6)]},
+    "a fence thin as a needle": {"geofence_m": [(0, 0), (40, 40), (40, 40 + 4e-6)]},
+    "a thin fence with a bend": {
+        "geofence_m": [(0, 0), (40, 0), (40, 40), (40 - 4e-6, 40), (40 - 4e-6, 4e-6), (0, 4e-6)]
+    },
+    "a range on the border of a fence": {
+        "x_m": (5.0, 5.0),
+        "geofence_m": rectangle(5, 10, 0, 40)["polygon_m"],
+    },
+    "a range that touches a fence": {"x_m": (0.0, 5.0), "geofence_m": rectangle(5, 10, 0, 40)["polygon_m"]},
+    "the corner of a fence": {
+        "x_m": (0.0, 5.0),
+        "y_m": (-4.0, 0.0),
+        "geofence_m": rectangle(5, 10, 0, 40)["polygon_m"],
+    },
+    "the tip of a fence": {"x_m": (5.0, 5.0), "geofence_m": [(5, 5), (20, 0), (20, 40)]},
+    "a wall between two zones": {**SQUARE, "no_fly": [rectangle(-5, 5, -5, 45), rectangle(5, 15, -5, 45)]},
+    "a gap between two zones": {
+        **SQUARE,
+        "no_fly": [rectangle(-5, 5, -5, 45), rectangle(5 + 2e-6, 15, -5, 45)],
+    },
+    "a floor between two zones": {
+        **SQUARE,
+        "no_fly": [
+            rectangle(-5, 15, -5, 45) | {"altitude_m": (0.0, 20.0)},
+            rectangle(-5, 15, -5, 45) | {"altitude_m": (20.0, 40.0)},
+        ],
+    },
+    "what a zone leaves of a fence": {
+        "geofence_m": rectangle(0, 10, 0, 40)["polygon_m"],
+        "no_fly": [rectangle(2e-6, 11, -1, 41)],
+    },
+    "the corner that a bent zone leaves of a fence": {
+        "geofence_m": rectangle(0, 10, 0, 40)["polygon_m"],
+        "no_fly": [{"polygon_m": [(2e-6, 0), (11, -1), (11, 41), (-1, 41), (-1, 2e-6)]}],
+    },
+    "the border of a fence that is a zone": {
+        "geofence_m": rectangle(0, 10, 0, 40)["polygon_m"],
+        "no_fly": [rectangle(0, 10, 0, 40)],
+    },
+    "the corners between a fence and a cylinder": {
+        "geofence_m": rectangle(-10, 10, -10, 10)["polygon_m"],
+        "no_fly": [{"centre_m": (0, 0), "radius_m": 14.142135}],
+    },
+    "a corner that a keep-out ball leaves": {
+        "x_m": (-5.0, 5.0),
+        "y_m": (-5.0, 5.0),
+        "altitude_m": (0.0, 5.0),
+        "keep_out_m": 8.660254,
+    },
+    "a point": {"x_m": (5.0, 5.0), "y_m": (5.0, 5.0), "altitude_m": (8.0, 8.0)},
+    "beside a zone without area": {**SQUARE, "no_fly": [{"x_m": (5.0, 5.0), "y_m": (0.0, 40.0)}]},
+}
+
+
+@pytest.mark.parametrize("airspace", NARROW.values(), ids=NARROW)
+def test_narrow_airspaces_are_found(airspace: dict[str, object], scene: Callable) -> None:
+    """However little an airspace leaves, a position in it or on its border is found, for any seed."""
+    narrow = scene([(0, 0, 0), (10, 40, 1)], [(17, 15, 4)], jammer_powers_w=10.0, **airspace)
+    family = build_family(narrow)
+    for field in (AxisField.free(), VERTICAL):
+        for seed in range(2):
+            found = multistart(family, field, seed=seed)
+            assert narrow.airspace.allows(found.position_m)
+            away_m = np.linalg.norm(family.points_m - found.position_m, axis=1)
+            assert np.all(away_m >= narrow.airspace.keep_out_m - 1e-9)
+            axis = found.axis / np.linalg.norm(found.axis)
+            assert found.log_value == pytest.approx(
+                math.log(np.min(sinr(narrow, found.position_m, axis))), abs=1e-9
+            )
+
+
+def test_a_sliver_is_searched_to_its_best(scene: Callable) -> None:
+    """In a fence two micrometres wide the value is that of a fence a millimetre wide, within what that is."""
+    ends = []
+    for width in (2e-6, 1e-3):
+        fence = [(0, 0), (40, 37), (40 - width, 37 + width), (-width, width)]
+        narrow = scene([(0, 0, 0), (10, 40, 1)], [(17, 15, 4)], jammer_powers_w=10.0, geofence_m=fence)
+        ends.append(multistart(build_family(narrow), AxisField.free(), seed=0).log_value)
+    assert ends[0] == pytest.approx(ends[1], abs=1e-3)
+
+
+def test_no_position_is_said(scene: Callable) -> None:
+    """Where nothing is allowed after all, that is said, not that no node is received."""
+    family = build_family(scene([(0, 0, 0), (10, 40, 1)], x_m=(-1.0, 1.0), y_m=(-1.0, 1.0)))
+    closed = dataclasses.replace(family, keep_out_points_m=np.array([[0.0, 0.0, 19.0]]), keep_out_m=50.0)
+    with pytest.raises(SolveError, match="no position was found in what the airspace leaves"):
+        multistart(closed, AxisField.free(), seed=0)

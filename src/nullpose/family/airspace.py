@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from nullpose.family.convex import convex_parts, hull_and_pockets
-from nullpose.family.ratios import FloatArray, IntArray
+from nullpose.family.ratios import Family, FloatArray, IntArray
 from nullpose.scenario import Airspace
+from nullpose.scenario.polygon import area_m2
 
-__all__ = ["Zones", "airspace_zones"]
+__all__ = ["Zones", "airspace_zones", "loosened"]
+
+_Zone: TypeAlias = tuple[int, FloatArray, float, float]  # kind, edges, lowest and highest altitude
 
 FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FENCE = 0, 1, 2
 
@@ -27,68 +31,79 @@ class Zones:
     zone_range_m: FloatArray
 
 
-class _Gathered:
-    """Zones and pieces as they are put together."""
-
-    def __init__(self) -> None:
-        self.pieces: list[FloatArray] = []
-        self.kinds: list[int] = []
-        self.edges: list[FloatArray] = []
-        self.ranges: list[tuple[float, float]] = []
-
-    def zone(self, kind: int, edges: FloatArray, low: float, high: float) -> None:
-        """Add a zone."""
-        self.kinds.append(kind)
-        self.edges.append(edges)
-        self.ranges.append((low, high))
-
-    def piece(self, sides: FloatArray, low: float = -np.inf, high: float = np.inf) -> None:
-        """Add a convex piece, with its floor and ceiling if it has them."""
-        ends = [(0.0, 0.0, 0.0, sign, sign * z) for sign, z in ((1.0, high), (-1.0, low)) if np.isfinite(z)]
-        self.pieces.append(np.vstack([sides, np.reshape(ends, (-1, 5))]))
-
-    def arrays(self) -> Zones:
-        """Return what was gathered."""
-        return Zones(
-            piece_start=_starts(self.pieces),
-            piece_sides=np.vstack([np.zeros((0, 5)), *self.pieces]),
-            zone_kind=np.array(self.kinds, dtype=np.int64),
-            zone_start=_starts(self.edges),
-            zone_edges=np.vstack([np.zeros((0, 4)), *self.edges]),
-            zone_range_m=np.reshape(self.ranges, (-1, 2)).astype(float),
-        )
-
-
 def airspace_zones(airspace: Airspace) -> Zones:
-    """Return an airspace's no-fly zones and geofence, those left out that its altitudes do not reach.
+    """Return an airspace's no-fly zones and geofence, without those out of reach or without an inside.
 
     Args:
         airspace: box, zones and fence.
     """
-    gathered = _Gathered()
+    zones: list[_Zone] = []
     lowest, highest = airspace.altitude_m
     for zone in airspace.no_fly:
-        if zone.floor_m >= highest or zone.ceiling_m <= lowest:
+        is_flat = zone.shape == "box" and not area_m2(zone.outline_m) > 0.0
+        if is_flat or zone.floor_m >= highest or zone.ceiling_m <= lowest:
             continue
-        low, high = zone.forbidden_range_m(airspace.altitude_m)
+        kind, edges = FORBIDDEN_POLYGON, _edges(zone.outline_m)
         if zone.centre_m is not None and zone.radius_m is not None:
-            x, y = zone.centre_m
-            gathered.zone(FORBIDDEN_CYLINDER, np.array([[x, y, zone.radius_m, 0.0]]), low, high)
-            gathered.piece(np.array([[1.0, x, y, 0.0, zone.radius_m]]), low, high)
-            continue
-        gathered.zone(FORBIDDEN_POLYGON, _edges(zone.outline_m), low, high)
-        for part in convex_parts(zone.outline_m):
-            gathered.piece(_outer_sides(part), low, high)
-    outline = airspace.geofence_outline_m
-    if len(outline):
-        gathered.zone(FENCE, _edges(outline), -np.inf, np.inf)
-        hull, pockets = hull_and_pockets(outline)
-        for side in _outer_sides(hull):
-            gathered.piece(np.concatenate([side[:1], -side[1:]])[None])
-        for pocket in pockets:
-            for part in convex_parts(pocket):
-                gathered.piece(_outer_sides(part))
-    return gathered.arrays()
+            kind, edges = FORBIDDEN_CYLINDER, np.array([[*zone.centre_m, zone.radius_m, 0.0]])
+        zones.append((kind, edges, *zone.forbidden_range_m(airspace.altitude_m)))
+    if len(airspace.geofence_outline_m):
+        zones.append((FENCE, _edges(airspace.geofence_outline_m), -np.inf, np.inf))
+    return _arrays(zones)
+
+
+def loosened(family: Family, by_m: float) -> Family:
+    """Return a family with its keep-out balls and zones smaller and its fence larger: walls get a width.
+
+    Args:
+        family: ratios and domain.
+        by_m: how far each border is moved, metres; much less than anything in the airspace is wide.
+    """
+    zones: list[_Zone] = []
+    for z, (kind, (low, high)) in enumerate(zip(family.zone_kind, family.zone_range_m, strict=True)):
+        edges = family.zone_edges[family.zone_start[z] : family.zone_start[z + 1]]
+        if kind == FORBIDDEN_CYLINDER:
+            edges = edges - [0.0, 0.0, by_m, 0.0]
+        else:
+            edges = _edges(_inset(edges[:, :2], -by_m if kind == FENCE else by_m))
+        zones.append((kind, edges, low + by_m, high - by_m))
+    arrays = _arrays(zones)
+    changed = {name: getattr(arrays, name) for name in arrays.__slots__}
+    return replace(family, keep_out_m=family.keep_out_m - by_m, **changed)
+
+
+def _arrays(zones: list[_Zone]) -> Zones:
+    pieces = [piece for zone in zones for piece in _pieces(*zone)]
+    edges = [edges for _, edges, _, _ in zones]
+    return Zones(
+        piece_start=_starts(pieces),
+        piece_sides=np.vstack([np.zeros((0, 5)), *pieces]),
+        zone_kind=np.array([zone[0] for zone in zones], dtype=np.int64),
+        zone_start=_starts(edges),
+        zone_edges=np.vstack([np.zeros((0, 4)), *edges]),
+        zone_range_m=np.reshape([zone[2:] for zone in zones], (-1, 2)).astype(float),
+    )
+
+
+def _pieces(kind: int, edges: FloatArray, low: float, high: float) -> list[FloatArray]:
+    """Return the sides of a zone's convex pieces, with its floor and ceiling if it has them."""
+    ends = [(0.0, 0.0, 0.0, sign, sign * z) for sign, z in ((1.0, high), (-1.0, low)) if np.isfinite(z)]
+    parts = [np.array([[1.0, *edges[0, :2], 0.0, edges[0, 2]]])]
+    if kind == FORBIDDEN_POLYGON:
+        parts = [_outer_sides(part) for part in convex_parts(edges[:, :2])]
+    elif kind == FENCE:
+        hull, pockets = hull_and_pockets(edges[:, :2])
+        parts = [_outer_sides(part) for pocket in pockets for part in convex_parts(pocket)]
+        parts = [*(_outer_sides(hull) * [1.0, -1.0, -1.0, -1.0, -1.0])[:, None], *parts]
+    return [np.vstack([part, np.reshape(ends, (-1, 5))]) for part in parts]
+
+
+def _inset(outline_m: FloatArray, by_m: float) -> FloatArray:
+    """Return a counter-clockwise polygon with its edges moved inwards; less at the sharpest corners."""
+    normal = _outer_sides(outline_m)[:, 1:3]
+    before = np.roll(normal, 1, axis=0)
+    bend = np.maximum(1.0 + np.sum(normal * before, axis=1, keepdims=True), 0.05)
+    return np.asarray(outline_m - by_m * (normal + before) / bend)
 
 
 def _starts(blocks: list[FloatArray]) -> IntArray:

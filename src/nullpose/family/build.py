@@ -6,11 +6,15 @@ from typing import Any
 
 import numpy as np
 
+from nullpose.errors import Fault, ScenarioError
 from nullpose.family.airspace import airspace_zones
 from nullpose.family.ratios import Family, FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["build_family", "domain_of"]
+__all__ = ["LOUDEST", "build_family", "domain_of"]
+
+LOUDEST = 1e18
+"""The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 
 
 def build_family(scenario: Scenario) -> Family:
@@ -23,9 +27,34 @@ def build_family(scenario: Scenario) -> Family:
 
     Args:
         scenario: what is stated.
+
+    Raises:
+        ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
     ratios = _secrecy_ratios(scenario) if scenario.objective == "secrecy-rate" else _sinr_ratios(scenario)
-    return Family(**ratios, **domain_of(scenario, ratios["points_m"]))
+    family = Family(**ratios, **domain_of(scenario, ratios["points_m"]))
+    _refuse_the_loudest(scenario, family)
+    return family
+
+
+def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
+    """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
+    points = family.points_m[family.denominator_point]
+    away = np.linalg.norm(points - np.clip(points, family.low_m, family.high_m), axis=1)
+    over_noise = family.denominator_weight / np.maximum(away, family.keep_out_m) ** 2
+    if not np.any(over_noise > LOUDEST):
+        return
+    index = int(np.argmax(over_noise))
+    path = f"eavesdroppers[{index}]"
+    if scenario.objective != "secrecy-rate":
+        key = "power_w" if scenario.jammers[index].power_w is not None else "power_dbm"
+        path = f"jammers[{index}].{key}"
+    message = (
+        f"got a signal {10.0 * np.log10(over_noise[index]):.0f} dB over the noise at the closest allowed "
+        f"position, must be at most {10.0 * np.log10(LOUDEST):.0f} dB: beyond that rounding fills the null; "
+        "make the transmit power smaller, the noise greater or the distance longer"
+    )
+    raise ScenarioError([Fault(path, message)])
 
 
 def _sinr_ratios(scenario: Scenario) -> dict[str, Any]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from heapq import heapify, heappop, heappush
+
 import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.family.ratios import FloatArray
 
 __all__ = ["convex_parts", "hull_and_pockets"]
+
+_NEXT = [1, 2, 0]  # the corners after the three of a triangle
 
 
 def convex_parts(outline_m: FloatArray) -> list[FloatArray]:
@@ -19,16 +24,27 @@ def convex_parts(outline_m: FloatArray) -> list[FloatArray]:
     """
     if np.all(_turns(outline_m) >= 0.0):
         return [outline_m]
-    left = list(range(len(outline_m)))
+    every = np.arange(len(outline_m))
+    before, after = np.roll(every, 1).tolist(), np.roll(every, -1).tolist()
+    inward = _turns(outline_m) <= 0.0  # if an ear holds any vertex, it holds one of these
+    corners = list(zip(every.tolist(), after, before, strict=True))
+    widest = list(zip(-_smallest_angle(outline_m[np.array(corners)]), corners, strict=True))
+    heapify(widest)
     parts: list[FloatArray] = []
-    while len(left) > 3:
-        ears = [i for i in range(len(left)) if _is_ear(outline_m, left, i)]
-        if not ears:  # only where vertices coincide to rounding: what is left has no area
-            break
-        best = max(ears, key=lambda i: _smallest_angle(outline_m[_corner(left, i)]))
-        parts.append(outline_m[_corner(left, best)])
-        left.pop(best)
-    return [*parts, outline_m[left]] if len(left) == 3 else parts
+    while widest and len(parts) < len(outline_m) - 2:
+        corner = heappop(widest)[1]
+        i, last, first = corner
+        if (after[i], before[i]) != (last, first) or not _is_ear(outline_m, corner, inward):
+            continue
+        parts.append(outline_m[list(corner)])
+        after[i] = before[i] = -1
+        after[first], before[last] = last, first
+        corners = [(k, after[k], before[k]) for k in (first, last)]  # no other vertex becomes an ear by this
+        inward[[first, last]] = _turn(outline_m[corners]) <= 0.0
+        if len(parts) < len(outline_m) - 2:
+            for each in zip((-_smallest_angle(outline_m[corners])).tolist(), corners, strict=True):
+                heappush(widest, each)
+    return parts
 
 
 def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
@@ -50,10 +66,6 @@ def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray
     return outline_m[on_hull], pockets
 
 
-def _corner(left: list[int], i: int) -> list[int]:
-    return [left[i - 1], left[i], left[(i + 1) % len(left)]]
-
-
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
@@ -63,20 +75,28 @@ def _turns(outline_m: FloatArray) -> FloatArray:
     return _cross(before, np.roll(before, -1, axis=0))
 
 
-def _is_ear(outline_m: FloatArray, left: list[int], i: int) -> bool:
-    corner = _corner(left, i)
-    a, b, c = outline_m[corner]
-    if not _cross(b - a, c - b) > 0.0:
+def _turn(corners_m: FloatArray) -> FloatArray:
+    """Return twice the areas of triangles, (..., 3, 2), negative where they are clockwise."""
+    a, b, c = np.moveaxis(corners_m, -2, 0)
+    return _cross(b - a, c - b)
+
+
+def _is_ear(outline_m: FloatArray, corner: tuple[int, int, int], inward: NDArray[np.bool_]) -> bool:
+    corner_m = outline_m[list(corner)]
+    if not _turn(corner_m) > 0.0:
         return False
-    others = outline_m[[k for k in left if k not in corner]]
-    sides = [_cross(end - start, others - start) for start, end in ((a, b), (b, c), (c, a))]
-    return not np.any(np.min(sides, axis=0) >= 0.0)
+    x, (west, east) = outline_m[:, 0], (corner_m[:, 0].min(), corner_m[:, 0].max())
+    others = inward & (x >= west) & (x <= east)
+    others[list(corner)] = False
+    sides, ways = corner_m[_NEXT] - corner_m, outline_m[others] - corner_m[:, None]
+    return not np.any(np.min(_cross(sides[:, None], ways), axis=0) >= 0.0)
 
 
-def _smallest_angle(corner_m: FloatArray) -> float:
-    ways = np.roll(corner_m, -1, axis=0) - corner_m
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    return float(np.min(_cross(ways, np.roll(ways, -1, axis=0))))
+def _smallest_angle(corners_m: FloatArray) -> FloatArray:
+    """Return the sines of the smallest angles of triangles, (..., 3, 2), or what is least of the three."""
+    ways = corners_m[..., _NEXT, :] - corners_m
+    ways /= np.linalg.norm(ways, axis=-1)[..., None]
+    return np.asarray(np.min(_cross(ways, ways[..., _NEXT, :]), axis=-1))
 
 
 def _hull(outline_m: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
 from nullpose.scenario.names import is_unnamed, named
 from nullpose.scenario.no_fly import NoFlyZone
+from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.reach import Known, has_any_room, reach_faults
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import ErrorMetres, Position
@@ -63,6 +64,14 @@ def cross_faults(data: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
     yield from _array_on_a_tilting_vehicle(data)
     airspace = _table(Airspace, data.get("airspace"))
     if airspace is None:
+        return
+    corners = sum(max(1, len(zone.outline_m)) for zone in airspace.no_fly) + len(airspace.geofence_outline_m)
+    if corners > MOST_CORNERS:
+        yield (
+            ("airspace",),
+            f"its geofence and no-fly zones have {corners} corners, must be at most {MOST_CORNERS} in all; "
+            "leave out those that change the areas least",
+        )
         return
     known = [_known(point) for point in points if point.position_m]
     if has_any_room(airspace, known):

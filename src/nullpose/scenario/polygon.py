@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,12 +16,16 @@ from nullpose.scenario.faults import rejection
 from nullpose.scenario.units import PlanePoint
 from nullpose.scenario.wording import described, plain
 
-__all__ = ["Polygon", "area_m2", "depth_m"]
+__all__ = ["MOST_CORNERS", "Polygon", "area_m2", "depth_m"]
 
 Array = NDArray[np.float64]
 
+MOST_CORNERS = 5000
+"""Vertices of a polygon, and of all that an airspace has: more take too long to check and to cut."""
 _APART_M = 1e-6
 """Vertices and edges closer than this meet [m]."""
+_MOST_AT_ONCE = 1_000_000  # coordinates of points times vertices, for the memory that it takes
+_BATCH = 64  # edges compared with all others together, likewise
 
 
 def area_m2(vertices_m: Array) -> float:
@@ -44,6 +50,9 @@ def depth_m(points_m: Array, vertices_m: Array) -> Array:
     Returns:
         Array of shape ``(...)``.
     """
+    if points_m.size > 2 and points_m.size * len(vertices_m) > _MOST_AT_ONCE:
+        parts = np.array_split(points_m.reshape(-1, 2), 2)
+        return np.concatenate([depth_m(part, vertices_m) for part in parts]).reshape(points_m.shape[:-1])
     start, end = vertices_m, np.roll(vertices_m, -1, axis=0)
     points = points_m[..., None, :]
     distance = _distance_m(points, start, end).min(axis=-1)
@@ -65,21 +74,25 @@ def _distance_m(points: Array, start: Array, end: Array) -> Array:
     return np.asarray(np.linalg.norm(points - nearest, axis=-1))
 
 
-def _fault(vertices_m: Array) -> str:
+@lru_cache(maxsize=64)  # a scenario reads its polygons more than once
+def _fault(vertices: tuple[tuple[float, float], ...]) -> str:
     """Returns what keeps a chain of vertices from bounding one area, or an empty text."""
-    count = len(vertices_m)
-    apart = np.linalg.norm(vertices_m[:, None] - vertices_m, axis=-1) + np.where(np.eye(count), np.inf, 0.0)
-    if (apart < _APART_M).any():
-        later, earlier = np.argwhere(np.tril(apart < _APART_M))[0]
-        closes = (earlier, later) == (0, count - 1)
-        remedy = "remove it, the last vertex is joined to the first" if closes else "give every vertex once"
-        return f"vertex [{later}] repeats vertex [{earlier}]; {remedy}"
+    count, vertices_m = len(vertices), np.asarray(vertices)
+    for one, other in _near(vertices_m, vertices_m):
+        same = np.linalg.norm(vertices_m[one] - vertices_m[other], axis=-1) < _APART_M
+        if same.any():
+            earlier, later = one[same.argmax()], other[same.argmax()]
+            closes = (earlier, later) == (0, count - 1)
+            remedy = (
+                "remove it, the last vertex is joined to the first" if closes else "give every vertex once"
+            )
+            return f"vertex [{later}] repeats vertex [{earlier}]; {remedy}"
     met = _first_meeting(vertices_m)
     if met:
-        one, other = met
+        first, second = met
         return (
-            f"the edge from vertex [{one}] to [{(one + 1) % count}] meets the one from [{other}] to "
-            f"[{(other + 1) % count}], so the border crosses or touches itself; list the vertices in order "
+            f"the edge from vertex [{first}] to [{(first + 1) % count}] meets the one from [{second}] to "
+            f"[{(second + 1) % count}], so the border crosses or touches itself; list the vertices in order "
             "around the area"
         )
     if abs(area_m2(vertices_m)) < _APART_M**2:
@@ -93,40 +106,58 @@ def _first_meeting(vertices: Array) -> tuple[int, int] | None:
     if count == 3:
         return None
     ends = np.roll(vertices, -1, axis=0)
-    for one in range(count - 1):
-        others = np.arange(one + 1, count)
-        start, end = vertices[others], ends[others]
-        crossing = _crosses(vertices[one], ends[one], start, end)
-        touching = np.minimum(
-            np.minimum(_distance_m(vertices[one], start, end), _distance_m(ends[one], start, end)),
-            np.minimum(
-                _distance_m(start, vertices[one], ends[one]), _distance_m(end, vertices[one], ends[one])
-            ),
+    for one, other in _near(np.minimum(vertices, ends), np.maximum(vertices, ends)):
+        p, q, start, end = vertices[one], ends[one], vertices[other], ends[other]
+        met = ~(_beside(p, q, start, end) | _beside(start, end, p, q))
+        p, q, start, end = p[met], q[met], start[met], end[met]
+        met[met] = (
+            _crosses(p, q, start, end)
+            | (np.min([_distance_m(p, start, end), _distance_m(q, start, end)], axis=0) < _APART_M)
+            | (np.min([_distance_m(start, p, q), _distance_m(end, p, q)], axis=0) < _APART_M)
         )
-        met = crossing | (touching < _APART_M)
-        met[0] = _folds(vertices[one], ends[one], ends[one + 1])
-        if one == 0:
-            met[-1] = _folds(vertices[-1], vertices[0], vertices[1])
+        follows, closes = other == one + 1, other - one == count - 1
+        met[follows] = _folds(vertices[one[follows]], ends[one[follows]], ends[other[follows]])
+        met[closes] = _folds(vertices[-1:], vertices[:1], vertices[1:2])
         if met.any():
-            return one, int(others[met.argmax()])
+            return int(one[met.argmax()]), int(other[met.argmax()])
     return None
+
+
+def _near(low: Array, high: Array) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """Yields the pairs of rectangles that overlap or nearly do, in order, in batches."""
+    (left, bottom), (right, top) = low.T - _APART_M, high.T.copy()
+    for first in range(0, len(low), _BATCH):
+        some, later = np.s_[first : first + _BATCH, None], np.s_[first:]
+        near = (left[some] <= right[later]) & (right[some] >= left[later])
+        near &= (bottom[some] <= top[later]) & (top[some] >= bottom[later])
+        one, other = np.nonzero(np.triu(near, 1))
+        yield one + first, other + first
+
+
+def _left(a: Array, b: Array, c: Array) -> Array:
+    """Returns how far a point c is to the left of a line ab, times the length from a to b."""
+    ab, ac = b - a, c - a
+    return np.asarray(ab[..., 0] * ac[..., 1] - ab[..., 1] * ac[..., 0])
+
+
+def _beside(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
+    """Returns which segments lie on one side of the line pq, and not near it."""
+    near = _APART_M * np.linalg.norm(q - p, axis=-1)
+    sides = np.stack([_left(p, q, start), _left(p, q, end)])
+    return np.asarray((sides > near).all(axis=0) | (sides < -near).all(axis=0))
 
 
 def _crosses(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     """Returns which segments run from one side of segment pq to the other, and it of theirs."""
-
-    def side(a: Array, b: Array, c: Array) -> Array:
-        ab, ac = b - a, c - a
-        return np.sign(ab[..., 0] * ac[..., 1] - ab[..., 1] * ac[..., 0])
-
-    return np.asarray(
-        (side(p, q, start) * side(p, q, end) < 0) & (side(start, end, p) * side(start, end, q) < 0)
-    )
+    theirs = np.sign(_left(p, q, start)) * np.sign(_left(p, q, end))
+    its = np.sign(_left(start, end, p)) * np.sign(_left(start, end, q))
+    return np.asarray((theirs < 0) & (its < 0))
 
 
-def _folds(before: Array, corner: Array, after: Array) -> bool:
-    """Returns whether the edge after a corner runs back along the edge before it."""
-    return bool(min(_distance_m(after, before, corner), _distance_m(before, corner, after)) < _APART_M)
+def _folds(before: Array, corner: Array, after: Array) -> NDArray[np.bool_]:
+    """Returns at which corners the edge after it runs back along the edge before it."""
+    backs = np.minimum(_distance_m(after, before, corner), _distance_m(before, corner, after))
+    return np.asarray(backs < _APART_M)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,12 +168,17 @@ class _Outline:
         value = plain(value)
         if not isinstance(value, list | tuple):
             raise rejection(f"got {described(value)}, must be a list of at least three vertices [x, y] in m")
+        if len(value) > MOST_CORNERS:
+            raise rejection(
+                f"got {described(value)}, must be at most {MOST_CORNERS} vertices; leave out "
+                "those that change the area least"
+            )
         if len(value) < 3:
             raise rejection(f"got {described(value)}, must be at least three vertices [x, y] in m")
         return list(value)
 
     def judge(self, vertices: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        fault = _fault(np.asarray(vertices))
+        fault = _fault(vertices)
         if fault:
             raise rejection(fault)
         return vertices
@@ -154,7 +190,7 @@ class _Outline:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        return {"type": "array", "items": handler(schema)["items"], "minItems": 3}
+        return {"type": "array", "items": handler(schema)["items"], "minItems": 3, "maxItems": MOST_CORNERS}
 
 
 Polygon = Annotated[tuple[PlanePoint, ...], _Outline()]

@@ -13,7 +13,6 @@ __all__ = ["Search", "find_position"]
 Array = NDArray[np.float64]
 
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
-_MOST_PARTS = 60_000
 _BATCH = 256
 
 
@@ -30,7 +29,9 @@ class Search:
     settled: bool
 
 
-def find_position(lower_m: Array, upper_m: Array, clearance_m: Callable[[Array], Array]) -> Search:
+def find_position(
+    lower_m: Array, upper_m: Array, clearance_m: Callable[[Array], Array], most_parts: int = 60_000
+) -> Search:
     """Returns a position in a box at which a clearance is not negative, or that there is none.
 
     A clearance may change by no more than the distance gone (distances from sets do, and the least of
@@ -41,6 +42,7 @@ def find_position(lower_m: Array, upper_m: Array, clearance_m: Callable[[Array],
         lower_m: lower corner of the box [m], (3,), finite.
         upper_m: upper corner [m], (3,), finite.
         clearance_m: from positions [m], (n, 3), to clearances [m], (n,).
+        most_parts: parts that are looked at before it gives up.
     """
     if (lower_m > upper_m).any():
         return Search(None, settled=True)
@@ -59,7 +61,7 @@ def find_position(lower_m: Array, upper_m: Array, clearance_m: Callable[[Array],
         best = int(clearances.argmax())
         if halves[best].max() <= smallest_m:
             return Search(middles[best], settled=True)
-        if looked_at > _MOST_PARTS:
+        if looked_at > most_parts:
             return Search(None, settled=False)
         order = np.argsort(-clearances)
         chosen, rest = order[:_BATCH], order[_BATCH:]

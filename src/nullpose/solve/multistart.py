@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
+from nullpose.family.airspace import loosened
 from nullpose.solve.found import Found
 from nullpose.solve.warming import warm_kernels
 
@@ -25,6 +26,14 @@ CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
 _CLIMB_STEPS = 300
 _SAME = 1e-12
 _PAIRED = 4  # interferers whose lines are looked at
+_BORDER_M = 4e-10  # less than what counts as on a border
+NO_POSITION = (
+    "no position was found in what the airspace leaves, which is very small or narrow; widen the airspace or "
+    "the gaps between zones, or reduce keep_out_m"
+)
+NOT_RECEIVED = (
+    "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +81,12 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     return np.vstack([over, *beside])
 
 
+def _corners(family: Family, most: int = 1000) -> FloatArray:
+    """Return corners of zones and fence on the lowest and the highest altitude, (m, 3)."""
+    corners = family.zone_edges[:: 1 + 2 * len(family.zone_edges) // most, :2]
+    return np.vstack([np.insert(corners, 2, end[2], axis=1) for end in (family.low_m, family.high_m)])
+
+
 @cache
 def shift_of(seed: int) -> FloatArray:
     """Return the offset of the low-discrepancy sequence, (3,), that a seed stands for.
@@ -105,30 +120,34 @@ def multistart(
     warm_kernels(family, axis_field)
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
     multipliers = np.empty(len(family.numerator_point))
-    shift = shift_of(seed)
-    log_value, starts, evaluations = search(
-        family.arrays,
-        family.domain,
-        axis_field.arrays,
-        landmarks(family),
-        shift,
-        settings.coarse,
-        settings.polished,
-        settings.rounds,
-        settings.patience,
-        position_m,
-        axis,
-        multipliers,
-    )
-    if not math.isfinite(log_value):
-        raise SolveError(
-            "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
+    shift, domain = shift_of(seed), family.domain
+    places = landmarks(family)
+    for attempt in range(2):
+        if attempt == 1:  # what is allowed may be of no width: a point, a line or a wall
+            domain, places = loosened(family, _BORDER_M).domain, np.vstack([places, _corners(family)])
+        log_value, starts, evaluations = search(
+            family.arrays,
+            domain,
+            axis_field.arrays,
+            places,
+            shift,
+            settings.coarse,
+            settings.polished,
+            settings.rounds,
+            settings.patience,
+            position_m,
+            axis,
+            multipliers,
         )
+        if math.isfinite(log_value):
+            break
+    else:
+        raise SolveError(NOT_RECEIVED if evaluations else NO_POSITION)
     for mu in CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
         before = log_value
         log_value, steps = polish(
             family.arrays,
-            family.domain,
+            domain,
             axis_field.arrays,
             position_m,
             axis,

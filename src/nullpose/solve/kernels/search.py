@@ -27,6 +27,9 @@ _MAX_STEPS = 100
 _SAME = 1e-9
 _ROUGH = 1e-2
 _STEP = 1e-3  # m beyond a forbidden piece's side
+_SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
+_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most turns: where what is allowed is a sliver
+_TURNS = (8, 32, 32, 32)
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -46,7 +49,7 @@ def cut_box(family, low, high, level, box_low, box_high):
 
 
 @inner_heap_kernel
-def step_outside(p, domain, chosen):
+def step_outside(p, domain, step, chosen):
     """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
     low, high, start, sides = domain[0], domain[1], domain[4], domain[5]
     clear = True
@@ -65,11 +68,11 @@ def step_outside(p, domain, chosen):
             if side[0] == 0.0:
                 away = side_slack(side, p)
                 for i in range(3):
-                    q[i] += (_STEP - away) * side[1 + i]
+                    q[i] += (step - away) * side[1 + i]
             else:
                 d = math.hypot(p[0] - side[1], p[1] - side[2])
                 x, y = ((p[0] - side[1]) / d, (p[1] - side[2]) / d) if d > 1e-9 else (1.0, 0.0)
-                q[0], q[1] = side[1] + x * (side[4] + _STEP), side[2] + y * (side[4] + _STEP)
+                q[0], q[1] = side[1] + x * (side[4] + step), side[2] + y * (side[4] + step)
             inside = True
             moved = 0.0
             for i in range(3):
@@ -87,13 +90,24 @@ def step_outside(p, domain, chosen):
 @heap_kernel
 def push_out(p, domain):
     """Move a position into the box and out of keep-out balls and forbidden pieces; return whether it is."""
-    low, high, keep_points, keep_radius = domain[:4]
+    start = p.copy()
     chosen = np.empty(domain[4].shape[0] - 1, np.int64)
+    for attempt in range(len(_FINER)):
+        copy_into(start, p)
+        if push_by(p, domain, _FINER[attempt], _TURNS[attempt], chosen):
+            return True
+    return False
+
+
+@inner_kernel
+def push_by(p, domain, share, turns, chosen):
+    """Do what ``push_out`` does, by a share of the usual steps; return whether it came to an end."""
+    low, high, keep_points, keep_radius = domain[:4]
     for i in range(3):
         p[i] = min(max(p[i], low[i]), high[i])
-    margin = 1.01 * keep_radius
-    for _ in range(8):
-        clear = step_outside(p, domain, chosen)
+    margin = (1.0 + share * _SPARE) * keep_radius
+    for _ in range(turns):
+        clear = step_outside(p, domain, share * _STEP, chosen)
         for q in range(keep_points.shape[0]):
             d = 0.0
             for i in range(3):
@@ -106,7 +120,8 @@ def push_out(p, domain):
                     way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else 0.0
                     if d <= 1e-9 and i == (2 if rises else 0):
                         way = 1.0
-                    p[i] = min(max(keep_points[q, i] + way * 1.02 * margin, low[i]), high[i])
+                    pushed = keep_points[q, i] + way * (1.0 + 2.0 * share * _SPARE) * margin
+                    p[i] = min(max(pushed, low[i]), high[i])
         if clear:
             return True
     return False
