@@ -17,6 +17,7 @@ Process = Callable[..., subprocess.CompletedProcess[str]]
 PROOF = {"--gap", "--time-limit", "--node-limit", "--fast"}
 VERBS = {
     "solve": {
+        "--allow-outside",
         "--scheme",
         "--set",
         "--seed",
@@ -29,8 +30,9 @@ VERBS = {
         "--json",
     }
     | PROOF,
-    "compare": {"--set", "--airframes", "--figure", "--seed", "--json"} | PROOF,
+    "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"} | PROOF,
     "sweep": {
+        "--allow-outside",
         "--set",
         "--from",
         "--to",
@@ -45,7 +47,7 @@ VERBS = {
     | PROOF,
     "verify": {"--json"},
     "reproduce": {"--out", "--seed", "--json"},
-    "check": {"--set", "--json"},
+    "check": {"--set", "--allow-outside", "--json"},
     "schema": set(),
 }
 

@@ -10,9 +10,10 @@ import typer
 
 from nullpose.cli.array import refuse_with_array, solve_with_array
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.figure import prepare_figure, write_figure
+from nullpose.cli.figure import prepare_outputs, write_figure
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
+    AllowOutside,
     CombiningName,
     Fast,
     Gap,
@@ -41,6 +42,7 @@ def solve(
         SchemeName, typer.Option("--scheme", help="How the pose is chosen.")
     ] = SchemeName.OPTIMUM,
     overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
@@ -101,7 +103,8 @@ def solve(
     """Find the best pose for a scenario, and prove how far from the best of all it can be."""
     from nullpose.scenario import apply_overrides, load
 
-    scenario = apply_overrides(load(file), overrides or [])
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
     special = {
         "scheme": scheme if scheme is not SchemeName.OPTIMUM else None,
         "null_jammer": null_jammer,
@@ -123,7 +126,6 @@ def solve(
     from nullpose.report.export import require_origin, write_geojson
     from nullpose.solve import certificate_of, default_gap_of
     from nullpose.solve import solve as solve_scenario
-    from nullpose.study import prepare_folder
 
     if combining is not None:
         raise UsageError("--combining: given for a scenario without an [array]; add one, or leave it out")
@@ -131,8 +133,6 @@ def solve(
         raise UsageError("--certificate: given with --fast, which proves nothing; leave out one of the two")
     if geojson is not None:
         require_origin(scenario)
-        prepare_folder(geojson.parent)
-    prepare_figure(figure)
     target = default_gap_of(scenario) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
-from nullpose.study import prepare_folder, replacing
+from nullpose.files import prepare_folder, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
