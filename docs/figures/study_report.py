@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from nullpose.files import write_text
 from nullpose.report.study import report_study
 from nullpose.report.study.tables import gain_table, share_table
-from nullpose.study import write_text
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"

@@ -17,6 +17,9 @@ __all__ = [
 ]
 
 
+_MOST_TOLD = 20  # faults in a message
+
+
 class NullposeError(Exception):
     """Root of everything that nullpose raises on purpose."""
 
@@ -38,7 +41,7 @@ class Fault:
 
 
 class ScenarioError(NullposeError, ValueError):
-    """A scenario that cannot be used; it lists every fault, not only the first.
+    """A scenario that cannot be used; it lists every fault, not only the first, and tells the first 20.
 
     Args:
         faults: everything that is wrong, in the order of the input.
@@ -48,9 +51,11 @@ class ScenarioError(NullposeError, ValueError):
     def __init__(self, faults: Sequence[Fault], source: str = "") -> None:
         self.faults = tuple(faults)
         self.source = source
-        lines = [str(fault) for fault in self.faults]
+        lines = [str(fault) for fault in self.faults[:_MOST_TOLD]]
+        if len(self.faults) > len(lines):
+            lines.append(f"... and {len(self.faults) - len(lines)} more")
         if source:
-            count = "1 fault" if len(lines) == 1 else f"{len(lines)} faults"
+            count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
             lines = [f"{source}: {count}", *(f"  {line}" for line in lines)]
         super().__init__("\n".join(lines))
 

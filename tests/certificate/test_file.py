@@ -357,7 +357,7 @@ def test_a_faulty_scenario_names_the_file(data: Data, tmp_path: Path) -> None:
 def test_a_file_that_cannot_be_written_is_told(certificate: Certificate, tmp_path: Path) -> None:
     """A folder in the way, or none to write to, is an OutputError."""
     for path in (tmp_path, tmp_path / "missing" / "proof.json"):
-        with pytest.raises(OutputError, match="cannot be written"):
+        with pytest.raises(OutputError, match="cannot write"):
             write_certificate(certificate, path)
 
 

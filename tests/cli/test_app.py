@@ -15,6 +15,7 @@ Process = Callable[..., subprocess.CompletedProcess[str]]
 PROOF = {"--gap", "--time-limit", "--node-limit", "--fast"}
 VERBS = {
     "solve": {
+        "--allow-outside",
         "--scheme",
         "--set",
         "--seed",
@@ -28,8 +29,9 @@ VERBS = {
         "--json",
     }
     | PROOF,
-    "compare": {"--set", "--airframes", "--figure", "--seed", "--json"} | PROOF,
+    "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"} | PROOF,
     "sweep": {
+        "--allow-outside",
         "--set",
         "--from",
         "--to",
@@ -44,7 +46,7 @@ VERBS = {
     | PROOF,
     "verify": {"--scenario", "--json"},
     "reproduce": {"--out", "--seed", "--json"},
-    "check": {"--set", "--json"},
+    "check": {"--set", "--allow-outside", "--json"},
     "schema": set(),
 }
 

@@ -61,7 +61,7 @@ def test_a_proof_is_verified_in_one_go(run: Run, paper: str) -> None:
 
 
 def test_without_a_proof_there_is_no_certificate(run: Run, paper: str, tmp_path: Path) -> None:
-    """--fast, a scheme without a proof and a folder that is not there are bad input; nothing is written."""
+    """--fast, a scheme without a proof and a file for a folder are bad input; nothing is written."""
     path = tmp_path / "proof.json"
     result = run("solve", paper, "--fast", "--certificate", path)
     assert (result.exit_code, result.stdout) == (2, "")
@@ -70,6 +70,7 @@ def test_without_a_proof_there_is_no_certificate(run: Run, paper: str, tmp_path:
     assert result.exit_code == 2
     assert "certificate: " in result.stderr
     assert not path.exists()
-    result = run("solve", paper, "--certificate", tmp_path / "missing" / "proof.json")
+    (tmp_path / "file").touch()
+    result = run("solve", paper, "--certificate", tmp_path / "file" / "proof.json")
     assert result.exit_code == 2
-    assert "cannot be written" in result.stderr
+    assert "cannot write" in result.stderr

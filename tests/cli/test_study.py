@@ -1,6 +1,7 @@
 """The verb `study`: run, status and show."""
 
 import json
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,7 @@ name = "Two vehicles"
 scenes = 4
 gap = 1e-2
 [scene]
-file = "{paper}"
+file = "paper.toml"
 [jammers]
 name = "M"
 layout = "disc"
@@ -40,7 +41,8 @@ jammers.M.power_w = [1.0, 10.0]
 def spec(tmp_path: Path, paper: str) -> Path:
     """A small study."""
     path = tmp_path / "spec.toml"
-    path.write_text(SPEC.format(paper=paper), encoding="utf-8")
+    path.write_text(SPEC, encoding="utf-8")
+    shutil.copy(paper, tmp_path)
     return path
 
 

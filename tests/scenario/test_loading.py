@@ -93,10 +93,11 @@ def test_file_as_folder(tmp_path: Path) -> None:
 def test_unreadable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that may not be read is refused with the system's reason."""
 
-    def refuse(self: Path) -> bytes:
+    def refuse(self: Path, mode: str) -> object:
         raise PermissionError(13, "Permission denied", str(self))
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)
+    (tmp_path / "paper.toml").touch()
+    monkeypatch.setattr(Path, "open", refuse)
     message = fault_of(tmp_path / "paper.toml").message
     assert message == "the file cannot be read (permission denied); check its name and permissions"
 

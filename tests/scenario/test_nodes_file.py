@@ -256,7 +256,8 @@ def test_faults_of_csv(text: str, path: str, words: str, tmp_path: Path) -> None
     ("file", "content", "path", "words"),
     [
         ("nodse.csv", None, "nodes_from", "there is no such file; check the path"),
-        (".", None, "nodes_from", "this is a folder, must be a file of nodes"),
+        (".", None, ".", "the name must end in one of .geojson, .json, .csv"),
+        ("x.csv/..", None, "x.csv/..", "the name must end in one of .geojson, .json, .csv"),
         ("nodes.txt", "x", "nodes.txt", "the name must end in one of .geojson, .json, .csv"),
         ("", None, "nodes_from", "got an empty text, must be the name of a GeoJSON or CSV file"),
         ("no/where.csv", None, "nodes_from", "nor a folder"),

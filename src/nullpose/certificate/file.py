@@ -7,7 +7,7 @@ import hashlib
 import json
 import math
 import zlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate.certificate import OFF_BAND, Certificate, Leaves, Tree
-from nullpose.errors import CertificateError, OutputError, ScenarioError
+from nullpose.errors import CertificateError, ScenarioError
+from nullpose.files import parse_json, read_bytes, replacing
 from nullpose.scenario import Scenario
 
 __all__ = [
@@ -31,10 +32,27 @@ FORMAT = "nullpose-certificate"
 VERSIONS = (1, 2)
 
 _GZIP_MAGIC = b"\x1f\x8b"
-_MOST_BYTES = 2**31
+_GZIP = 31  # for zlib: a header and a checksum as gzip writes them
+_START = 4096  # bytes in which the format has to be named
+_MOST_BYTES = 64_000_000  # three times what the most leaves that a proof keeps take
 _COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "band", "ball", "ball_multiplier")
 _LATER = {"band": 2}  # columns by the version that they came with
 _SHAPES = {"box": 6, "cell": 5, "sides": 2}
+_KEYS = (
+    "format",
+    "version",
+    "scenario",
+    "scenario_sha256",
+    "scheme",
+    "null_jammer",
+    "value",
+    "upper_bound",
+    "pose",
+    "trees",
+    "provenance",
+)
+_POSE_KEYS = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
+_TREE_KEYS = ("axis", "root_m", "leaves")
 _KINDS: dict[type[Any], str] = {dict: "a table", list: "a list", str: "a text"}
 _WHOLE = {"box", "cell", "test", "point", "mix", "ball"}
 
@@ -50,29 +68,23 @@ def write_certificate(certificate: Certificate, path: Path) -> None:
         OutputError: the file cannot be written.
     """
     data = certificate_text(certificate).encode()
-    try:
-        path.write_bytes(gzip.compress(data, mtime=0) if path.suffix == ".gz" else data)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+    with replacing(path) as temporary:
+        temporary.write_bytes(gzip.compress(data, mtime=0) if path.suffix == ".gz" else data)
 
 
 def read_certificate(path: Path) -> Certificate:
     """Return the certificate in a file.
 
     Args:
-        path: the file, compressed or not.
+        path: the file, compressed or not, of 64 MB at most when it is not.
 
     Raises:
         CertificateError: it cannot be read, or is no certificate.
         ScenarioError: the scenario inside is faulty.
     """
     try:
-        data = path.read_bytes()
-        if data.startswith(_GZIP_MAGIC):
-            with gzip.open(path) as stream:
-                data = stream.read(_MOST_BYTES)
-        text = data.decode()
-    except (UnicodeDecodeError, EOFError, gzip.BadGzipFile, zlib.error) as error:
+        text = _unpacked(read_bytes(path, _MOST_BYTES)).decode()
+    except (UnicodeDecodeError, CertificateError, zlib.error) as error:
         raise CertificateError(f"{path}: is no certificate: {error}") from error
     except OSError as error:
         raise CertificateError(f"{path}: cannot be read: {error.strerror or error}") from error
@@ -84,6 +96,21 @@ def read_certificate(path: Path) -> Certificate:
         raise CertificateError(f"{path}: {error}") from error
     except ScenarioError as error:
         raise ScenarioError(error.faults, f"{path}: {error.source}") from error
+
+
+def _unpacked(data: bytes) -> bytes:
+    """Return the bytes of a certificate, unpacked within bounds if they are compressed."""
+    packed, stream = data.startswith(_GZIP_MAGIC), zlib.decompressobj(_GZIP)
+    start = stream.decompress(data, _START) if packed else data[:_START]
+    if FORMAT.encode() not in start:  # most of what grows a thousandfold ends here
+        raise CertificateError(f"its first {_START} bytes do not name the format {FORMAT!r}")
+    if packed:
+        data = start + stream.decompress(stream.unconsumed_tail, _MOST_BYTES)
+        if stream.unconsumed_tail:
+            raise CertificateError(f"it grows beyond {_MOST_BYTES / 1e6:g} MB, the most that is read")
+        if not stream.eof or stream.unused_data:
+            raise CertificateError("it is cut off, or something follows it")
+    return data
 
 
 def scenario_digest(data: Mapping[str, Any]) -> str:
@@ -204,17 +231,28 @@ def parse_certificate(text: str) -> Certificate:
 def _plain(text: str) -> dict[str, Any]:
     """Return a certificate's tables, having asked for no more than its format and version."""
     try:
-        data = json.loads(text, parse_constant=_no_number, parse_float=_finite)
-        json.dumps(data)  # an outsider's tables may be nested too deeply to be hashed
-    except (ValueError, RecursionError) as error:
-        raise CertificateError(f"is no certificate: not JSON ({error})") from error
+        data = parse_json(text, parse_constant=_no_number, parse_float=_finite)
+    except ScenarioError as error:
+        raise CertificateError(f"is no certificate: {error}") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
     version = data.get("version")
     if type(version) is not int or version not in VERSIONS:
         known = " and ".join(map(str, VERSIONS))
         raise CertificateError(f"version: this nullpose reads versions {known}, and no other")
+    _refuse_unknown(data, "", _KEYS)
+    _refuse_unknown(data.get("pose"), "pose.", _POSE_KEYS)
+    for i, tree in enumerate(data["trees"] if isinstance(data.get("trees"), list) else ()):
+        _refuse_unknown(tree, f"trees[{i}].", _TREE_KEYS)
+        leaves = tree.get("leaves") if isinstance(tree, dict) else None
+        _refuse_unknown(leaves, f"trees[{i}].leaves.", (*_columns(version), "mixes"))
     return data
+
+
+def _refuse_unknown(table: object, path: str, known: Collection[str]) -> None:
+    for key in table if isinstance(table, dict) else ():
+        if key not in known:
+            raise CertificateError(f"{path}{key[:40]!r}: unknown key; the keys here are {', '.join(known)}")
 
 
 def _no_number(name: str) -> None:

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nullpose.cli.figure import prepare_figure, write_figure
+from nullpose.cli.figure import write_figure
 from nullpose.cli.output import compiling_announced, show, show_json
 
 if TYPE_CHECKING:
@@ -60,7 +60,6 @@ def solve_with_array(
     """
     from nullpose.solve import solve_array
 
-    prepare_figure(figure)
     with compiling_announced():
         solution = solve_array(scenario, combining, gap=gap, certify=certify, seed=seed)
     write_figure(figure, partial(_drawn, solution))

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import typer
 
-from nullpose.cli.options import JsonOutput, Overrides, ScenarioFile
+from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile
 from nullpose.cli.output import show, show_json
 
 __all__ = ["check"]
 
 
-def check(file: ScenarioFile, overrides: Overrides = None, json_output: JsonOutput = False) -> None:
+def check(
+    file: ScenarioFile,
+    overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
+    json_output: JsonOutput = False,
+) -> None:
     """Check a scenario file and show what it amounts to, without solving it."""
     from nullpose.report.summary import summarise
     from nullpose.scenario import apply_overrides, load
 
-    summary = summarise(apply_overrides(load(file), overrides or []))
+    summary = summarise(apply_overrides(load(file, allow_outside=allow_outside), overrides or []))
     if json_output:
         show_json(summary.to_dict())
         return

@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.options import Fast, Gap, JsonOutput, NodeLimit, Overrides, ScenarioFile, Seed, TimeLimit
+from nullpose.cli.figure import prepare_outputs, write_figure
+from nullpose.cli.options import (
+    AllowOutside,
+    Fast,
+    Gap,
+    JsonOutput,
+    NodeLimit,
+    Overrides,
+    ScenarioFile,
+    Seed,
+    TimeLimit,
+)
 from nullpose.cli.output import Ticker, compiling_announced, show, show_json
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from nullpose.study import AirframeComparison
 
 __all__ = ["compare"]
@@ -20,6 +34,7 @@ __all__ = ["compare"]
 def compare(
     file: ScenarioFile,
     overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
     airframes: Annotated[
         bool,
         typer.Option(
@@ -49,13 +64,11 @@ def compare(
 
     if figure is not None and not airframes:
         raise UsageError("--figure: given without --airframes, which it draws; add it, or leave out --figure")
-    scenario = apply_overrides(load(file), overrides or [])
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
     if airframes:
-        from nullpose.report.figures.style import prepare_figure_file
         from nullpose.study import compare_airframes
 
-        if figure is not None:
-            prepare_figure_file(figure)
+        prepare_outputs(file, figure=figure)
         with compiling_announced(), Ticker("comparing vehicles") as ticker:
             vehicles = compare_airframes(
                 scenario,
@@ -92,15 +105,17 @@ def compare(
         raise typer.Exit(INTERRUPTED)
 
 
+def _drawn(vehicles: AirframeComparison) -> Figure:
+    from nullpose.report.figures import draw_airframes
+
+    return draw_airframes(vehicles)
+
+
 def _show_airframes(vehicles: AirframeComparison, figure: Path | None, json_output: bool) -> None:
     """Print what was found of each vehicle, and draw it if that was asked for."""
     from nullpose.report.airframes import airframes_view, answer_lines
 
-    if figure is not None:
-        from nullpose.report.figures import draw_airframes
-        from nullpose.report.figures.style import write_figure_file
-
-        write_figure_file(draw_airframes(vehicles), figure)
+    write_figure(figure, partial(_drawn, vehicles))
     if json_output:
         drawn = {} if figure is None else {"files": [str(figure)]}
         show_json({**vehicles.to_dict(), "answer": answer_lines(vehicles), **drawn})

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 __all__ = [
+    "AllowOutside",
     "CombiningName",
     "Fast",
     "Gap",
@@ -31,6 +32,11 @@ class CombiningName(StrEnum):
 
 ScenarioFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="Scenario file (TOML).", show_default=False)
+]
+
+AllowOutside = Annotated[
+    bool,
+    typer.Option("--allow-outside", help="Let a file name others outside its folder, as by nodes_from."),
 ]
 
 Overrides = Annotated[

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.figure import prepare_figure, write_figure
+from nullpose.cli.figure import write_figure
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.output import compiling_announced, show, show_json
 
@@ -74,7 +74,6 @@ def solve_robustly(
             "receiver.attitude_error_deg, receiver.position_error_m, or uncertainty_m of a jammer or "
             "an eavesdropper"
         )
-    prepare_figure(figure)
     target = ROBUST_GAP if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_robust(

@@ -10,9 +10,10 @@ import typer
 
 from nullpose.cli.array import refuse_with_array, solve_with_array
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.figure import prepare_figure, write_figure
+from nullpose.cli.figure import prepare_outputs, write_figure
 from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
+    AllowOutside,
     CombiningName,
     Fast,
     Gap,
@@ -39,6 +40,7 @@ def solve(
     file: ScenarioFile,
     scheme: Annotated[Scheme, typer.Option("--scheme", help="How the pose is chosen.")] = Scheme.OPTIMUM,
     overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
@@ -103,7 +105,8 @@ def solve(
     """Find the best pose for a scenario, and prove how far from the best of all it can be."""
     from nullpose.scenario import apply_overrides, load
 
-    scenario = apply_overrides(load(file), overrides or [])
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
     special = {
         "scheme": scheme if scheme is not Scheme.OPTIMUM else None,
         "null_jammer": null_jammer,
@@ -126,7 +129,6 @@ def solve(
     from nullpose.report.export import require_origin, write_geojson
     from nullpose.solve import Rigour, certificate_of, default_gap_of, require_certificate, verified
     from nullpose.solve import solve as solve_scenario
-    from nullpose.study import prepare_folder
 
     if combining is not None:
         raise UsageError("--combining: given for a scenario without an [array]; add one, or leave it out")
@@ -138,8 +140,6 @@ def solve(
         require_certificate(scenario, scheme.value, null_jammer)
     if geojson is not None:
         require_origin(scenario)
-        prepare_folder(geojson.parent)
-    prepare_figure(figure)
     target = default_gap_of(scenario) if gap is None else gap
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nullpose.cli.options import Overrides, ScenarioFile
+from nullpose.cli.options import AllowOutside, Overrides, ScenarioFile
 
 if TYPE_CHECKING:
     from threading import Event
@@ -21,6 +21,7 @@ _LOOPBACK = "127.0.0.1"
 def studio(
     file: ScenarioFile,
     overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
     port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Port of the page.")] = 8080,
     host: Annotated[
         str, typer.Option("--host", help="Address to listen at. 0.0.0.0 lets other machines in.")
@@ -29,7 +30,7 @@ def studio(
     """Open a scenario in the browser: drag what is on the ground, and see the proved best pose follow."""
     from nullpose.scenario import apply_overrides, load
 
-    scenario = apply_overrides(load(file), overrides or [])
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
     from nullpose.studio.server import studio as running_studio
 
     with _until_ended() as ended, running_studio(scenario, host=host, port=port) as running:

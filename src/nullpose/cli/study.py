@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.options import JsonOutput, OutFolder
+from nullpose.cli.options import AllowOutside, JsonOutput, OutFolder
 from nullpose.cli.output import show_json
 from nullpose.cli.study_bar import StudyBar, words_of
 
@@ -29,6 +29,7 @@ def run(
         Path, typer.Argument(metavar="SPEC", help="Spec of the study (TOML).", show_default=False)
     ],
     out: OutFolder,
+    allow_outside: AllowOutside = False,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -59,7 +60,7 @@ def run(
     require_extra()
     from nullpose.study.monte_carlo import load_spec, run_study
 
-    loaded = load_spec(spec)
+    loaded = load_spec(spec, allow_outside=allow_outside)
     try:
         with StudyBar() as bar:
             found = run_study(loaded, out, scheduler=scheduler, workers=workers, chunk=chunk, on_progress=bar)

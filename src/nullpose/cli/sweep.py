@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.options import (
+    AllowOutside,
     Fast,
     Gap,
     JsonOutput,
@@ -36,6 +37,7 @@ def sweep(
     start: Annotated[float, typer.Option("--from", help="First value.", show_default=False)],
     stop: Annotated[float, typer.Option("--to", help="Last value.", show_default=False)],
     out: OutFolder,
+    allow_outside: AllowOutside = False,
     points: Annotated[int, typer.Option("--points", help="How many values, both ends included.")] = 37,
     log: Annotated[
         bool, typer.Option("--log/--linear", help="Space the values by a constant ratio, or evenly.")
@@ -52,11 +54,12 @@ def sweep(
     json_output: JsonOutput = False,
 ) -> None:
     """Solve a scenario at many values of one setting; write a table (CSV) and a figure (PNG, SVG)."""
-    from nullpose.scenario import load
+    from nullpose.files import check_outputs
+    from nullpose.scenario.loading import files_of, load
     from nullpose.study.plan import plan_sweep
 
     plan = plan_sweep(
-        load(file),
+        load(file, allow_outside=allow_outside),
         settings,
         start=start,
         stop=stop,
@@ -70,6 +73,8 @@ def sweep(
         certify=not fast,
         seed=seed,
     )
+    outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg")}
+    check_outputs(files_of(file), outputs)
     with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
         table = plan.run(on_progress=ticker)
     if plan.scenario.array is not None:

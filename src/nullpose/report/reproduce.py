@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nullpose.files import check_outputs, write_text
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.claims import (
     CLAIM_COUNT,
@@ -27,13 +28,14 @@ from nullpose.report.paper import (
 )
 from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme, solve
-from nullpose.study import SweepTable, prepare_folder, sweep, write_text
+from nullpose.study import SweepTable, sweep
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 __all__ = ["Reproduction", "reproduce", "reproduction_view"]
 
+_FILES = ("figure2.png", "figure2.svg", "figure2.csv", "poses.png", "poses.svg", "claims.md", "claims.json")
 _CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
 
 
@@ -83,7 +85,7 @@ def reproduce(
     Raises:
         OutputError: the folder or a file cannot be written; the folder is tried before any work.
     """
-    prepare_folder(folder)
+    check_outputs({}, {name: folder / name for name in _FILES})
     scenario = paper_scenario()
     four_cases = len(levels) * len(PAPER_SCHEMES)
     solves = four_cases + len(printed_levels)

@@ -141,15 +141,15 @@ def _shared_names(members: list[_Member]) -> Iterator[tuple[Place, str]]:
 def _shared_places(points: list[_Member]) -> Iterator[tuple[Place, str]]:
     placed = [point for point in points if point.position_m is not None]
     positions_m = np.array([point.position_m for point in placed], dtype=np.float64).reshape(-1, 3)
-    lists = [point.place[0] for point in placed]
+    lists = np.array([point.place[0] for point in placed])
+    # Who jams may listen as well: a jammer and an eavesdropper may be at one place.
+    may_be = {"jammers": "eavesdroppers", "eavesdroppers": "jammers"}
     for index, point in enumerate(placed):
-        # Who jams may listen as well: a jammer and an eavesdropper may be at one place.
-        pair = {"jammers", "eavesdroppers"}
-        rivals = [i for i in range(index) if {lists[i], lists[index]} != pair]
-        earlier_m = np.linalg.norm(positions_m[rivals] - positions_m[index], axis=1)
-        if not rivals or earlier_m.min() >= SAME_PLACE_M:
+        earlier_m = np.linalg.norm(positions_m[:index] - positions_m[index], axis=1)
+        earlier_m[lists[:index] == may_be.get(lists[index], "")] = np.inf
+        if earlier_m.min(initial=np.inf) >= SAME_PLACE_M:
             continue
-        owner = placed[rivals[int(earlier_m.argmin())]]
+        owner = placed[int(earlier_m.argmin())]
         kinds = " and ".join(dict.fromkeys([str(owner.place[0]), str(lists[index])]))
         message = (
             f"got {list(point.position_m or ())}, the place of {path_of(owner.place)} already; "

@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from nullpose.errors import Fault
 from nullpose.scenario.ground_points import Node
 from nullpose.scenario.listed_nodes import WHOLE, ListedNodes, NodesFileError
 from nullpose.scenario.origin import GEODETIC_KEYS
+from nullpose.scenario.section import MOST_MEMBERS
 from nullpose.scenario.wording import listed, nearest, printable
 
 __all__ = ["nodes_from_csv"]
@@ -32,7 +34,7 @@ def nodes_from_csv(text: str) -> ListedNodes:
         header_line, header = next(lines, (1, []))
         if words := list(_header_faults(header)):
             raise NodesFileError(*(Fault(f"line {header_line}", message) for message in words))
-        rows = list(lines)
+        rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
     except csv.Error as error:
         raise NodesFileError(Fault("", f"this is not CSV: {error}; check the quotes")) from None
     if not rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import PurePath
 
 from nullpose.errors import Fault
@@ -9,25 +10,24 @@ from nullpose.scenario.listed_nodes import ListedNodes, NodesFileError
 from nullpose.scenario.nodes_csv import nodes_from_csv
 from nullpose.scenario.nodes_geojson import nodes_from_geojson
 
-__all__ = ["KINDS", "listed_nodes"]
+__all__ = ["KINDS", "reader_of"]
 
 KINDS = {".geojson": nodes_from_geojson, ".json": nodes_from_geojson, ".csv": nodes_from_csv}
 """How a nodes' file is read, by the end of its name."""
 
 
-def listed_nodes(text: str, file: str) -> ListedNodes:
-    """Returns the nodes that a GeoJSON or CSV file lists.
+def reader_of(file: str) -> Callable[[str], ListedNodes]:
+    """Returns what reads the content of a GeoJSON or CSV file of nodes.
 
     Args:
-        text: the file's content.
         file: its name, the end of which tells its kind.
 
     Raises:
-        NodesFileError: with every fault that keeps the nodes from being judged.
+        NodesFileError: the name has another end.
     """
     read = KINDS.get(PurePath(file).suffix.lower())
     if read is None:
         raise NodesFileError(
             Fault("", f"the name must end in one of {', '.join(KINDS)}, which tells the kind")
         )
-    return read(text)
+    return read

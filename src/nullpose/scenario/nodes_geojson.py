@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
 
-from nullpose.errors import Fault
+from nullpose.errors import Fault, ScenarioError
+from nullpose.files import parse_json
 from nullpose.scenario.listed_nodes import WHOLE, ListedNodes, NodesFileError
-from nullpose.scenario.wording import described, printable
+from nullpose.scenario.section import MOST_MEMBERS
+from nullpose.scenario.wording import described
 
 __all__ = ["nodes_from_geojson"]
 
@@ -56,31 +57,11 @@ class _FeatureError(Exception):
         super().__init__(message)
 
 
-class _RepeatedKeyError(ValueError):
-    """A key that stands twice in one object."""
-
-
 def _json(text: str) -> object:
     try:
-        return json.loads(text, object_pairs_hook=_unique)
-    except json.JSONDecodeError as error:
-        message = f"this is not JSON: {error.msg[:1].lower()}{error.msg[1:]}"
-        raise NodesFileError(Fault(f"line {error.lineno}, column {error.colno}", message)) from None
-    except _RepeatedKeyError as error:
-        message = f'the key "{printable(str(error))}" is given twice in one object; keep one'
-        raise NodesFileError(Fault("", message)) from None
-    except RecursionError:
-        raise NodesFileError(Fault("", "lists or objects are nested too deeply to be read")) from None
-    except ValueError:  # an integer beyond what Python converts
-        raise NodesFileError(Fault("", "a number has too many digits; write it as in 1e-3")) from None
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    table = dict(pairs)
-    if len(table) < len(pairs):
-        keys = [key for key, _ in pairs]
-        raise _RepeatedKeyError(next(key for key in keys if keys.count(key) > 1))
-    return table
+        return parse_json(text)
+    except ScenarioError as error:
+        raise NodesFileError(*error.faults) from None
 
 
 def _features(data: object) -> list[object]:
@@ -100,7 +81,7 @@ def _features(data: object) -> list[object]:
         faults.append(Fault("crs", message))
     if faults or not isinstance(features, list):
         raise NodesFileError(*faults)
-    return features
+    return features[: MOST_MEMBERS + 1]  # one more than are allowed, so that it is refused as a node
 
 
 def _member(feature: object) -> dict[str, object]:

@@ -13,7 +13,12 @@ from nullpose.scenario.faults import Place, as_error_details, collected, rejecti
 from nullpose.scenario.rewording import table_faults
 from nullpose.scenario.wording import described
 
-__all__ = ["Section", "inner_section"]
+__all__ = ["MOST_MEMBERS", "Section", "inner_section"]
+
+MOST_MEMBERS = 10_000
+"""The most members of a list, such as nodes or the corners of a polygon."""
+
+_MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
 
 class Section(BaseModel):
@@ -88,12 +93,21 @@ class Section(BaseModel):
             return data
         if not isinstance(data, Mapping):
             raise rejection(f"got {described(data)}, must be {cls.header}")
+        for key, value in data.items():
+            if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
+                message = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
+                raise collected(cls.__name__, [as_error_details((key,), message)])
         table, error = None, None
+        untold = [key for key in data if key not in cls.model_fields][_MOST_UNKNOWN:]
+        if untold:
+            data = {key: data[key] for key in data.keys() - set(untold)}
         try:
             table = handler(cls.completed(data))
         except ValidationError as several:
             error = several
         details = table_faults(error, data, cls.model_fields, cls.pairs, cls.alternatives, cls.ways)
+        if untold:
+            details.append(as_error_details((), f"{len(untold)} more keys are unknown; remove them too"))
         details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]
         if table is None or details:
             raise collected(cls.__name__, details)

@@ -12,6 +12,7 @@ import numpy as np
 __all__ = ["described", "listed", "nearest", "plain", "printable"]
 
 _LONGEST_QUOTE = 40  # characters of a given text that a message repeats
+_LONGEST_WORD = 300  # characters of a word that is compared with others
 _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting
 
 
@@ -77,7 +78,7 @@ def nearest(word: str, known: Collection[str], at_least: float = _LIKE_ENOUGH) -
     """
 
     def similarity(candidate: str) -> float:
-        return SequenceMatcher(None, word.casefold(), candidate.casefold()).ratio()
+        return SequenceMatcher(None, word[:_LONGEST_WORD].casefold(), candidate.casefold()).ratio()
 
     best = max(known, key=similarity, default="")
     return best if best and similarity(best) >= at_least else ""

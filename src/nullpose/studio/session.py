@@ -5,13 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from numpy.typing import ArrayLike
 
-from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario import Scenario, load
+from nullpose.scenario import Scenario
+from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.answer import Answer, status_words
 from nullpose.studio.case import Case, cases_of
 from nullpose.studio.events import Compiling, Event, Failure, FieldMap, PowerCurve
@@ -21,28 +19,6 @@ from nullpose.studio.view import PointKey, View
 from nullpose.studio.worker import REST_S, Worker
 
 __all__ = ["Session", "scenario_from_text"]
-
-
-def scenario_from_text(content: bytes, name: str) -> Scenario:
-    """Return the scenario that the content of a file describes.
-
-    Args:
-        content: the file's bytes.
-        name: what to call the file in messages.
-
-    Raises:
-        ScenarioError: with every fault of the content.
-    """
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "scenario.toml"
-        path.write_bytes(content)
-        try:
-            return load(path)
-        except ScenarioError as error:
-            faults = [
-                Fault(fault.path, fault.message.replace(str(path.parent) + "/", "")) for fault in error.faults
-            ]
-            raise ScenarioError(faults, name) from None
 
 
 class Session:

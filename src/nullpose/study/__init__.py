@@ -7,7 +7,6 @@ from nullpose.study.airframe_comparison import (
     Guaranteed,
     compare_airframes,
 )
-from nullpose.study.files import prepare_folder, replacing, write_text
 from nullpose.study.plan import SweepPlan, plan_sweep
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import sweep
@@ -25,9 +24,6 @@ __all__ = [
     "cases_of",
     "compare_airframes",
     "plan_sweep",
-    "prepare_folder",
-    "replacing",
     "spaced",
     "sweep",
-    "write_text",
 ]

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nullpose.errors import UsageError
+from nullpose.files import prepare_folder
 from nullpose.scenario import Scenario, apply_overrides
 from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap_of
 from nullpose.solve.limits import Limits
-from nullpose.study.files import prepare_folder
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import scenarios_along, sweep
 from nullpose.study.table import SweepTable

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
+from nullpose.files import replacing
 from nullpose.physics import Link, Pose, to_db
 from nullpose.solve import Objective
-from nullpose.study.files import replacing
 
 __all__ = ["SweepRow", "SweepTable"]
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import UsageError
+from nullpose.files import write_text
 from nullpose.physics import pose_frames
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.plain import json_text
@@ -19,7 +20,6 @@ from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.solve import Solution
-from nullpose.study import write_text
 
 __all__ = ["require_origin", "solution_geojson", "write_geojson"]
 

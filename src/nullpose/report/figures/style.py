@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
+from nullpose.files import prepare_folder, replacing
 from nullpose.schemes import Curve, Scheme
-from nullpose.study import prepare_folder, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

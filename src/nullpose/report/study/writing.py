@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from nullpose.errors import OutputError, UsageError
+from nullpose.errors import UsageError
+from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.physics.quantity import Quantity
 from nullpose.report.figures.style import write_figure
 from nullpose.report.study.answer import answer_of
@@ -18,7 +19,6 @@ from nullpose.report.study.markdown import report_text, title_of
 from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather, quantity_of
-from nullpose.study import prepare_folder, replacing, write_text
 from nullpose.study.monte_carlo import read_study
 
 if TYPE_CHECKING:
@@ -136,12 +136,8 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, Path
 @contextmanager
 def _writing(path: Path) -> Iterator[TextIO]:
     """Yield a text file that takes the place of another once it is whole."""
-    with replacing(path) as temporary:
-        try:
-            with temporary.open("w", encoding="utf-8", newline="") as file:
-                yield file
-        except OSError as error:
-            raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        yield file
 
 
 def _append(file: TextIO, frame: pd.DataFrame) -> None:

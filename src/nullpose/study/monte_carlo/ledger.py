@@ -49,7 +49,7 @@ class Ledger:
         self.chunk, self.is_open = chunk, True
         self._finished = bytearray(-(-self.spec.n_scenes // chunk))
         kept, redone = self._store.mend()
-        for part in kept:
+        for part in (part for part in kept if part.last < self.spec.n_scenes):
             self._count(part.first, part.last, part.rows, part.failed)
         self._began, self._before = time.monotonic(), self._done
         if redone:

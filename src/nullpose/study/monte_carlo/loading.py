@@ -11,7 +11,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import load
 
 # The reading of TOML and its words are those of scenario files.
-from nullpose.scenario.loading import _Kind, _tables, _text, _UnusableFileError
+from nullpose.scenario.loading import _Kind, _tables, _text, _UnusableFileError, inside
 from nullpose.scenario.wording import described
 from nullpose.study.monte_carlo.checking import spec_faults
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -21,13 +21,14 @@ __all__ = ["load_spec"]
 _SPEC_FILE = _Kind("the spec of a study", "study.toml", (".toml",))
 
 
-def load_spec(path: str | os.PathLike[str]) -> StudySpec:
+def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> StudySpec:
     """Return the spec that a TOML file states, with what the scenario files hold that it names.
 
     The first scene is drawn, and its swept values and cases are tried on it without solving anything.
 
     Args:
-        path: the file.
+        path: the file, of 10 MB at most.
+        allow_outside: whether files that are named may be outside the folder of the one that names them.
 
     Raises:
         ScenarioError: when the file, or one that it names, cannot be read or is faulty; with every fault.
@@ -37,7 +38,7 @@ def load_spec(path: str | os.PathLike[str]) -> StudySpec:
         tables = _tables(_text(source, _SPEC_FILE))
     except _UnusableFileError as error:
         raise ScenarioError([error.fault], source) from None
-    faults = _read_scenarios(tables, Path(source).parent)
+    faults = _read_scenarios(tables, Path(source).parent, allow_outside)
     try:
         spec = StudySpec.from_dict(tables, source)
     except ScenarioError as error:
@@ -48,7 +49,7 @@ def load_spec(path: str | os.PathLike[str]) -> StudySpec:
     return spec
 
 
-def _read_scenarios(tables: dict[str, Any], folder: Path) -> list[Fault]:
+def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -> list[Fault]:
     """Put what the named scenario files hold into the raw spec; return their faults."""
     scene = tables.get("scene")
     if not isinstance(scene, Mapping):
@@ -59,7 +60,10 @@ def _read_scenarios(tables: dict[str, Any], folder: Path) -> list[Fault]:
     held = []
     for name in names:
         try:
-            held.append(load(folder / name).to_dict())
+            path = inside(folder, name, allow_outside)
+            held.append(load(path, allow_outside=allow_outside).to_dict())
+        except _UnusableFileError as error:
+            faults.append(Fault(name, str(error)))
         except ScenarioError as error:
             faults += [Fault(_in_file(name, fault), fault.message) for fault in error.faults]
     if held and not faults:

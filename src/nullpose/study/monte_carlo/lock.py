@@ -11,10 +11,13 @@ from pathlib import Path
 from typing import IO, Any
 
 from nullpose.errors import OutputError
+from nullpose.files import check_outputs
 
 __all__ = ["LOCK", "holder", "locked"]
 
 LOCK = "lock"
+
+_LONGEST = 4096  # characters that are read: a lock names a process and a machine
 
 
 @contextmanager
@@ -31,6 +34,7 @@ def locked(folder: Path) -> Iterator[None]:
         OutputError: another client holds it.
     """
     path = folder / LOCK
+    check_outputs({}, {"the study's lock": path})
     file = path.open("a+", encoding="utf-8")
     try:
         if not _taken(file) or _elsewhere(file):
@@ -53,6 +57,8 @@ def holder(folder: Path) -> str:
         folder: the study's folder.
     """
     try:
+        if not (folder / LOCK).is_file():
+            return ""
         with (folder / LOCK).open("r+", encoding="utf-8") as file:
             if _taken(file) and not _elsewhere(file):
                 return ""
@@ -84,8 +90,8 @@ def _elsewhere(file: IO[str]) -> bool:
 
 def _content(file: IO[str]) -> dict[str, Any]:
     file.seek(0)
-    with suppress(ValueError):
-        content = json.loads(file.read())
+    with suppress(ValueError, RecursionError):
+        content = json.loads(file.read(_LONGEST))
         if isinstance(content, dict):
             return content
     return {}

@@ -97,7 +97,16 @@ class StudyTable:
                 f"{self._store.parts_folder / part.name}: damaged or missing (its checksum is not the one "
                 "listed); nullpose study run, given the same spec and folder, does it anew"
             )
-        return pq.read_table(self._store.parts_folder / part.name, partitioning=None)
+        path = self._store.parts_folder / part.name
+        try:
+            table = pq.read_table(path, partitioning=None)
+        except (OSError, ValueError) as error:
+            raise UsageError(
+                f"{path}: cannot be read ({error}); remove it, and run the study again"
+            ) from None
+        if not table.schema.equals(schema_of(self.spec)):
+            raise UsageError(f"{path}: has other columns than this study; remove it, and run the study again")
+        return table
 
     def _as_frame(self, table: pa.Table) -> pd.DataFrame:
         frame = table.to_pandas()

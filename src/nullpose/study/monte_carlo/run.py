@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from nullpose.errors import ClusterError, UsageError
-from nullpose.study.files import prepare_folder
+from nullpose.files import prepare_folder
 from nullpose.study.monte_carlo.checking import require_sound
 from nullpose.study.monte_carlo.chunk import seconds_per_scene, solve_chunk
 from nullpose.study.monte_carlo.extra import require_extra

@@ -5,14 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from nullpose.errors import OutputError, UsageError
-from nullpose.study.files import replacing, write_text
+from nullpose.files import parse_json, read_bytes, refusals, replacing, write_text
 from nullpose.study.monte_carlo.chunk import Done
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import versions
@@ -23,6 +24,20 @@ FORMAT = 1
 """Version of the folder's layout."""
 
 MANIFEST, JOURNAL, PARTS = "manifest.json", "parts.jsonl", "parts"
+
+_MOST_BYTES = 64_000_000  # of a manifest, which holds what all scenario files of the study say
+_LONGEST_LINE = 4096  # characters of the journal's
+_MOST = 10**15  # above all counts that there are, and below what a float cannot hold
+_OBJECTIVES = ("min-sinr", "min-margin", "secrecy-rate")
+_KEYS: dict[str, type] = {
+    "name": str,
+    "objective": str,
+    "scenes": int,
+    "chunk": int,
+    "spec_sha256": str,
+    "versions": dict,
+    "spec": dict,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,6 +61,18 @@ class Part:
     seconds: float
     size: int
     sha256: str
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the values are of their types, and the scenes in order."""
+        counts = (self.first, self.last, self.rows, self.failed, self.size)
+        return (
+            all(type(count) is int and 0 <= count < _MOST for count in counts)
+            and self.last >= self.first
+            and isinstance(self.seconds, int | float)
+            and 0.0 <= self.seconds < _MOST
+            and isinstance(self.sha256, str)
+        )
 
     @property
     def name(self) -> str:
@@ -105,7 +132,7 @@ class Store:
         """
         path = self.folder / MANIFEST
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
+            content = parse_json(read_bytes(path, _MOST_BYTES).decode())
         except FileNotFoundError:
             raise UsageError(
                 f"{self.folder}: no study is here ({MANIFEST} is missing); name the folder given to "
@@ -117,6 +144,10 @@ class Store:
             raise UsageError(
                 f"{path}: made by a nullpose with another format of studies; use that one, or another folder"
             )
+        wrong = [key for key, kind in _KEYS.items() if not isinstance(content.get(key), kind)]
+        wrong = wrong or [key for key in ("scenes", "chunk") if not 1 <= content[key] < _MOST]
+        if wrong or content["objective"] not in _OBJECTIVES:
+            raise UsageError(f"{path}: {[*wrong, 'objective'][0]} is missing or wrong; restore this manifest")
         return content
 
     def is_begun(self) -> bool:
@@ -165,7 +196,7 @@ class Store:
                 f"{self.folder}: another study is here{_difference(manifest['spec'], spec.to_dict())}; "
                 "choose another folder with --out, or give the spec as it was"
             )
-        begun, here = manifest["versions"]["nullpose"], versions()["nullpose"]
+        begun, here = manifest["versions"].get("nullpose"), versions()["nullpose"]
         if begun != here:
             raise UsageError(
                 f"{self.folder}: this study was begun with nullpose {begun}, and this is {here}; "
@@ -188,7 +219,7 @@ class Store:
         """
         path = self.parts_folder / part.name
         try:
-            if path.stat().st_size != part.size:
+            if not path.is_file() or path.stat().st_size != part.size:
                 return False
             with path.open("rb") as file:
                 return hashlib.file_digest(file, "sha256").hexdigest() == part.sha256
@@ -208,7 +239,7 @@ class Store:
         kept = [part for part in listed.values() if self.is_whole(part)]
         lines = "".join(json.dumps(asdict(part)) + "\n" for part in kept)
         names = {part.name for part in kept}
-        with _written(self.folder / JOURNAL):
+        with refusals(f"cannot write {self.folder / JOURNAL}"):
             self.parts_folder.mkdir(exist_ok=True)
             if not self._journal_is(lines):
                 write_text(self.folder / JOURNAL, lines)
@@ -244,7 +275,7 @@ class Store:
             file.flush()
             os.fsync(file.fileno())
         try:
-            with _written(self.folder / JOURNAL):
+            with refusals(f"cannot write {self.folder / JOURNAL}"):
                 _append(self.folder / JOURNAL, json.dumps(asdict(part)) + "\n")
         except OutputError:
             with suppress(OSError):
@@ -254,12 +285,19 @@ class Store:
 
     def _journal(self) -> Iterator[Part]:
         try:
+            if not stat.S_ISREG((self.folder / JOURNAL).stat().st_mode):
+                raise UsageError(f"{self.folder / JOURNAL}: is no regular file; restore it")
             with (self.folder / JOURNAL).open(encoding="utf-8", errors="replace") as file:
-                for line in file:
-                    with suppress(ValueError, TypeError):  # a line that a killed client did not finish
-                        yield Part(**json.loads(line))
+                for line in iter(lambda: file.readline(_LONGEST_LINE), ""):
+                    # a line that a killed client did not finish
+                    with suppress(ValueError, TypeError, RecursionError):
+                        part = Part(**json.loads(line))
+                        if part.is_sound:
+                            yield part
         except FileNotFoundError:
             return
+        except OSError as error:
+            raise UsageError(f"{self.folder / JOURNAL}: cannot be read: {error.strerror or error}") from None
 
     def _journal_is(self, lines: str) -> bool:
         try:
@@ -279,17 +317,6 @@ def _append(path: Path, line: str) -> None:
         except OSError:
             file.truncate(before)
             raise
-
-
-@contextmanager
-def _written(path: Path) -> Iterator[None]:
-    """Turn the system's refusals in the block into an OutputError."""
-    try:
-        yield
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nullpose.errors import OutputError
-from nullpose.study import prepare_folder, replacing, write_text
+from nullpose.files import prepare_folder, replacing, write_text
 
 
 def test_folder_is_made_with_its_parents(tmp_path: Path) -> None:
@@ -31,7 +31,7 @@ def test_folder_that_refuses_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def refuse(**_: object) -> object:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("nullpose.study.files.TemporaryFile", refuse)
+    monkeypatch.setattr("nullpose.files.TemporaryFile", refuse)
     with pytest.raises(OutputError, match="Permission denied"):
         prepare_folder(tmp_path)
 
