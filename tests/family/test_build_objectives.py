@@ -168,7 +168,7 @@ def test_jamming_beyond_arithmetic_is_refused(jammer: dict[str, float], path: st
     (fault,) = caught.value.faults
     assert fault.path == path
     assert "198 dB over the noise" in fault.message
-    assert "at most 180 dB" in fault.message
+    assert "at most 160 dB" in fault.message
     data["airspace"]["altitude_m"] = [300.0, 400.0]
     build_family(Scenario.from_dict(data))
 

@@ -13,7 +13,7 @@ from nullpose.scenario import Scenario
 
 __all__ = ["LOUDEST", "build_family", "domain_of"]
 
-LOUDEST = 1e18
+LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 
 
