@@ -169,11 +169,11 @@ def test_jamming_beyond_arithmetic_is_refused(jammer: dict[str, float], path: st
     assert fault.path == path
     assert "198 dB over the noise" in fault.message
     assert "at most 160 dB" in fault.message
-    data["airspace"]["altitude_m"] = [300.0, 400.0]
+    data["airspace"]["altitude_m"] = [3000.0, 4000.0]
     build_family(Scenario.from_dict(data))
 
 
-def test_an_ear_beyond_arithmetic_is_refused() -> None:
+def test_an_eavesdropper_beyond_arithmetic_is_refused() -> None:
     """So is a transmitter that an eavesdropper hears so far above its noise."""
     data = {
         "objective": "secrecy-rate",
