@@ -9,6 +9,8 @@ import argparse
 import sys
 from collections import Counter
 from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 
 from rich.console import Console
 from rich.progress import track
@@ -31,14 +33,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=0, help="number of the first")
     parser.add_argument("--starts", type=int, default=200, help="random walks of the independent search")
     parser.add_argument("--feature", choices=[*FEATURES, "all"], help="scenes of this kind, or of each")
+    parser.add_argument("--processes", type=int, default=1, help="how many check scenes at once")
     options = parser.parse_args(arguments)
     console = Console(stderr=True)
     numbers = range(options.first, options.first + options.scenes)
     scenes = scenes_of(options.feature, numbers)
-    outcomes = [
-        check_scene(scene, starts=options.starts)
-        for scene in track(scenes, description="soundness", console=console)
-    ]
+    with ProcessPoolExecutor(options.processes) as pool:
+        checked = pool.map(partial(check_scene, starts=options.starts), scenes)
+        outcomes = list(track(checked, description="soundness", total=len(scenes), console=console))
     print(table(outcomes))
     for outcome in outcomes:
         for fault in outcome.faults:

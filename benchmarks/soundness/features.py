@@ -119,14 +119,14 @@ def _together(rng: np.random.Generator) -> Table:
 
 
 def _extremes(rng: np.random.Generator) -> Table:
-    """Powers and noise over many decades, to jamming of 1e12 times the noise at the keep-out."""
+    """Powers and noise over many decades, to jamming of 1e16 times the noise at the keep-out."""
     plain = _plain(rng)
     noise_w = float(10.0 ** rng.uniform(-16.0, 0.0))
     plain["receiver"]["noise_w"] = noise_w
     for node in plain["nodes"]:
         node["power_w"] = noise_w * float(10.0 ** rng.uniform(-3.0, 12.0))
     for jammer in plain["jammers"]:
-        jammer["power_w"] = noise_w * float(10.0 ** rng.uniform(0.0, 12.0)) / len(plain["jammers"])
+        jammer["power_w"] = noise_w * float(10.0 ** rng.uniform(0.0, 16.0)) / len(plain["jammers"])
     return plain
 
 

@@ -2,10 +2,12 @@
 
 import pytest
 from benchmarks.soundness.check import check_scene
+from benchmarks.soundness.features import FEATURES, make_feature_scene
 from benchmarks.soundness.scenes import KINDS, make_scene
 from benchmarks.soundness.search import best_value
 
 SCENES = 50
+FEATURE_SCENES = 2
 
 
 @pytest.mark.parametrize("number", range(SCENES))
@@ -14,6 +16,14 @@ def test_no_pose_exceeds_the_bound(number: int) -> None:
     outcome = check_scene(make_scene(number), starts=60)
     assert outcome.faults == ()
     assert outcome.value <= outcome.upper_bound
+
+
+@pytest.mark.parametrize("feature", FEATURES)
+@pytest.mark.parametrize("number", range(FEATURE_SCENES))
+def test_no_pose_exceeds_the_bound_of_a_feature(feature: str, number: int) -> None:
+    """So it is with everything that scenarios can ask for; what is certified is verified."""
+    outcome = check_scene(make_feature_scene(feature, number), starts=60)
+    assert outcome.faults == ()
 
 
 def test_the_kinds_take_turns() -> None:
