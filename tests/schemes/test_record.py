@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from nullpose.errors import UsageError
-from nullpose.solve import PAPER_SCHEMES, Scheme, as_scheme
+from nullpose.schemes import PAPER_SCHEMES, RECORDS, Scheme, as_scheme
 
 
 def test_names_are_a_contract() -> None:
@@ -19,6 +19,7 @@ def test_names_are_a_contract() -> None:
     ]
     assert tuple(Scheme)[:4] == PAPER_SCHEMES
     assert len({scheme.label for scheme in Scheme}) == len(Scheme)
+    assert [scheme.record.name for scheme in Scheme] == list(RECORDS)
 
 
 @pytest.mark.parametrize("scheme", Scheme)

@@ -47,7 +47,6 @@ MAXIMUM_GAIN_PRINTED = SchemeRecord(
     label="Maximum gain, as printed",
     short="as printed",
     curve=Curve("maximum gain, eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)), "", 1.6, 2.0),
-    in_paper=False,
     sentence=lambda scenario, null_jammer: "",
     fields=lambda scenario, null_jammer: None,
     note=lambda scenario, fields, chosen: (

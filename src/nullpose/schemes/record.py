@@ -79,7 +79,7 @@ class SchemeRecord:
     curve: Curve
     sentence: Callable[[Scenario, str | None], str]
     fields: Callable[[Scenario, str | None], Mapping[str, AxisField] | None]
-    in_paper: bool = True
+    in_paper: bool = False
     note: Callable[[Scenario, tuple[str, ...], int], str] = _no_note
     reason_against: Callable[[Scenario], str | None] = _nothing_against
     any_objective: bool = False
