@@ -7,14 +7,13 @@ import os
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
-from functools import cache
 from multiprocessing import get_context
 
 from rich.console import Console
 from rich.progress import track
 
-from benchmarks.mutations.bases import KINDS, bases_of, optima_of
-from benchmarks.mutations.run import OUTCOMES, Mutations, Tally
+from benchmarks.mutations.bases import KINDS
+from benchmarks.mutations.run import OUTCOMES, Tally, tally_of
 
 __all__ = ["main", "table"]
 
@@ -46,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     ]
     tallies = {kind: Tally() for kind in kinds}
     with ProcessPoolExecutor(options.workers, mp_context=get_context("spawn")) as pool:
-        done = pool.map(_part, parts)
+        done = pool.map(tally_of, parts)
         bar = track(done, "mutations", total=len(parts), console=Console(stderr=True))
         for (kind, _, _), tally in zip(parts, bar, strict=True):
             tallies[kind].add(tally)
@@ -57,16 +56,6 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"\n{time.perf_counter() - began:.0f} s in {options.workers} processes")
     print("\n".join(falsehoods[:50]))
     return int(bool(falsehoods))
-
-
-@cache
-def _mutations(kind: str) -> Mutations:
-    return Mutations(kind, bases_of(kind), optima_of(kind))
-
-
-def _part(part: tuple[str, int, int]) -> Tally:
-    kind, first, count = part
-    return _mutations(kind).tally(first, count)
 
 
 def by_change(tallies: dict[str, Tally]) -> dict[str, Tally]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
-from benchmarks.mutations.bases import KINDS
+from benchmarks.mutations.bases import KINDS, bases_of, optima_of
 from benchmarks.mutations.changes import CLASSES, MORE, mutated
 from benchmarks.mutations.truth import Data, Truth
 from nullpose.certificate import parse_certificate, verify
 from nullpose.errors import CertificateError, ScenarioError
 
-__all__ = ["FALSE", "OUTCOMES", "REFUSED", "REJECTED", "TRUE", "Mutations", "Tally"]
+__all__ = ["FALSE", "OUTCOMES", "REFUSED", "REJECTED", "TRUE", "Mutations", "Tally", "tally_of"]
 
 REFUSED, REJECTED, TRUE, FALSE = OUTCOMES = (
     "refused on reading",
@@ -106,3 +107,18 @@ class Mutations:
             return REJECTED, ""
         falsehood = self.truth.falsehood(data)
         return (FALSE if falsehood else TRUE), falsehood
+
+
+@cache
+def _mutations(kind: str) -> Mutations:
+    return Mutations(kind, bases_of(kind), optima_of(kind))
+
+
+def tally_of(part: tuple[str, int, int]) -> Tally:
+    """Return what became of some mutations, in a process that keeps the certificates they are made from.
+
+    Args:
+        part: kind, number of the first and how many.
+    """
+    kind, first, count = part
+    return _mutations(kind).tally(first, count)
