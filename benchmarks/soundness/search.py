@@ -18,12 +18,15 @@ _STEPS = 400
 _FAR_M = 80.0
 
 
-def axes_of(scenario: Scenario, scheme: str) -> list[Callable[[FloatArray, FloatArray], FloatArray]]:
+def axes_of(
+    scenario: Scenario, scheme: str, null_jammer: str | None = None
+) -> list[Callable[[FloatArray, FloatArray], FloatArray]]:
     """Return how a scheme makes an axis of a position and a free direction, one function for each variant."""
     if scheme == "vertical":
         return [lambda p, u: np.broadcast_to([0.0, 0.0, 1.0], p.shape)]
     if scheme == "zero-interference":
-        return [lambda p, u, m=m: m - p for m in scenario.jammer_positions_m]
+        named = zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True)
+        return [lambda p, u, m=m: m - p for name, m in named if null_jammer in (None, name)]
     if scheme == "maximum-gain" and len(scenario.nodes) == 2:
         first, second = scenario.node_positions_m
         return [lambda p, u: np.cross(first - p, second - p)]
@@ -54,7 +57,13 @@ def feasible(scenario: Scenario, positions_m: FloatArray) -> NDArray[np.bool_]:
 
 
 def best_value(
-    scenario: Scenario, scheme: str, *, starts: int, seed: int, near: tuple[FloatArray, FloatArray]
+    scenario: Scenario,
+    scheme: str,
+    *,
+    starts: int,
+    seed: int,
+    near: tuple[FloatArray, FloatArray],
+    null_jammer: str | None = None,
 ) -> float:
     """Return the best that many random walks make of what the scenario asks for.
 
@@ -67,13 +76,15 @@ def best_value(
         starts: how many walks.
         seed: of the walks.
         near: position, metres, and axis to begin half of them around.
+        null_jammer: with zero interference, the one jammer that is to be nulled.
     """
     rng = np.random.default_rng(seed)
     ground = ground_of(scenario)
     low = np.maximum(scenario.airspace.lower_m, ground.min(axis=0) - _FAR_M)
     high = np.minimum(scenario.airspace.upper_m, ground.max(axis=0) + _FAR_M)
     return max(
-        _walks(scenario, axis, rng, starts, np.array([low, high]), near) for axis in axes_of(scenario, scheme)
+        _walks(scenario, axis, rng, starts, np.array([low, high]), near)
+        for axis in axes_of(scenario, scheme, null_jammer)
     )
 
 

@@ -57,9 +57,6 @@ def has_any_room(airspace: Airspace, points: Sequence[Known]) -> bool:
         upper_m = np.minimum(upper_m, [*fence_m.max(axis=0), np.inf])
     if not (np.isfinite(lower_m).all() and np.isfinite(upper_m).all()):
         return True  # zones and balls end somewhere
-    some_m = np.insert(fence_m[:: 1 + len(fence_m) // 64], 2, lower_m[2], axis=1)
-    if (_clearance_m(airspace, centres_m, some_m) >= 0.0).any():  # quicker than to look for it
-        return True
     corners = sum((len(zone.outline_m) for zone in airspace.no_fly), len(fence_m))
     most = min(60_000, 6_000_000 // max(1, corners))
     found = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, centres_m, at), most)

@@ -10,78 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.mutations.truth import Data, Problem, allowed_axes, claim_fault
 
 from nullpose.certificate.file import scenario_digest
 from nullpose.errors import ScenarioError, SolveError, UsageError
-from nullpose.physics import (
-    Pose,
-    eavesdropper_snr,
-    maximum_gain_axis,
-    node_snr,
-    objective_value,
-    zero_interference_axis,
-)
 from nullpose.scenario import Scenario
-from nullpose.scenario.polygon import depth_m
 from nullpose.solve import solve
 
-Data = dict[str, Any]
-
 CORNERS = np.array([[1.0 if c >> i & 1 else -1.0 for i in range(3)] for c in range(8)])
-
-
-class Problem:
-    """A scenario's ratios and borders, put together plainly from physics and scenario.
-
-    Args:
-        scenario: what is asked for.
-    """
-
-    def __init__(self, scenario: Scenario) -> None:
-        self.scenario, airspace = scenario, scenario.airspace
-        nodes, jammers = scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)
-        gain = scenario.receiver.reference_gain
-        if scenario.objective == "secrecy-rate":
-            others, last = scenario.eavesdropper_positions_m, jammers
-            sent = gain * scenario.transmitter.transmit_power_w
-            self.isotropic = 1.0
-            self.above = np.repeat(sent / scenario.node_noise_w, len(others))
-            self.node = np.repeat(np.arange(len(nodes)), len(others))
-            self.below = np.tile(np.diag(sent / scenario.eavesdropper_noise_w), (len(nodes), 1))
-        else:
-            others, last = jammers, jammers[:0]
-            scale = gain / scenario.receiver.noise_power_w
-            self.isotropic = 0.0
-            self.above = scale * scenario.node_powers_w / scenario.node_required_sinr
-            self.node = np.arange(len(nodes))
-            self.below = np.tile(scale * scenario.jammer_powers_w, (len(nodes), 1))
-        self.first, self.points = len(nodes), np.vstack([nodes, others, last])
-        nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
-        self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
-        self.zones = [
-            zone.depth_m
-            for zone in airspace.no_fly
-            if zone.floor_m < airspace.upper_m[2] and zone.ceiling_m > airspace.lower_m[2]
-        ]
-        if airspace.geofence_m is not None:
-            self.zones.append(lambda p: -depth_m(p[..., :2], airspace.geofence_outline_m))
-
-    def forms(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return numerators and denominators of all ratios at positions, (..., ratios, 3, 3) each."""
-        r = self.points - p[..., None, :]
-        square = np.sum(r * r, axis=-1)[..., None, None]
-        links = np.eye(3) / square - r[..., :, None] * r[..., None, :] / square**2
-        above = self.isotropic * np.eye(3) + self.above[:, None, None] * links[..., self.node, :, :]
-        others = links[..., self.first : self.first + self.below.shape[1], :, :]
-        return above, np.eye(3) + np.einsum("ke,...eij->...kij", self.below, others)
-
-    def value(self, pose: Pose) -> float:
-        """Return the smallest ratio at a pose."""
-        if self.scenario.objective != "secrecy-rate":
-            return float(objective_value(self.scenario, pose.position_m, pose.antenna_axis))
-        wanted = node_snr(self.scenario, pose.position_m, pose.antenna_axis)
-        overheard = eavesdropper_snr(self.scenario, pose.position_m, pose.antenna_axis)
-        return float((1.0 + wanted.min()) / (1.0 + overheard.max()))
 
 
 class Judge:
@@ -105,51 +41,12 @@ class Judge:
             scenario = Scenario.from_dict(data["scenario"])
         except ScenarioError:
             return "scenario"
-        return self.claim(data, scenario) or self.optimum(data, scenario) or self.proof(data, scenario)
-
-    def axes(self, data: Data, scenario: Scenario) -> dict[str, Any]:
-        """Return the names and axes, functions of the position, that the scheme allows; None is any axis."""
-        jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
-        null, band = data["null_jammer"], scenario.axis_band
-        if null is not None and data["scheme"] != "zero-interference":
-            return {}
-        if data["scheme"] == "optimum" and band != (1.0, 1.0):
-            return {"free" if band == (0.0, 1.0) else "band": None}
-        if data["scheme"] in ("vertical", "optimum"):
-            return {"vertical": lambda p: np.array([0.0, 0.0, 1.0])}
-        if data["scheme"] == "maximum-gain" and len(scenario.nodes) == 2:
-            return {"broadside": lambda p: maximum_gain_axis(scenario, p)}
-        if data["scheme"] == "zero-interference":
-            return {
-                f"null {name}": lambda p, at=at: zero_interference_axis(p, at)
-                for name, at in jammers.items()
-                if null in (None, name)
-            }
-        return {}
-
-    def claim(self, data: Data, scenario: Scenario) -> str:
-        """Return what is false of the pose and the two numbers."""
-        value, bound = data["value"], data["upper_bound"]
-        if not value > 0.0 or bound < value:
-            return "bound below the value"
-        airframe, problem = scenario.airframe, Problem(scenario)
-        pose = Pose(**data["pose"], mount_rad=0.0 if airframe is None else airframe.mount_rad)
-        if scenario.airspace.clearance_m(pose.position_m) < -2e-9:
-            return "pose outside"
-        if np.min(np.linalg.norm(problem.points - pose.position_m, axis=1)) < (
-            scenario.airspace.keep_out_m - 1e-6
+        false = claim_fault(data, scenario) or self.optimum(data, scenario)
+        if not false and sorted(tree["axis"] for tree in data["trees"]) != sorted(
+            allowed_axes(data, scenario)
         ):
-            return "pose kept out"
-        if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad + 2e-9:
-            return "tilt"
-        if abs(problem.value(pose) - value) > 1e-9 * value:
-            return "value"
-        axes = self.axes(data, scenario)
-        if not axes or sorted(tree["axis"] for tree in data["trees"]) != sorted(axes):
-            return "names of trees"
-        u = pose.antenna_axis
-        sines = [0.0 if f is None else np.linalg.norm(np.cross(f(pose.position_m), u)) for f in axes.values()]
-        return "axis" if min(sines) > 1e-5 else ""
+            false = "names of trees"
+        return false or self.proof(data, scenario)
 
     def optimum(self, data: Data, scenario: Scenario) -> str:
         """Return whether a search finds a better pose than the bound allows."""
@@ -164,7 +61,7 @@ class Judge:
 
     def proof(self, data: Data, scenario: Scenario) -> str:
         """Return what is false of the trees."""
-        axes, problem = self.axes(data, scenario), Problem(scenario)
+        axes, problem = allowed_axes(data, scenario), Problem(scenario)
         for before, tree in zip(self.sound["trees"], data["trees"], strict=True):
             leaves = {name: np.array(c) for name, c in tree["leaves"].items() if name != "mixes"}
             leaves.setdefault("band", np.zeros(len(leaves["test"])))
@@ -344,9 +241,3 @@ class Judge:
 def judge_of() -> Callable[[Data, np.random.Generator], Judge]:
     """Returns a function: the judge of what becomes of a sound certificate's data."""
     return Judge
-
-
-@pytest.fixture(scope="session")
-def value_of() -> Callable[[Scenario, Pose], float]:
-    """Returns a function: the smallest ratio of a scenario at a pose."""
-    return lambda scenario, pose: Problem(scenario).value(pose)

@@ -1,0 +1,113 @@
+"""Small sound certificates of each kind, to be changed."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from benchmarks.mutations.truth import Data
+from nullpose.certificate import certificate_text
+from nullpose.scenario import Scenario
+from nullpose.solve import certificate_of, solve
+
+__all__ = ["KINDS", "bases_of", "optima_of"]
+
+_TIME_S = 600.0  # the kernels may have to be compiled first
+_SQUARE = {"x_m": [-20.0, 30.0], "y_m": [5.0, 60.0]}
+
+
+def _scene(jamming_w: float = 1.0, **tables: Any) -> dict[str, Any]:
+    return {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [
+            {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
+            {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0},
+        ],
+        "jammers": [{"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": jamming_w}],
+    } | tables
+
+
+def _within(**airspace: Any) -> dict[str, Any]:
+    return {"airspace": {"altitude_m": [8.0, 30.0]} | airspace}
+
+
+_THREE = {
+    "nodes": [
+        {"position_m": place, "power_w": power}
+        for place, power in (([0.0, 0.0, 0.0], 1.0), ([40.0, 5.0, 2.0], 2.0), ([10.0, 40.0, 1.0], 0.5))
+    ]
+}
+_TWO_JAMMERS = {
+    "jammers": [
+        {"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": 1.0},
+        {"name": "M1", "position_m": [30.0, 30.0, 0.0], "power_w": 0.3},
+    ]
+}
+_HEARD = {
+    "objective": "secrecy-rate",
+    "transmitter": {"power_w": 1.0},
+    "nodes": [{"position_m": [0.0, 0.0, 0.0]}, {"position_m": [0.0, 50.0, 0.0]}],
+    "jammers": [],
+    "eavesdroppers": [{"position_m": [17.0, 15.0, 4.0]}, {"position_m": [-30.0, 20.0, 0.0]}],
+}
+_FENCE = [[-20.0, -5.0], [40.0, -5.0], [10.0, 25.0], [40.0, 60.0], [-20.0, 60.0]]
+_ZONES = [
+    {"centre_m": [-2.0, 24.0], "radius_m": 5.0, "altitude_m": [0.0, 12.0]},
+    {"polygon_m": [[-20.0, 10.0], [-6.0, 12.0], [-9.0, 20.0], [-6.0, 35.0], [-20.0, 40.0]]},
+]
+_WEIGHTED = [
+    {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0, "weight": 0.5},
+    {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0, "min_sinr_db": 3.0},
+]
+
+KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
+    "free axis": [
+        ("optimum", 0.2, _scene(10.0)),
+        ("optimum", 0.3, _scene() | _THREE),
+        ("optimum", 0.02, _scene() | _within(keep_out_m=26.5)),
+    ],
+    "airframe": [
+        ("optimum", 0.2, _scene(10.0, airframe={"tilt_max_deg": 20.0, "mount_deg": 30.0})),
+        ("optimum", 0.2, _scene(0.1, airframe={"preset": "level", "mount_deg": 90.0})),
+    ],
+    "secrecy rate": [
+        ("optimum", 0.1, _scene() | _HEARD),
+        ("optimum", 0.3, _scene() | _HEARD | _within(**_SQUARE)),
+    ],
+    "zones and fence": [
+        ("optimum", 0.05, _scene() | _within(geofence_m=_FENCE, no_fly=_ZONES)),
+        ("vertical", 0.4, _scene() | _within(geofence_m=_FENCE, no_fly=_ZONES)),
+    ],
+    "given axis": [
+        ("zero-interference", 0.8, _scene() | _THREE | _TWO_JAMMERS),
+        ("vertical", 0.4, _scene()),
+        ("maximum-gain", 0.4, _scene() | _within(**_SQUARE)),
+    ],
+    "margins": [("optimum", 0.2, _scene(nodes=_WEIGHTED) | _within(**_SQUARE))],
+}
+"""Scheme, gap and scenario of the certificates of each kind."""
+
+
+def bases_of(kind: str) -> list[Data]:
+    """Return the certificates of a kind as data.
+
+    Args:
+        kind: one of ``KINDS``.
+    """
+    return [_data(scheme, gap, tables) for scheme, gap, tables in KINDS[kind]]
+
+
+def optima_of(kind: str) -> list[Data]:
+    """Return certificates of the same claims with poses that are best to a millionth.
+
+    Args:
+        kind: one of ``KINDS``.
+    """
+    return [_data(scheme, 1e-6, tables) for scheme, _, tables in KINDS[kind]]
+
+
+def _data(scheme: str, gap: float, tables: dict[str, Any]) -> Data:
+    solution = solve(Scenario.from_dict(tables), scheme, gap=gap, time_limit_s=_TIME_S)
+    data: Data = json.loads(certificate_text(certificate_of(solution)))
+    return data

@@ -1,0 +1,191 @@
+"""What is true of a certificate's claim, by the physics and an independent search: no verifier, no proof."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from benchmarks.soundness.search import best_value
+from nullpose.physics import (
+    Pose,
+    eavesdropper_snr,
+    maximum_gain_axis,
+    node_snr,
+    objective_value,
+    zero_interference_axis,
+)
+from nullpose.scenario import Scenario
+from nullpose.scenario.polygon import depth_m
+
+__all__ = ["Data", "Problem", "Truth", "allowed_axes", "claim_fault", "pose_of"]
+
+Data = dict[str, Any]
+
+_STARTS = 200  # random walks of a search
+_ROUNDING = 1e-9
+
+
+class Problem:
+    """A scenario's ratios and borders, put together plainly from physics and scenario.
+
+    Args:
+        scenario: what is asked for.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario, airspace = scenario, scenario.airspace
+        nodes, jammers = scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)
+        gain = scenario.receiver.reference_gain
+        if scenario.objective == "secrecy-rate":
+            others, last = scenario.eavesdropper_positions_m, jammers
+            sent = gain * scenario.transmitter.transmit_power_w
+            self.isotropic = 1.0
+            self.above = np.repeat(sent / scenario.node_noise_w, len(others))
+            self.node = np.repeat(np.arange(len(nodes)), len(others))
+            self.below = np.tile(np.diag(sent / scenario.eavesdropper_noise_w), (len(nodes), 1))
+        else:
+            others, last = jammers, jammers[:0]
+            scale = gain / scenario.receiver.noise_power_w
+            self.isotropic = 0.0
+            self.above = scale * scenario.node_powers_w / scenario.node_required_sinr
+            self.node = np.arange(len(nodes))
+            self.below = np.tile(scale * scenario.jammer_powers_w, (len(nodes), 1))
+        self.first, self.points = len(nodes), np.vstack([nodes, others, last])
+        nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
+        self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
+        self.zones = [
+            zone.depth_m
+            for zone in airspace.no_fly
+            if zone.floor_m < airspace.upper_m[2] and zone.ceiling_m > airspace.lower_m[2]
+        ]
+        if airspace.geofence_m is not None:
+            self.zones.append(lambda p: -depth_m(p[..., :2], airspace.geofence_outline_m))
+
+    def forms(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return numerators and denominators of all ratios at positions, (..., ratios, 3, 3) each."""
+        r = self.points - p[..., None, :]
+        square = np.sum(r * r, axis=-1)[..., None, None]
+        links = np.eye(3) / square - r[..., :, None] * r[..., None, :] / square**2
+        above = self.isotropic * np.eye(3) + self.above[:, None, None] * links[..., self.node, :, :]
+        others = links[..., self.first : self.first + self.below.shape[1], :, :]
+        return above, np.eye(3) + np.einsum("ke,...eij->...kij", self.below, others)
+
+    def value(self, pose: Pose) -> float:
+        """Return the smallest ratio at a pose."""
+        if self.scenario.objective != "secrecy-rate":
+            return float(objective_value(self.scenario, pose.position_m, pose.antenna_axis))
+        wanted = node_snr(self.scenario, pose.position_m, pose.antenna_axis)
+        overheard = eavesdropper_snr(self.scenario, pose.position_m, pose.antenna_axis)
+        return float((1.0 + wanted.min()) / (1.0 + overheard.max()))
+
+
+def allowed_axes(data: Data, scenario: Scenario) -> dict[str, Any]:
+    """Return the names and axes, functions of the position, that the scheme allows; None is any axis."""
+    jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
+    null, band = data["null_jammer"], scenario.axis_band
+    if null is not None and data["scheme"] != "zero-interference":
+        return {}
+    if data["scheme"] == "optimum" and band != (1.0, 1.0):
+        return {"free" if band == (0.0, 1.0) else "band": None}
+    if data["scheme"] in ("vertical", "optimum"):
+        return {"vertical": lambda p: np.array([0.0, 0.0, 1.0])}
+    if data["scheme"] == "maximum-gain" and len(scenario.nodes) == 2:
+        return {"broadside": lambda p: maximum_gain_axis(scenario, p)}
+    if data["scheme"] == "zero-interference":
+        return {
+            f"null {name}": lambda p, at=at: zero_interference_axis(p, at)
+            for name, at in jammers.items()
+            if null in (None, name)
+        }
+    return {}
+
+
+def claim_fault(data: Data, scenario: Scenario) -> str:
+    """Return what is false of the pose and the two numbers."""
+    value, bound = data["value"], data["upper_bound"]
+    if not value > 0.0 or bound < value:
+        return "bound below the value"
+    airframe, problem, pose = scenario.airframe, Problem(scenario), pose_of(data, scenario)
+    if scenario.airspace.clearance_m(pose.position_m) < -2e-9:
+        return "pose outside"
+    if np.min(np.linalg.norm(problem.points - pose.position_m, axis=1)) < (
+        scenario.airspace.keep_out_m - 1e-6
+    ):
+        return "pose kept out"
+    if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad + 2e-9:
+        return "tilt"
+    if abs(problem.value(pose) - value) > 1e-9 * value:
+        return "value"
+    axes = allowed_axes(data, scenario)
+    if not axes:
+        return "scheme"
+    u = pose.antenna_axis
+    sines = [0.0 if f is None else np.linalg.norm(np.cross(f(pose.position_m), u)) for f in axes.values()]
+    return "axis" if min(sines) > 1e-5 else ""
+
+
+def pose_of(data: Data, scenario: Scenario) -> Pose:
+    """Return the pose that a certificate's data state.
+
+    Args:
+        data: of the certificate.
+        scenario: the one inside, for the dipole's mount.
+    """
+    airframe = scenario.airframe
+    names = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
+    stated = {name: data["pose"][name] for name in names}
+    return Pose(**stated, mount_rad=0.0 if airframe is None else airframe.mount_rad)
+
+
+class Truth:
+    """Judges claims, keeping the best value known of each scenario.
+
+    Args:
+        optima: poses, as certificates have them, that are known to be good, and the scenarios' data.
+    """
+
+    def __init__(self, optima: list[Data]) -> None:
+        self._optima = {self._key(data): data for data in optima}
+        self._best: dict[str, float] = {}
+
+    def falsehood(self, data: Data) -> str:
+        """Return what is false in a certificate's claim, or nothing if nothing was found.
+
+        Args:
+            data: of a certificate that can be read.
+        """
+        scenario = Scenario.from_dict(data["scenario"])
+        fault = claim_fault(data, scenario)
+        if fault:
+            return fault
+        best = self.best(data, scenario)
+        if best > data["upper_bound"] * (1.0 + _ROUNDING):
+            return f"a pose reaches {best!r}, above the bound"
+        return ""
+
+    def best(self, data: Data, scenario: Scenario) -> float:
+        """Return the largest smallest ratio that is known of a scenario under a scheme.
+
+        Args:
+            data: of a certificate, whose pose the search begins at unless a better one is known.
+            scenario: the same as an object.
+        """
+        key = self._key(data)
+        if key not in self._best:
+            pose = pose_of(self._optima.get(key, data), scenario)
+            found = best_value(
+                scenario,
+                data["scheme"],
+                starts=_STARTS,
+                seed=len(self._best),
+                near=(pose.position_m, pose.antenna_axis),
+                null_jammer=data["null_jammer"],
+            )
+            self._best[key] = 2.0**found if scenario.objective == "secrecy-rate" else found
+        return self._best[key]
+
+    @staticmethod
+    def _key(data: Data) -> str:
+        return json.dumps([data["scenario"], data["scheme"], data["null_jammer"]], sort_keys=True)

@@ -1,0 +1,109 @@
+"""Mutations of certificates: the first hundreds of the ten thousand of each kind."""
+
+import copy
+import dataclasses
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from benchmarks.mutations.__main__ import by_change, table
+from benchmarks.mutations.bases import KINDS, bases_of, optima_of
+from benchmarks.mutations.changes import CLASSES, MORE
+from benchmarks.mutations.run import FALSE, REFUSED, REJECTED, TRUE, Mutations, Tally
+
+import nullpose.certificate
+
+COUNT = 200
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module", params=list(KINDS))
+def mutations(request: pytest.FixtureRequest) -> Mutations:
+    """Returns the mutations of a kind."""
+    return Mutations(request.param, bases_of(request.param), optima_of(request.param))
+
+
+def test_no_false_certificate_is_accepted(mutations: Mutations) -> None:
+    """What the verifier accepts is true; all classes of changes occur, and every other outcome."""
+    for base in mutations.bases:
+        assert mutations.judged(base) == (TRUE, "")
+    tally = mutations.tally(0, COUNT)
+    assert tally.falsehoods == []
+    assert tally.counts.total() == COUNT
+    assert {outcome for _, outcome in tally.counts} == {REFUSED, REJECTED, TRUE}
+    assert {change for change, _ in tally.counts} >= {*CLASSES, *MORE} - {
+        "null_jammer", "airframe, claim redone", "no_fly, claim redone", "band",
+    }  # fmt: skip
+
+
+def test_a_number_gives_the_same_mutation(mutations: Mutations) -> None:
+    """Every mutation is another certificate, made from its number alone."""
+    for number in (0, 7, 33):
+        change, data = mutations.mutation(number)
+        assert (change, data) == mutations.mutation(number)
+        assert data not in mutations.bases
+
+
+def test_what_is_false_is_noticed(mutations: Mutations) -> None:
+    """Bounds, values and poses that are wrong by little would be found out if they were accepted."""
+    for base, optimum in zip(mutations.bases, mutations.optima, strict=True):
+        low = copy.deepcopy(base)
+        low["upper_bound"] = optimum["value"] * (1.0 - 1e-5)
+        if low["upper_bound"] > low["value"]:
+            assert "above the bound" in mutations.truth.falsehood(low)
+        low["upper_bound"] = base["value"] * (1.0 - 1e-12)
+        assert mutations.truth.falsehood(low) == "bound below the value"
+        for changed, words in (
+            ({"value": base["value"] * (1.0 - 1e-7)}, {"value"}),
+            (
+                {"pose": base["pose"] | {"position_m": [*base["pose"]["position_m"][:2], 7.999]}},
+                {"pose outside"},
+            ),
+            ({"pose": base["pose"] | {"position_m": [16.9, 15.1, 8.0]}}, {"value", "pose kept out", "axis"}),
+            ({"pose": base["pose"] | {"roll_rad": 1.5}}, {"value", "tilt", "axis"}),
+        ):
+            assert mutations.truth.falsehood(base | changed) in words
+
+
+def test_a_lenient_verifier_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a verifier that accepts whatever can be read, false certificates are counted as such."""
+
+    def lenient(certificate: nullpose.certificate.Certificate) -> nullpose.certificate.Verdict:
+        return dataclasses.replace(nullpose.certificate.verify(certificate), proved=True)
+
+    monkeypatch.setattr("benchmarks.mutations.run.verify", lenient)
+    tally = Mutations("given axis", bases_of("given axis"), optima_of("given axis")).tally(0, 100)
+    assert len(tally.falsehoods) > 10
+    assert sum(count for (_, outcome), count in tally.counts.items() if outcome == FALSE) == len(
+        tally.falsehoods
+    )
+
+
+def test_the_command_prints_a_table() -> None:
+    """The counts of each kind add up; nothing false means success."""
+    command = [
+        "-m",
+        "benchmarks.mutations",
+        "--count",
+        "4",
+        "--kind",
+        "margins",
+        "--workers",
+        "1",
+        "--by-change",
+    ]
+    done = subprocess.run([sys.executable, *command], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "| margins | 4 |" in done.stdout
+    assert "| all | 4 |" in done.stdout
+
+
+def test_tables_count() -> None:
+    """Tallies are added up by kind and by the class of the change."""
+    tallies = {"a": Tally(), "b": Tally()}
+    tallies["a"].counts["value", REJECTED] = 1200
+    tallies["b"].counts["value", TRUE] = 2
+    tallies["b"].counts["box", REFUSED] = 3
+    assert "| all | 1,205 | 3 | 1,200 | 2 | 0 |" in table(tallies)
+    assert "| value | 1,202 | 0 | 1,200 | 2 | 0 |" in table(by_change(tallies))
