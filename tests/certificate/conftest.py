@@ -14,10 +14,10 @@ from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve import certificate_of, solve
+from nullpose.solve.certificate_from_proof import leaves_of
 from nullpose.solve.effort import Effort
-from nullpose.solve.evidence import leaves_of
 from nullpose.solve.limits import Limits
-from nullpose.solve.settle import settle
+from nullpose.solve.solve_and_prove import solve_and_prove
 
 Place = tuple[float, float, float]
 
@@ -57,28 +57,28 @@ def certified() -> Callable[..., Certificate]:
 
 @pytest.fixture(scope="session")
 def put_together() -> Callable[..., Certificate]:
-    """Returns a function: the certificate of a scenario's settled family, its pose from axis and mount."""
+    """Returns a function: the certificate of a scenario's outcome family, its pose from axis and mount."""
 
     def make(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3) -> Certificate:
         family, fields = build_family(scenario), claimed_axes(scenario, scheme, None)
         assert fields is not None
         effort = Effort(limits=Limits(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9))
-        settled = settle(family, list(fields.values()), effort)
+        outcome = solve_and_prove(family, list(fields.values()), effort)
         mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
-        east, north, up = settled.found.axis * np.sign(settled.found.axis[2] or 1.0)
+        east, north, up = outcome.incumbent.axis * np.sign(outcome.incumbent.axis[2] or 1.0)
         # the body leans in the plane of vertical and dipole, by the least angle that brings it there
         lean = float(np.arctan2(np.hypot(east, north), up)) - mount_rad
         attitude = (0.0, lean, float(np.arctan2(north, east)))
-        position = [Fraction(float(x)) for x in settled.found.position_m]
+        position = [Fraction(float(x)) for x in outcome.incumbent.position_m]
         value = float(smallest_ratio(family, position, antenna_axis(attitude, mount_rad)))
-        trees = zip(fields, settled.proofs, strict=True)
+        trees = zip(fields, outcome.proofs, strict=True)
         return Certificate(
             scenario=scenario,
             scheme=scheme,
             null_jammer=None,
             value=value,
-            upper_bound=max(value, settled.upper_bound or 0.0),
-            position_m=settled.found.position_m,
+            upper_bound=max(value, outcome.upper_bound or 0.0),
+            position_m=outcome.incumbent.position_m,
             roll_rad=attitude[0],
             pitch_rad=attitude[1],
             yaw_rad=attitude[2],

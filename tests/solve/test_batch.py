@@ -5,7 +5,7 @@ import pytest
 
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve.batch import Batch, Settlement, same_shape
+from nullpose.solve.batch import Batch, BatchOutcome, same_shape
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import Limits
 
@@ -35,11 +35,11 @@ def test_shapes_tell_what_can_be_stacked() -> None:
 
 def test_a_larger_field_teaches_a_smaller_one() -> None:
     """Its bound holds, and its pose counts where the axis is in the band."""
-    larger = Settlement.blank(2, 2)
+    larger = BatchOutcome.blank(2, 2)
     larger.axis[:] = [[1.0, 0.0, 0.1], [0.0, 0.2, 1.0]]
     larger.bound[:] = 2.0, 3.0
     larger.log_value[:] = 0.5, 0.7
-    smaller = Settlement.blank(2, 2)
+    smaller = BatchOutcome.blank(2, 2)
     smaller.learn_from(larger, (0.0, 0.03))
     np.testing.assert_array_equal(smaller.bound, [2.0, 3.0])
     np.testing.assert_array_equal(smaller.log_value, [0.5, -np.inf])
@@ -50,8 +50,8 @@ def test_a_larger_field_teaches_a_smaller_one() -> None:
 def test_settling_fills_what_is_known(certify: bool) -> None:
     """Poses with a finite value; bounds only if a proof was asked for."""
     batch = Batch([family_of((17.0, 15.0, 4.0)), family_of((-5.0, 20.0, 2.0))])
-    known = Settlement.blank(2, 2)
-    batch.settle(AxisField.free(), Effort(limits=Limits(gap=1e-3) if certify else None), known)
+    known = BatchOutcome.blank(2, 2)
+    batch.solve_and_prove(AxisField.free(), Effort(limits=Limits(gap=1e-3) if certify else None), known)
     assert np.all(np.isfinite(known.log_value))
     assert np.all(known.placed)
     assert np.all(known.certified == certify)

@@ -40,7 +40,7 @@ def test_the_papers_optimum_is_closed(power_w: float) -> None:
     """The bound is within the gap above the value, and the leaves cover the box of the distance cut."""
     family = build_family(apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"]))
     proof = proof_of(family, AxisField.free(), gap=1e-6)
-    value = np.exp(proof.found.log_value)
+    value = np.exp(proof.incumbent.log_value)
     assert proof.reason == ""
     assert value <= proof.upper_bound <= value * (1.0 + 1.001e-6)
     low, high = boxes(proof)
@@ -86,7 +86,7 @@ def test_fixed_axes_are_closed() -> None:
         )
         for axis_field in fields:
             proof = proof_of(family, axis_field, gap=1e-6)
-            value = np.exp(proof.found.log_value)
+            value = np.exp(proof.incumbent.log_value)
             assert proof.reason == ""
             assert proof.upper_bound <= value * (1.0 + 1.001e-6)
 
@@ -99,10 +99,10 @@ def test_a_limit_leaves_a_valid_bound(random_scene: Callable) -> None:
     full = proof_of(family, AxisField.free(), gap=1e-2)
     short = proof_of(family, AxisField.free(), gap=1e-6, node_limit=300)
     assert "node limit" in short.reason
-    assert short.upper_bound >= np.exp(full.found.log_value)
+    assert short.upper_bound >= np.exp(full.incumbent.log_value)
     hasty = proof_of(family, AxisField.free(), gap=1e-8, time_limit_s=1e-3)
     assert "time limit" in hasty.reason
-    assert hasty.upper_bound >= np.exp(full.found.log_value)
+    assert hasty.upper_bound >= np.exp(full.incumbent.log_value)
 
 
 def test_a_poor_incumbent_is_improved() -> None:
@@ -116,7 +116,7 @@ def test_a_poor_incumbent_is_improved() -> None:
     )
     proof = prove(family, AxisField.free(), poor, Limits(gap=1e-6))
     assert proof.reason == ""
-    assert proof.found.log_value == pytest.approx(best.log_value, rel=1e-6)
+    assert proof.incumbent.log_value == pytest.approx(best.log_value, rel=1e-6)
 
 
 def test_progress_is_told(random_scene: Callable) -> None:

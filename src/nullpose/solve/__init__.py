@@ -4,8 +4,8 @@ from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.array import solve_array
 from nullpose.solve.array_solution import ArraySolution, ArrayStats
+from nullpose.solve.certificate_from_proof import certificate_of, require_certificate, verified
 from nullpose.solve.compiling import announce_compiling
-from nullpose.solve.evidence import certificate_of, require_certificate, verified
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
 from nullpose.solve.many import ManySolutions, solve_many
 from nullpose.solve.rigour import Rigour

@@ -23,8 +23,8 @@ from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.settle import Settled, settle
 from nullpose.solve.solution import Solution, Stats, Status
+from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["best_axis", "compare", "solve"]
 
@@ -88,31 +88,31 @@ def solve(
     )
     effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
     began = time.perf_counter()
-    settled = solve_scheme(scenario, scheme.record, effort, null_jammer)
-    pose = Pose.of_airframe(scenario, settled.found.position_m, settled.found.axis)
+    outcome = solve_scheme(scenario, scheme.record, effort, null_jammer)
+    pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
-    objective = objective_of(scenario, links, settled.upper_bound)
-    if settled.proofs and claimed_axes(scenario, scheme, null_jammer) is not None:
+    objective = objective_of(scenario, links, outcome.upper_bound)
+    if outcome.proofs and claimed_axes(scenario, scheme, null_jammer) is not None:
         objective = replace(objective, rigour=Rigour.VERIFIABLE)
-    status = _status(settled)
+    status = _status(outcome)
     return Solution(
         scenario=scenario,
         scheme=scheme,
         status=status,
-        reason=settled.reason if status is not Status.CERTIFIED else "",
+        reason=outcome.reason if status is not Status.CERTIFIED else "",
         objective=objective,
         pose=pose,
         links=links,
         stats=Stats(
             wall_s=time.perf_counter() - began,
-            starts=settled.found.starts,
-            evaluations=settled.found.evaluations,
-            boxes=settled.nodes,
+            starts=outcome.incumbent.starts,
+            evaluations=outcome.incumbent.evaluations,
+            boxes=outcome.nodes,
         ),
         provenance=provenance(seed) | ({"gap": target} if certify else {}),
-        note=settled.found.note,
+        note=outcome.incumbent.note,
         null_jammer=null_jammer,
-        proofs=settled.proofs,
+        proofs=outcome.proofs,
     )
 
 
@@ -197,7 +197,7 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     else:
         here = replace(family, low_m=position, high_m=position, **_NO_BORDERS)
         limits = Limits(gap=1e-8, node_limit=_AXIS_NODES)
-        axis = settle(here, [AxisField.within(*band)], Effort(limits=limits)).found.axis
+        axis = solve_and_prove(here, [AxisField.within(*band)], Effort(limits=limits)).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 
 
@@ -214,10 +214,10 @@ _NO_BORDERS: dict[str, Any] = {
 }
 
 
-def _status(settled: Settled) -> Status:
-    if settled.upper_bound is None:
+def _status(outcome: Outcome) -> Status:
+    if outcome.upper_bound is None:
         return Status.BEST_FOUND
-    return Status.GAP_NOT_REACHED if settled.reason else Status.CERTIFIED
+    return Status.GAP_NOT_REACHED if outcome.reason else Status.CERTIFIED
 
 
 def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:

@@ -12,7 +12,7 @@ from nullpose.family import AxisField
 from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import Limits
-from nullpose.solve.settle import settle
+from nullpose.solve.solve_and_prove import solve_and_prove
 
 __all__ = ["ArrayBound", "array_bound"]
 
@@ -97,7 +97,7 @@ def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
     if len(task.base) > 1:
         family = silent(family)
     limits = Limits(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
-    settled = settle(family, [AxisField.vertical()], Effort(limits=limits))
-    assert settled.upper_bound is not None, "a proof was asked for"
-    value = len(task.base) * settled.upper_bound * (1.0 + _ROUNDING)
-    return ArrayBound(value=value, boxes=settled.nodes)
+    outcome = solve_and_prove(family, [AxisField.vertical()], Effort(limits=limits))
+    assert outcome.upper_bound is not None, "a proof was asked for"
+    value = len(task.base) * outcome.upper_bound * (1.0 + _ROUNDING)
+    return ArrayBound(value=value, boxes=outcome.nodes)

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.effort import Effort
-from nullpose.solve.found import Found
+from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.limits import Limits
 from nullpose.solve.multistart import CLIMBS, landmarks, shift_of
-from nullpose.solve.proof import DIRECT_NODES, INSIDE, Spent, late_nodes, prove
-from nullpose.solve.warming import ready
+from nullpose.solve.precompile import ready
+from nullpose.solve.proof import DIRECT_NODES, INSIDE, BudgetUsed, late_nodes, prove
 
-__all__ = ["Batch", "Settlement", "same_shape"]
+__all__ = ["Batch", "BatchOutcome", "same_shape"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -55,7 +55,7 @@ def same_shape(family: Family) -> tuple[object, ...]:
 
 
 @dataclass(slots=True, eq=False)
-class Settlement:
+class BatchOutcome:
     """Poses of a batch's families under one axis field, and what is proved of them; arrays by family.
 
     Args:
@@ -79,7 +79,7 @@ class Settlement:
     reason: list[str]
 
     @classmethod
-    def blank(cls, count: int, ratios: int) -> Settlement:
+    def blank(cls, count: int, ratios: int) -> BatchOutcome:
         """Return one in which nothing is known.
 
         Args:
@@ -97,7 +97,7 @@ class Settlement:
             reason=[""] * count,
         )
 
-    def learn_from(self, larger: Settlement, band: tuple[float, float]) -> None:
+    def learn_from(self, larger: BatchOutcome, band: tuple[float, float]) -> None:
         """Take over the bounds of a field with more axes, and its poses whose axis this field has too.
 
         Args:
@@ -141,7 +141,7 @@ class Batch:
         together.flags.writeable = False  # as a family's own, so that kernels have one type of it
         return together
 
-    def settle(self, field: AxisField, effort: Effort, known: Settlement) -> None:
+    def solve_and_prove(self, field: AxisField, effort: Effort, known: BatchOutcome) -> None:
         """Find every family's best pose under an axis field, and prove it if the effort asks for a proof.
 
         Args:
@@ -149,11 +149,11 @@ class Batch:
             effort: what each family may cost.
             known: what is known before; what is found is put there.
         """
-        from nullpose.solve.kernels.many import settle_many
+        from nullpose.solve.kernels.many import solve_and_prove_many
 
         limits, search = effort.limits, effort.search
         ready(self.families[0], field)
-        settle_many(
+        solve_and_prove_many(
             self._shape,
             self._varied,
             self.families[0].domain,
@@ -181,9 +181,9 @@ class Batch:
         """Return the nodes of the two tries, and of all."""
         return late_nodes(self.families[0]), DIRECT_NODES, limits.node_limit
 
-    def _go_on(self, one: int, field: AxisField, limits: Limits, known: Settlement) -> None:
+    def _go_on(self, one: int, field: AxisField, limits: Limits, known: BatchOutcome) -> None:
         """Give a proof that is longer than most its stages and its clock."""
-        found = Found(
+        found = Incumbent(
             position_m=known.position_m[one].copy(),
             axis=known.axis[one].copy(),
             log_value=float(known.log_value[one]),
@@ -191,10 +191,10 @@ class Batch:
             starts=0,
             evaluations=0,
         )
-        spent = Spent(nodes=int(known.boxes[one]), direct=True)
-        proof = prove(self.families[one], field, found, limits, spent=spent)
-        known.position_m[one], known.axis[one] = proof.found.position_m, proof.found.axis
-        known.multipliers[one], known.log_value[one] = proof.found.multipliers, proof.found.log_value
+        used = BudgetUsed(nodes=int(known.boxes[one]), direct=True)
+        proof = prove(self.families[one], field, found, limits, used=used)
+        known.position_m[one], known.axis[one] = proof.incumbent.position_m, proof.incumbent.axis
+        known.multipliers[one], known.log_value[one] = proof.incumbent.multipliers, proof.incumbent.log_value
         known.bound[one] = min(known.bound[one], proof.upper_bound)
         known.boxes[one] += proof.nodes
         known.reason[one] = proof.reason

@@ -13,9 +13,9 @@ from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.schemes import SchemeRecord
 from nullpose.solve.effort import Effort
-from nullpose.solve.found import Found
+from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.position_search import search_positions
-from nullpose.solve.settle import Settled, settle
+from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["solve_scheme"]
 
@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 
 def solve_scheme(
     scenario: Scenario, record: SchemeRecord, effort: Effort, null_jammer: str | None
-) -> Settled:
+) -> Outcome:
     """Return the best pose under a scheme, with a proof if the effort allows for one.
 
     Args:
@@ -41,21 +41,21 @@ def solve_scheme(
     if null_jammer is not None and null_jammer not in known:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
     family, fields = build_family(scenario), record.fields(scenario, null_jammer)
-    settled = (
+    outcome = (
         _by_values(scenario, record, family, effort)
         if fields is None
-        else settle(family, list(fields.values()), effort)
+        else solve_and_prove(family, list(fields.values()), effort)
     )
-    note = record.note(scenario, tuple(fields or ()), settled.chosen)
-    return replace(settled, found=replace(settled.found, note=note))
+    note = record.note(scenario, tuple(fields or ()), outcome.chosen)
+    return replace(outcome, incumbent=replace(outcome.incumbent, note=note))
 
 
-def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, effort: Effort) -> Settled:
+def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, effort: Effort) -> Outcome:
     """Return what a search by values finds, under the bound of a free axis if the scheme's poses have one."""
     axis_at, log_value = _measures(scenario, record, family)
     position_m, value, starts, evaluations = search_positions(log_value, family, seed=effort.seed)
     ratios = len(family.numerator_point)
-    found = Found(
+    found = Incumbent(
         position_m=position_m,
         axis=axis_at(position_m),
         log_value=value,
@@ -64,12 +64,12 @@ def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, effort:
         evaluations=evaluations,
     )
     if record.ratios_at is not None:
-        return Settled(found=found, reason=record.unproved)
+        return Outcome(incumbent=found, reason=record.unproved)
     if effort.limits is None:
-        return Settled(found=found)
-    relaxed = settle(family, [AxisField.free()], effort)
+        return Outcome(incumbent=found)
+    relaxed = solve_and_prove(family, [AxisField.free()], effort)
     reason = relaxed.reason or record.unproved  # an interrupt or a limit comes first
-    return Settled(found=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=reason)
+    return Outcome(incumbent=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=reason)
 
 
 def _measures(

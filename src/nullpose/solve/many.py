@@ -14,7 +14,7 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, Family, build_family
 from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many
 from nullpose.scenario import Airframe, Scenario
-from nullpose.solve.batch import Batch, Settlement, same_shape
+from nullpose.solve.batch import Batch, BatchOutcome, same_shape
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
 from nullpose.solve.proof import INTERRUPT
@@ -148,7 +148,7 @@ def solve_many(
         for start in range(0, len(indices), _BLOCK):
             some = np.array(indices[start : start + _BLOCK])
             block = [scenarios[index] for index in some]
-            for column, known in _settled(families[start : start + _BLOCK], vehicles, effort):
+            for column, known in _solved(families[start : start + _BLOCK], vehicles, effort):
                 _fill(block, some, vehicles[column], known, column, results)
             done += len(some)
             if on_progress is not None:
@@ -182,32 +182,32 @@ def _groups(scenarios: Sequence[Scenario], *, own: bool) -> list[tuple[list[int]
     return list(groups.values())
 
 
-def _settled(
+def _solved(
     families: list[Family], vehicles: Sequence[Airframe | None], effort: Effort
-) -> Iterator[tuple[int, Settlement]]:
+) -> Iterator[tuple[int, BatchOutcome]]:
     """Yield what each vehicle reaches in scenes of one shape, the one with most freedom first."""
     batch = Batch(families)
     bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
-    settled: dict[tuple[float, float], Settlement] = {}
+    solved: dict[tuple[float, float], BatchOutcome] = {}
     for column in sorted(range(len(bands)), key=lambda c: bands[c][0] - bands[c][1]):
         band = bands[column]
-        if band not in settled:
-            known = Settlement.blank(len(families), len(families[0].numerator_point))
-            for wider, larger in settled.items():
+        if band not in solved:
+            known = BatchOutcome.blank(len(families), len(families[0].numerator_point))
+            for wider, larger in solved.items():
                 if wider[0] <= band[0] and band[1] <= wider[1]:
                     known.learn_from(larger, band)
-            batch.settle(AxisField.within(*band), effort, known)
+            batch.solve_and_prove(AxisField.within(*band), effort, known)
             if INTERRUPT in known.reason:
                 raise KeyboardInterrupt
-            settled[band] = known
-        yield column, settled[band]
+            solved[band] = known
+        yield column, solved[band]
 
 
 def _fill(
     scenarios: Sequence[Scenario],
     indices: IntArray,
     airframe: Airframe | None,
-    known: Settlement,
+    known: BatchOutcome,
     column: int,
     results: ManySolutions,
 ) -> None:

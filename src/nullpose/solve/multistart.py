@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
 from nullpose.family.airspace import loosened
-from nullpose.solve.found import Found
-from nullpose.solve.warming import warm_kernels
+from nullpose.solve.incumbent import Incumbent
+from nullpose.solve.precompile import precompile
 
 __all__ = ["CLIMBS", "SearchSettings", "landmarks", "multistart", "shift_of"]
 
@@ -99,7 +99,7 @@ def shift_of(seed: int) -> FloatArray:
 
 def multistart(
     family: Family, axis_field: AxisField, *, seed: int, settings: SearchSettings | None = None
-) -> Found:
+) -> Incumbent:
     """Return the best pose that a multistart finds: coarse positions, the promising ones polished.
 
     Deterministic for a given seed. Not a proof: see :class:`nullpose.solve.Status`.
@@ -117,7 +117,7 @@ def multistart(
     from nullpose.solve.kernels.search import search
 
     settings = settings or SearchSettings()
-    warm_kernels(family, axis_field)
+    precompile(family, axis_field)
     position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
     multipliers = np.empty(len(family.numerator_point))
     shift, domain = shift_of(seed), family.domain
@@ -158,7 +158,7 @@ def multistart(
         evaluations += steps
         if steps < _CLIMB_STEPS and log_value <= before + _SAME:
             break
-    return Found(
+    return Incumbent(
         position_m=position_m,
         axis=axis,
         log_value=log_value,

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
-from nullpose.solve.crew import Crew, Task, processors
-from nullpose.solve.found import Found
+from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.limits import Limits
 from nullpose.solve.rigour import bound_above
+from nullpose.solve.worker_pool import Task, WorkerPool, processors
 
-__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "Proof", "Spent", "late_nodes", "prove"]
+__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "BudgetUsed", "Proof", "late_nodes", "prove"]
 
 FloatArray = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Proof:
     """What the branch and bound run showed.
 
     Args:
-        found: the incumbent, perhaps better than the one it began with.
+        incumbent: the incumbent, perhaps better than the one it began with.
         upper_bound: no pose of the domain has its smallest ratio above this.
         root: (2, 3) lowest and highest corner of a box outside which no pose reaches the incumbent.
         leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box.
@@ -52,7 +52,7 @@ class Proof:
         nodes: nodes examined.
     """
 
-    found: Found
+    incumbent: Incumbent
     upper_bound: float
     root: FloatArray
     leaves: FloatArray
@@ -61,8 +61,8 @@ class Proof:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spent:
-    """What was spent of the limits before a run began.
+class BudgetUsed:
+    """What was used of the limits before a run began.
 
     Args:
         seconds: time.
@@ -82,18 +82,18 @@ class _Run:
         self,
         family: Family,
         axis_field: AxisField,
-        found: Found,
+        incumbent: Incumbent,
         limits: Limits,
         on_progress: Callable[[float, int], None] | None,
-        spent: Spent,
+        used: BudgetUsed,
     ) -> None:
         from nullpose.solve.kernels import branch, node
 
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node = branch, node
-        self.found, self.limits, self.on_progress = found, limits, on_progress
-        self.deadline = time.perf_counter() + limits.time_limit_s - spent.seconds
-        self.node_limit = max(1, limits.node_limit - spent.nodes)
+        self.incumbent, self.limits, self.on_progress = incumbent, limits, on_progress
+        self.deadline = time.perf_counter() + limits.time_limit_s - used.seconds
+        self.node_limit = max(1, limits.node_limit - used.nodes)
         self.nodes = 0
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
@@ -104,11 +104,11 @@ class _Run:
 
     @property
     def value(self) -> float:
-        return math.exp(self.found.log_value)
+        return math.exp(self.incumbent.log_value)
 
     def _favourite(self) -> FloatArray:
         row = np.zeros(self.node.COLUMNS)
-        weights = self.found.multipliers.copy()
+        weights = self.incumbent.multipliers.copy()
         self.node.keep_largest(weights, len(weights), row)
         return row
 
@@ -117,7 +117,7 @@ class _Run:
         from nullpose.solve.kernels.search import cut_box
 
         low, high = np.empty(3), np.empty(3)
-        level = self.found.log_value
+        level = self.incumbent.log_value
         if np.any(self.family.numerator_isotropic):  # ratios tend to one far away, however little that is
             level = min(level + math.log1p(self.target), math.log(self.proved))  # the bound that is stated
         # a hair wider than the cut, which is rounded
@@ -147,24 +147,24 @@ class _Run:
 
     def stage(self, gap: float, start: FloatArray, most: int, threads: int = 1) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
-        crew = Crew(start, threads)
+        workers = WorkerPool(start, threads)
         none = start[:0]
         until = self.nodes + most
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while True:
-                self.nodes += crew.work(self._task(gap, until), pool)
-                for position_m, axis in crew.better():
+                self.nodes += workers.work(self._task(gap, until), pool)
+                for position_m, axis in workers.better():
                     self._improve(position_m, axis)
-                if crew.done:
+                if workers.done:
                     self.proved = min(self.proved, self.value * (1.0 + gap))
-                    return crew.leaves(), ""
+                    return workers.leaves(), ""
                 if self.on_progress is not None:
                     self.on_progress(self.proved / self.value - 1.0, self.nodes)
                 if time.perf_counter() > self.deadline:
                     return none, f"the time limit of {self.limits.time_limit_s:g} s"
                 if self.nodes >= until:
                     return none, f"the node limit of {self.limits.node_limit}"
-                if crew.filled > _MOST_LEAVES:
+                if workers.filled > _MOST_LEAVES:
                     return none, f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
 
     def _task(self, gap: float, until: int) -> Task:
@@ -194,15 +194,15 @@ class _Run:
         )
         if value < start_value:
             value, p, u = start_value, position_m.copy(), axis.copy()
-        if value > self.found.log_value:
-            self.found = replace(
-                self.found,
+        if value > self.incumbent.log_value:
+            self.incumbent = replace(
+                self.incumbent,
                 position_m=p,
                 axis=u,
                 log_value=value,
                 multipliers=multipliers,
-                starts=self.found.starts + 1,
-                evaluations=self.found.evaluations + steps,
+                starts=self.incumbent.starts + 1,
+                evaluations=self.incumbent.evaluations + steps,
             )
             self.favourite = self._favourite()
         else:  # the two evaluations differ in their rounding: do not ask again
@@ -213,7 +213,7 @@ class _Run:
         middle = root[0, self.node.CENTRE : self.node.CENTRE + 3]
         side = root[0, self.node.HALF : self.node.HALF + 3]
         return Proof(
-            found=self.found,
+            incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
             leaves=leaves,
@@ -245,11 +245,11 @@ def late_nodes(family: Family) -> int:
 def prove(
     family: Family,
     axis_field: AxisField,
-    found: Found,
+    incumbent: Incumbent,
     limits: Limits,
     *,
     on_progress: Callable[[float, int], None] | None = None,
-    spent: Spent | None = None,
+    used: BudgetUsed | None = None,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
@@ -259,14 +259,14 @@ def prove(
     Args:
         family: the ratios and their domain.
         axis_field: which axes are allowed.
-        found: the incumbent.
+        incumbent: the incumbent.
         limits: target gap, time and nodes.
         on_progress: called now and then with the gap proved so far and the nodes examined; a
             KeyboardInterrupt during the run ends it with the bound reached.
-        spent: what was spent of the limits before.
+        used: what was used of the limits before.
     """
-    spent = spent or Spent()
-    run = _Run(family, axis_field, found, limits, on_progress, spent)
+    used = used or BudgetUsed()
+    run = _Run(family, axis_field, incumbent, limits, on_progress, used)
     root = run.root()
     leaves = run.by_distance(root)
     target = run.target
@@ -275,7 +275,7 @@ def prove(
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result(root, leaves, "")
         done, reason = root, "tried before"
-        if not spent.direct:
+        if not used.direct:
             done, reason = run.directly(root)
         if not reason:
             leaves = run.shown(done, leaves)

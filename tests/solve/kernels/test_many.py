@@ -6,11 +6,11 @@ import numpy as np
 
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve.batch import Batch, Settlement
+from nullpose.solve.batch import Batch, BatchOutcome
 from nullpose.solve.effort import Effort
 from nullpose.solve.kernels.many import OPEN, PROVED
 from nullpose.solve.limits import Limits
-from nullpose.solve.settle import settle
+from nullpose.solve.solve_and_prove import solve_and_prove
 
 
 def some_families(count: int):
@@ -34,13 +34,13 @@ def test_the_loop_is_the_run_for_each() -> None:
     """The same pose, value, bound and number of boxes, to the last digit."""
     families, effort = some_families(6), Effort(limits=Limits(gap=1e-4, threads=1))
     for field in (AxisField.free(), AxisField.within(0.0, 0.0), AxisField.within(0.0, 0.1)):
-        known = Settlement.blank(6, 2)
-        Batch(families).settle(field, effort, known)
+        known = BatchOutcome.blank(6, 2)
+        Batch(families).solve_and_prove(field, effort, known)
         for place, family in enumerate(families):
-            alone = settle(family, [field], effort)
-            assert known.log_value[place] == alone.found.log_value
-            np.testing.assert_array_equal(known.position_m[place], alone.found.position_m)
-            np.testing.assert_array_equal(known.axis[place], alone.found.axis)
+            alone = solve_and_prove(family, [field], effort)
+            assert known.log_value[place] == alone.incumbent.log_value
+            np.testing.assert_array_equal(known.position_m[place], alone.incumbent.position_m)
+            np.testing.assert_array_equal(known.axis[place], alone.incumbent.axis)
             assert known.bound[place] == alone.upper_bound
             assert known.boxes[place] == alone.nodes
 
@@ -49,14 +49,14 @@ def test_what_is_settled_is_left_alone() -> None:
     """Proved families are not touched, and a known bound close enough proves without a box."""
     families = some_families(3)
     effort = Effort(limits=Limits(gap=1e-3))
-    known = Settlement.blank(3, 2)
+    known = BatchOutcome.blank(3, 2)
     known.code[0] = PROVED
     batch = Batch(families)
-    batch.settle(AxisField.free(), effort, known)
+    batch.solve_and_prove(AxisField.free(), effort, known)
     assert known.log_value[0] == -math.inf
-    again = Settlement.blank(3, 2)
+    again = BatchOutcome.blank(3, 2)
     again.learn_from(known, (0.0, 1.0))
     assert np.all(again.code == OPEN)
-    batch.settle(AxisField.free(), effort, again)
+    batch.solve_and_prove(AxisField.free(), effort, again)
     np.testing.assert_array_equal(again.boxes[1:], 0)
     np.testing.assert_array_equal(again.log_value[1:], known.log_value[1:])

@@ -18,7 +18,7 @@ from nullpose.solve.robust.inner import Inner
 
 
 @pytest.fixture(scope="module")
-def settled(strong: Scenario) -> Exchange:
+def exchange(strong: Scenario) -> Exchange:
     """Returns an exchange whose search has ended."""
     exchange = Exchange(Inner(strong), AxisField.free(), 0, Limits(gap=1e-2))
     exchange.search(time.perf_counter() + 60.0)
@@ -30,33 +30,35 @@ def promised(scene: Scenario, cases: list[BindingCase], p: np.ndarray, u: np.nda
     return min(float(ratios_under(scene, p, u, one.case)[one.ratio, 0]) for one in cases)
 
 
-def test_cases_promise_no_less_than_is_guaranteed(strong: Scenario, settled: Exchange) -> None:
+def test_cases_promise_no_less_than_is_guaranteed(strong: Scenario, exchange: Exchange) -> None:
     """At every pose the finitely many cases leave at least what the worst of all errors leaves."""
     rng = np.random.default_rng(0)
     for _ in range(200):
         p = rng.uniform([-40.0, -20.0, 8.0], [40.0, 60.0, 30.0])
         u = rng.normal(size=3)
         u /= np.linalg.norm(u)
-        worst = min(one.value for one in settled.inner.worst(p, u))
-        assert promised(strong, settled.cases, p, u) >= worst * (1.0 - 1e-12)
+        worst = min(one.value for one in exchange.inner.worst(p, u))
+        assert promised(strong, exchange.cases, p, u) >= worst * (1.0 - 1e-12)
 
 
-def test_it_ends_where_promise_and_guarantee_meet(strong: Scenario, settled: Exchange) -> None:
+def test_it_ends_where_promise_and_guarantee_meet(strong: Scenario, exchange: Exchange) -> None:
     """At the end the promise of the cases is a third of the gap above the best pose's guarantee at most."""
-    assert settled.found is not None
-    assert settled.best is not None
-    value = math.exp(settled.found.log_value)
-    u = settled.found.axis / np.linalg.norm(settled.found.axis)
-    assert promised(strong, settled.cases, settled.found.position_m, u) == pytest.approx(value, rel=1e-9)
-    assert settled.best.worst <= value <= settled.best.worst * (1.0 + 1e-2 / 3.0)
+    assert exchange.incumbent is not None
+    assert exchange.best is not None
+    value = math.exp(exchange.incumbent.log_value)
+    u = exchange.incumbent.axis / np.linalg.norm(exchange.incumbent.axis)
+    assert promised(strong, exchange.cases, exchange.incumbent.position_m, u) == pytest.approx(
+        value, rel=1e-9
+    )
+    assert exchange.best.worst <= value <= exchange.best.worst * (1.0 + 1e-2 / 3.0)
 
 
-def test_a_general_solver_finds_no_better_promise(strong: Scenario, settled: Exchange) -> None:
+def test_a_general_solver_finds_no_better_promise(strong: Scenario, exchange: Exchange) -> None:
     """SLSQP on the finite family's epigraph, from many starts, ends nowhere above the exchange's search."""
-    assert settled.found is not None
-    best = settled.found.log_value
+    assert exchange.incumbent is not None
+    best = exchange.incumbent.log_value
     rng = np.random.default_rng(1)
-    cases = settled.cases
+    cases = exchange.cases
 
     def logs(x: np.ndarray) -> np.ndarray:
         u = x[3:6] / np.linalg.norm(x[3:6])
@@ -64,7 +66,7 @@ def test_a_general_solver_finds_no_better_promise(strong: Scenario, settled: Exc
 
     reached = []
     for i in range(6):
-        p = settled.found.position_m if i == 0 else rng.uniform([-25.0, 5.0, 8.0], [10.0, 40.0, 12.0])
+        p = exchange.incumbent.position_m if i == 0 else rng.uniform([-25.0, 5.0, 8.0], [10.0, 40.0, 12.0])
         axis = np.array([17.0, 15.0, 4.0]) - p
         start = np.concatenate([p, axis / np.linalg.norm(axis)])
         search = minimize(

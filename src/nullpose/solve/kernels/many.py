@@ -20,7 +20,7 @@ from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.search import cut_box, search
 from nullpose.solve.kernels.symmetric import copy_into
 
-__all__ = ["OPEN", "PROVED", "UNPLACED", "settle_many"]
+__all__ = ["OPEN", "PROVED", "UNPLACED", "solve_and_prove_many"]
 
 OPEN = 0
 PROVED = 1
@@ -145,11 +145,11 @@ def prove_directly(family, domain, axis_field, log_value, target, budget, p, u, 
 
 
 @heap_kernel
-def settle_many(
+def solve_and_prove_many(
     shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, climbs, target, budget,
     positions, axes, multipliers, log_values, bounds, nodes, codes,
 ):  # fmt: skip
-    """Fill the best pose of every family that is not settled yet, and the bound that was proved.
+    """Fill the best pose of every family that is not solved yet, and the bound that was proved.
 
     Args:
         shape: what the families share: numerator point, denominator of each ratio, start and point of its

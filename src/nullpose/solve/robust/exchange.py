@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from nullpose.family import AxisField, Family
 from nullpose.family.robust import BindingCase, build_robust_family
 from nullpose.physics.error_case import ErrorCase
-from nullpose.solve.found import Found
+from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.limits import Limits
 from nullpose.solve.multistart import SearchSettings, multistart
-from nullpose.solve.proof import Spent, prove
+from nullpose.solve.proof import BudgetUsed, prove
 from nullpose.solve.robust.inner import Inner
 
 __all__ = ["Exchange", "Visited"]
@@ -69,7 +69,7 @@ class Exchange:
         self.cases: list[BindingCase] = []
         self.add([BindingCase(ratio, blank) for ratio in range(inner.n_ratios)])
         self.best: Visited | None = None
-        self.found: Found | None = None
+        self.incumbent: Incumbent | None = None
         self.starts = self.evaluations = self.boxes = self.rounds = 0
         self.upper_bound: float | None = None
         self.reason = ""
@@ -132,7 +132,7 @@ class Exchange:
         settings = _LIGHT
         for _ in range(_MOST_ROUNDS):
             found = self._search_once(settings)
-            self.found, promised = found, math.exp(found.log_value)
+            self.incumbent, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             assert self.best is not None
             close = promised <= self.level(self.best.worst, _SHARE)
@@ -143,7 +143,7 @@ class Exchange:
             elif not self.add(new):
                 return
 
-    def _search_once(self, settings: SearchSettings) -> Found:
+    def _search_once(self, settings: SearchSettings) -> Incumbent:
         """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
         from nullpose.solve.kernels.polish import polish
 
@@ -173,22 +173,24 @@ class Exchange:
             began: when the clock of the limits began.
             on_progress: called now and then with the gap proved so far and the boxes examined.
         """
-        assert self.found is not None
-        start = self.found
+        assert self.incumbent is not None
+        start = self.incumbent
         if self.limits.of_rate:  # a rate is never below zero
             start = replace(start, log_value=max(0.0, start.log_value))
-        spent = Spent(seconds=time.perf_counter() - began, nodes=self.boxes)
+        used = BudgetUsed(seconds=time.perf_counter() - began, nodes=self.boxes)
         value = math.exp(start.log_value)
         gap = level / value - 1.0
         if not gap > _LEAST_GAP:  # the search was cut short
             gap = self.limits.ratio_gap(value)
         target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
-        proof = prove(self.family, self.axis_field, start, target, on_progress=on_progress, spent=spent)
+        proof = prove(self.family, self.axis_field, start, target, on_progress=on_progress, used=used)
         self.boxes += proof.nodes
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
         self.reason = proof.reason
-        if not proof.found.log_value > start.log_value + _SAME:
+        if not proof.incumbent.log_value > start.log_value + _SAME:
             return False
-        new = self.visit(proof.found.position_m, proof.found.axis, math.exp(proof.found.log_value))
+        new = self.visit(
+            proof.incumbent.position_m, proof.incumbent.axis, math.exp(proof.incumbent.log_value)
+        )
         return self.add(new) and not proof.reason

@@ -11,6 +11,7 @@ from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits
+from nullpose.solve.precompile import ready
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust.exchange import Exchange
@@ -18,7 +19,6 @@ from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
 from nullpose.solve.robust.inner import Inner
 from nullpose.solve.robust.solution import GuardedPose, RobustSolution
 from nullpose.solve.solution import Stats, Status
-from nullpose.solve.warming import ready
 
 __all__ = ["ROBUST_GAP", "solve_robust"]
 

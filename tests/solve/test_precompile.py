@@ -14,7 +14,7 @@ from nullpose.solve.kernels.branch import branch
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.search import likely_axis, search
 from nullpose.solve.multistart import multistart
-from nullpose.solve.warming import compile_branch, compile_other_half, compile_search, ready, warm_kernels
+from nullpose.solve.precompile import compile_branch, compile_other_half, compile_search, precompile, ready
 
 
 def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
@@ -40,7 +40,7 @@ def test_no_process_is_started_twice(paper: Callable, monkeypatch: pytest.Monkey
         raise AssertionError("a process was started")
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
-    warm_kernels(family, AxisField.free())
+    precompile(family, AxisField.free())
     ready(family, AxisField.free())
 
 
@@ -60,7 +60,7 @@ def test_the_other_half_fills_the_cache_for_real_families(paper: Callable, tmp_p
 from nullpose.scenario import load
 from nullpose.family import AxisField, build_family
 from nullpose.solve.kernels.branch import branch, examine_affine
-from nullpose.solve.warming import compile_affine, compile_branch, compile_other_half
+from nullpose.solve.precompile import compile_affine, compile_branch, compile_other_half
 family = build_family(load("examples/paper.toml"))
 compile_affine(family, AxisField.free())
 compile_other_half()

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Crew", "Task", "processors"]
+__all__ = ["Task", "WorkerPool", "processors"]
 
 FloatArray = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ class _Worker:
         return total
 
 
-class Crew:
+class WorkerPool:
     """One worker or several, and the nodes among them.
 
     Args:

@@ -13,12 +13,12 @@ from types import FunctionType
 
 from nullpose.family import AxisField, Family
 
-__all__ = ["ready", "warm_kernels"]
+__all__ = ["precompile", "ready"]
 
 _WAIT_S = 300.0  # it is ended then, and all that it compiled is compiled again
 
 
-def warm_kernels(family: Family, axis_field: AxisField) -> None:
+def precompile(family: Family, axis_field: AxisField) -> None:
     """Compile the kernels of the search in two processes if the cache has none.
 
     Without a second process, or without a cache, the search compiles everything by itself: nothing depends
@@ -35,7 +35,7 @@ def warm_kernels(family: Family, axis_field: AxisField) -> None:
     cache_path = search.stats.cache_path
     if cache_path is None or any(Path(cache_path).glob("search.search-*.nbi")):
         return
-    program = "from nullpose.solve.warming import compile_other_half as c; c()"
+    program = "from nullpose.solve.precompile import compile_other_half as c; c()"
     try:
         other = subprocess.Popen(
             [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -64,7 +64,7 @@ def ready(family: Family, axis_field: AxisField) -> None:
 
     if isinstance(branch, FunctionType) or branch.signatures:
         return
-    warm_kernels(family, axis_field)
+    precompile(family, axis_field)
     compile_search(family, axis_field)
     compile_branch(family, axis_field)
 

@@ -9,27 +9,27 @@ from dataclasses import dataclass, replace
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.effort import Effort
-from nullpose.solve.found import Found
+from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import multistart
-from nullpose.solve.proof import Proof, Spent, prove
-from nullpose.solve.warming import ready
+from nullpose.solve.precompile import ready
+from nullpose.solve.proof import BudgetUsed, Proof, prove
 
-__all__ = ["Settled", "settle"]
+__all__ = ["Outcome", "solve_and_prove"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Settled:
+class Outcome:
     """The best pose over all axis fields, and what was proved about each.
 
     Args:
-        found: the best pose.
+        incumbent: the best pose.
         chosen: index of the axis field that it belongs to.
         proofs: one for each axis field, in order; empty if none was asked for.
         upper_bound: no pose under any of the fields exceeds this; None if nothing is proved.
         reason: why the target gap was not reached, or not aimed at; empty if it was.
     """
 
-    found: Found
+    incumbent: Incumbent
     chosen: int = 0
     proofs: tuple[Proof, ...] = ()
     upper_bound: float | None = None
@@ -41,7 +41,7 @@ class Settled:
         return sum(proof.nodes for proof in self.proofs)
 
 
-def settle(family: Family, fields: Sequence[AxisField], effort: Effort) -> Settled:
+def solve_and_prove(family: Family, fields: Sequence[AxisField], effort: Effort) -> Outcome:
     """Return the best pose over the axis fields, with a proof if the effort allows for one.
 
     Every field is searched; then it is proved of each that it does not beat the best of all.
@@ -68,14 +68,14 @@ def settle(family: Family, fields: Sequence[AxisField], effort: Effort) -> Settl
         # the level to exclude is that of the best of all; where to look for better poses is this field's
         least = 0.0 if effort.limits.of_rate else -math.inf  # a rate is never below zero
         start = replace(each[i], log_value=max(best.log_value, least))
-        spent = Spent(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
-        proof = prove(family, field, start, effort.limits, on_progress=effort.on_progress, spent=spent)
+        used = BudgetUsed(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
+        proof = prove(family, field, start, effort.limits, on_progress=effort.on_progress, used=used)
         proofs.append(proof)
         reason = reason or proof.reason
-        if proof.found.log_value > best.log_value:
-            best, chosen = proof.found, i
-    return Settled(
-        found=replace(
+        if proof.incumbent.log_value > best.log_value:
+            best, chosen = proof.incumbent, i
+    return Outcome(
+        incumbent=replace(
             best,
             starts=sum(found.starts for found in each),
             evaluations=sum(found.evaluations for found in each),

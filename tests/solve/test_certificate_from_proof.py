@@ -11,7 +11,7 @@ from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, OFF_BAND, TO
 from nullpose.errors import UsageError
 from nullpose.scenario import Airframe, Eavesdropper, Scenario, Transmitter
 from nullpose.solve import Solution, certificate_of, solve
-from nullpose.solve.evidence import leaves_of
+from nullpose.solve.certificate_from_proof import leaves_of
 from nullpose.solve.kernels import node
 
 ENOUGH_S = 600.0

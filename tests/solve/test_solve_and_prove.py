@@ -8,7 +8,7 @@ import pytest
 from nullpose.family import AxisField, Family, build_family
 from nullpose.solve.effort import Effort
 from nullpose.solve.limits import Limits
-from nullpose.solve.settle import settle
+from nullpose.solve.solve_and_prove import solve_and_prove
 
 ENOUGH_S = 600.0
 
@@ -27,9 +27,9 @@ def fields(family: Family) -> list[AxisField]:
 
 def test_without_limits_nothing_is_proved(family: Family, fields: list[AxisField]) -> None:
     """The search alone gives the best of all fields, and no bound."""
-    each = [settle(family, [field], Effort()).found.log_value for field in fields]
-    both = settle(family, fields, Effort())
-    assert both.found.log_value == max(each)
+    each = [solve_and_prove(family, [field], Effort()).incumbent.log_value for field in fields]
+    both = solve_and_prove(family, fields, Effort())
+    assert both.incumbent.log_value == max(each)
     assert both.chosen == int(np.argmax(each))
     assert (both.proofs, both.upper_bound, both.reason, both.nodes) == ((), None, "", 0)
 
@@ -37,35 +37,35 @@ def test_without_limits_nothing_is_proved(family: Family, fields: list[AxisField
 def test_every_field_is_proved(family: Family, fields: list[AxisField]) -> None:
     """There is a proof for each field, all at the level of the best, and the bound is the largest."""
     effort = Effort(limits=Limits(gap=1e-3, time_limit_s=ENOUGH_S))
-    settled = settle(family, fields, effort)
-    value = np.exp(settled.found.log_value)
-    assert settled.reason == ""
-    assert len(settled.proofs) == len(fields)
-    assert settled.upper_bound == max(proof.upper_bound for proof in settled.proofs)
-    assert value <= settled.upper_bound <= value * 1.001
-    assert settled.nodes == sum(proof.nodes for proof in settled.proofs)
-    for proof in settled.proofs:
-        assert np.all(proof.leaves[:, 6] <= settled.upper_bound)
-    thorough = settle(family, fields, Effort(seed=9))
-    assert np.exp(thorough.found.log_value) <= settled.upper_bound
-    axis = settled.found.axis / np.linalg.norm(settled.found.axis)
-    chosen = fields[settled.chosen]
-    wanted = chosen.offset + chosen.matrix @ settled.found.position_m
+    outcome = solve_and_prove(family, fields, effort)
+    value = np.exp(outcome.incumbent.log_value)
+    assert outcome.reason == ""
+    assert len(outcome.proofs) == len(fields)
+    assert outcome.upper_bound == max(proof.upper_bound for proof in outcome.proofs)
+    assert value <= outcome.upper_bound <= value * 1.001
+    assert outcome.nodes == sum(proof.nodes for proof in outcome.proofs)
+    for proof in outcome.proofs:
+        assert np.all(proof.leaves[:, 6] <= outcome.upper_bound)
+    thorough = solve_and_prove(family, fields, Effort(seed=9))
+    assert np.exp(thorough.incumbent.log_value) <= outcome.upper_bound
+    axis = outcome.incumbent.axis / np.linalg.norm(outcome.incumbent.axis)
+    chosen = fields[outcome.chosen]
+    wanted = chosen.offset + chosen.matrix @ outcome.incumbent.position_m
     assert abs(axis @ wanted) == pytest.approx(np.linalg.norm(wanted))
 
 
 def test_the_order_of_the_fields_does_not_matter(family: Family, fields: list[AxisField]) -> None:
     """Turned round, the same field is chosen and the same bound is proved, to the gap."""
     effort = Effort(limits=Limits(gap=1e-3, time_limit_s=ENOUGH_S))
-    there, back = settle(family, fields, effort), settle(family, fields[::-1], effort)
+    there, back = solve_and_prove(family, fields, effort), solve_and_prove(family, fields[::-1], effort)
     assert back.chosen == len(fields) - 1 - there.chosen
-    assert back.found.log_value == pytest.approx(there.found.log_value, abs=1e-3)
+    assert back.incumbent.log_value == pytest.approx(there.incumbent.log_value, abs=1e-3)
 
 
 def test_searches_are_counted_once(family: Family, fields: list[AxisField]) -> None:
     """Starts and evaluations are those of all fields together."""
-    each = [settle(family, [field], Effort()).found for field in fields]
-    both = settle(family, fields, Effort()).found
+    each = [solve_and_prove(family, [field], Effort()).incumbent for field in fields]
+    both = solve_and_prove(family, fields, Effort()).incumbent
     assert both.starts == sum(found.starts for found in each)
     assert both.evaluations == sum(found.evaluations for found in each)
 
@@ -73,8 +73,8 @@ def test_searches_are_counted_once(family: Family, fields: list[AxisField]) -> N
 def test_limits_are_shared_by_the_fields(family: Family, fields: list[AxisField]) -> None:
     """A limit on nodes is one for all fields; what was not closed is told, and the bound holds."""
     effort = Effort(limits=Limits(gap=1e-8, node_limit=200, time_limit_s=ENOUGH_S))
-    settled = settle(family, fields, effort)
-    assert "node limit" in settled.reason
-    assert settled.nodes <= 200 + len(fields)
-    best = settle(family, fields, Effort()).found.log_value
-    assert settled.upper_bound >= np.exp(best)
+    outcome = solve_and_prove(family, fields, effort)
+    assert "node limit" in outcome.reason
+    assert outcome.nodes <= 200 + len(fields)
+    best = solve_and_prove(family, fields, Effort()).incumbent.log_value
+    assert outcome.upper_bound >= np.exp(best)
