@@ -77,14 +77,14 @@ def _turns(outline_m: FloatArray) -> FloatArray:
 
 def _turn(corners_m: FloatArray) -> FloatArray:
     """Return twice the areas of triangles, (..., 3, 2), negative where they are clockwise."""
-    a, b, c = np.moveaxis(corners_m, -2, 0)
-    return _cross(b - a, c - b)
+    a = corners_m[..., 0, :]
+    return _cross(corners_m[..., 1, :] - a, corners_m[..., 2, :] - a)
 
 
 def _is_ear(outline_m: FloatArray, corner: tuple[int, int, int], inward: NDArray[np.bool_]) -> bool:
-    corner_m = outline_m[list(corner)]
-    if not _turn(corner_m) > 0.0:
+    if inward[corner[0]]:
         return False
+    corner_m = outline_m[list(corner)]
     x, (west, east) = outline_m[:, 0], (corner_m[:, 0].min(), corner_m[:, 0].max())
     others = inward & (x >= west) & (x <= east)
     others[list(corner)] = False
