@@ -18,6 +18,7 @@ __all__ = ["Polygon", "area_m2", "depth_m"]
 
 Array = NDArray[np.float64]
 
+_MOST = 1000  # vertices: each edge is compared with every other
 _APART_M = 1e-6
 """Vertices and edges closer than this meet [m]."""
 
@@ -68,12 +69,14 @@ def _distance_m(points: Array, start: Array, end: Array) -> Array:
 def _fault(vertices_m: Array) -> str:
     """Returns what keeps a chain of vertices from bounding one area, or an empty text."""
     count = len(vertices_m)
-    apart = np.linalg.norm(vertices_m[:, None] - vertices_m, axis=-1) + np.where(np.eye(count), np.inf, 0.0)
-    if (apart < _APART_M).any():
-        later, earlier = np.argwhere(np.tril(apart < _APART_M))[0]
-        closes = (earlier, later) == (0, count - 1)
-        remedy = "remove it, the last vertex is joined to the first" if closes else "give every vertex once"
-        return f"vertex [{later}] repeats vertex [{earlier}]; {remedy}"
+    for later in range(1, count):
+        same = np.linalg.norm(vertices_m[:later] - vertices_m[later], axis=-1) < _APART_M
+        if same.any():
+            closes = (same.argmax(), later) == (0, count - 1)
+            remedy = (
+                "remove it, the last vertex is joined to the first" if closes else "give every vertex once"
+            )
+            return f"vertex [{later}] repeats vertex [{same.argmax()}]; {remedy}"
     met = _first_meeting(vertices_m)
     if met:
         one, other = met
@@ -137,8 +140,10 @@ class _Outline:
         value = plain(value)
         if not isinstance(value, list | tuple):
             raise rejection(f"got {described(value)}, must be a list of at least three vertices [x, y] in m")
-        if len(value) < 3:
-            raise rejection(f"got {described(value)}, must be at least three vertices [x, y] in m")
+        if not 3 <= len(value) <= _MOST:
+            raise rejection(
+                f"got {described(value)}, must be at least three vertices [x, y] in m, at most {_MOST}"
+            )
         return list(value)
 
     def judge(self, vertices: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
@@ -154,7 +159,7 @@ class _Outline:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        return {"type": "array", "items": handler(schema)["items"], "minItems": 3}
+        return {"type": "array", "items": handler(schema)["items"], "minItems": 3, "maxItems": _MOST}
 
 
 Polygon = Annotated[tuple[PlanePoint, ...], _Outline()]
