@@ -1,11 +1,14 @@
-"""Output: folders are tried before the work, and files are written whole or not at all."""
+"""Outputs are tried before the work and written whole or not at all; inputs are read in bounds."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from nullpose.errors import OutputError
-from nullpose.files import prepare_folder, replacing, write_text
+from nullpose.errors import OutputError, ScenarioError
+from nullpose.files import check_outputs, parse_json, prepare_folder, read_bytes, replacing, write_text
 
 
 def test_folder_is_made_with_its_parents(tmp_path: Path) -> None:
@@ -65,3 +68,120 @@ def test_file_that_cannot_be_written(tmp_path: Path) -> None:
     """A folder that is gone by the time of writing is an output error, not a traceback."""
     with pytest.raises(OutputError, match="cannot write"):
         write_text(tmp_path / "gone" / "a.txt", "text")
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:
+    """A file that grows beyond what the system allows is refused; the old one stays, and no other."""
+    path = tmp_path / "a.txt"
+    path.write_text("old", encoding="utf-8")
+    code = (
+        "import resource, signal, sys; from pathlib import Path; from nullpose.files import write_text\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); resource.setrlimit(resource.RLIMIT_FSIZE, (9, 9))\n"
+        "write_text(Path(sys.argv[1]), 'x' * 100_000)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=False)
+    assert f"OutputError: cannot write {path}: File too large" in done.stderr
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_link_is_followed(tmp_path: Path) -> None:
+    """What a link leads to is replaced, and the link stays one."""
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link.txt").symlink_to(tmp_path / "folder" / "a.txt")
+    write_text(tmp_path / "link.txt", "new")
+    assert (tmp_path / "link.txt").is_symlink()
+    assert (tmp_path / "folder" / "a.txt").read_text(encoding="utf-8") == "new"
+
+
+@pytest.mark.parametrize("kind", ["folder", "pipe", "device"])
+def test_what_is_no_file_is_never_replaced(tmp_path: Path, kind: str) -> None:
+    """Neither a folder nor a pipe nor a device makes way for an output, before the work or after it."""
+    path = tmp_path / kind
+    if kind == "folder":
+        path.mkdir()
+    elif kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/null")
+    before = path.stat()
+    with pytest.raises(OutputError, match=r"cannot write .* a folder, a device or a pipe is in the way"):
+        write_text(path, "text")
+    with pytest.raises(OutputError, match=r"--figure: cannot write .* is in the way"):
+        check_outputs({}, {"--figure": path})
+    assert os.path.samestat(before, path.stat())
+
+
+def test_outputs_are_prepared(tmp_path: Path) -> None:
+    """Folders are made; names that nobody gave are left out, and nothing is written."""
+    check_outputs(
+        {"the scenario": tmp_path / "s.toml"}, {"--a": None, "--b": tmp_path / "new" / "b", "--c": None}
+    )
+    assert [path.name for path in tmp_path.rglob("*")] == ["new"]
+
+
+@pytest.mark.parametrize("way", ["plain", "dots", "link", "hard link", "linked folder"])
+def test_one_file_is_not_two(tmp_path: Path, way: str) -> None:
+    """An output that is an input or another output, by whatever name, is refused, and both are named."""
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    file, other = folder / "a.toml", folder / "a.toml"
+    file.touch()
+    if way == "dots":
+        other = folder / ".." / "folder" / "a.toml"
+    elif way == "link":
+        other = tmp_path / "link"
+        other.symlink_to(file)
+    elif way == "hard link":
+        other = tmp_path / "hard"
+        other.hardlink_to(file)
+    elif way == "linked folder":
+        (tmp_path / "linked").symlink_to(folder)
+        other = tmp_path / "linked" / "a.toml"
+    with pytest.raises(OutputError, match=r"--certificate: .* is the file of the scenario too"):
+        check_outputs({"the scenario": file}, {"--certificate": other})
+    if way != "hard link":  # there is none of what is not there
+        file.unlink()
+    with pytest.raises(OutputError, match=r"--figure: .* is the file of --certificate too"):
+        check_outputs({}, {"--certificate": file, "--figure": other})
+
+
+def test_reading_is_bounded(tmp_path: Path) -> None:
+    """As many bytes as are allowed are read; one more, and the file is refused, as is what has no end."""
+    path = tmp_path / "a"
+    path.write_bytes(b"12345")
+    assert read_bytes(path, 5) == b"12345"
+    with pytest.raises(OSError, match=r"larger than 4e-06 MB"):
+        read_bytes(path, 4)
+    os.mkfifo(tmp_path / "pipe")
+    for endless in (tmp_path / "pipe", Path("/dev/zero")):
+        with pytest.raises(OSError, match="a device or a pipe"):
+            read_bytes(endless, 5)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ('{"a": 1, "a": 2}', "", 'the key "a" is given twice in one object; keep one'),
+        ('{"a": {"b": [1, {"c": 1, "d": 2, "c": 3}]}}', "a.b[1]", 'the key "c" is given twice'),
+        ('[[{"a": 1, "a": 1}]]', "[0][0]", 'the key "a" is given twice'),
+        ("[" * 100_000, "", "nested too deeply"),
+        ("[" + "9" * 10_000 + "]", "", "too many digits"),
+        ("[" + "[]," * 1_500_000 + "1]", "", "more than 1500000 lists and objects"),
+        ("{\n]", "line 2, column 1", "this is not JSON: "),
+    ],
+)
+def test_json_is_read_in_bounds(text: str, place: str, words: str) -> None:
+    """What says a thing twice, or would take too much memory, is refused with its place."""
+    with pytest.raises(ScenarioError) as caught:
+        parse_json(text)
+    (fault,) = caught.value.faults
+    assert fault.path == place
+    assert words in fault.message
+
+
+def test_many_keys_are_no_trouble() -> None:
+    """The key that is given twice is found among very many in no time."""
+    pairs = ", ".join(f'"k{number}": 0' for number in range(100_000))
+    with pytest.raises(ScenarioError, match="k99999"):
+        parse_json(f'{{{pairs}, "k99999": 1}}')

@@ -30,7 +30,7 @@ __all__ = [
 MOST_BYTES = 10_000_000
 """The largest file that is read, but for certificates and the manifests of studies."""
 
-_MOST_LISTS = 2_000_000  # each takes some 64 bytes of memory, however short it is in the file
+_MOST_LISTS = 1_500_000  # each takes some 64 bytes of memory, however short it is in the file
 _LONGEST_KEY = 40  # characters of a key that a message repeats
 
 
@@ -81,7 +81,7 @@ def parse_json(text: str, **options: Any) -> Any:
             value = json.loads(text, object_pairs_hook=unique, **options)
             if not repeated:
                 return value
-            place = _place(value, repeated[0][0])[1:]
+            place = _place(value, repeated[0][0]).removeprefix(".")
             message = (
                 f"the key {json.dumps(repeated[0][1][:_LONGEST_KEY])} is given twice in one object; keep one"
             )

@@ -4,6 +4,8 @@ import copy
 import gzip
 import json
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,7 +22,7 @@ from nullpose.certificate import (
     read_certificate,
     write_certificate,
 )
-from nullpose.certificate.file import scenario_digest
+from nullpose.certificate.file import FORMAT, scenario_digest
 from nullpose.errors import CertificateError, OutputError, ScenarioError
 
 Data = dict[str, Any]
@@ -365,3 +367,80 @@ def test_the_digest_is_of_the_values() -> None:
     """The order of keys does not matter; any value does."""
     assert scenario_digest({"a": 1, "b": [2.0]}) == scenario_digest({"b": [2.0], "a": 1})
     assert scenario_digest({"a": 1}) != scenario_digest({"a": math.nextafter(1, 2)})
+
+
+@pytest.mark.parametrize("path", [(), ("pose",), ("trees", 0), ("trees", 0, "leaves")])
+def test_unknown_keys_are_refused_by_path(path: tuple, data: Data) -> None:
+    """A key that no version has is no part of a certificate; of what made it anything may be told."""
+    data["provenance"]["anything"] = {"may": ["be", "here"]}
+    assert refusal(json.dumps(data)) == ""
+    set_at(data, (*path, "extra"), 1)
+    words = fault(data)
+    assert words.startswith(f"{dotted(path)}extra: unknown key; the keys here are ")
+
+
+def dotted(path: tuple) -> str:
+    """Return a path as messages have it."""
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)[1:] + (
+        "." if path else ""
+    )
+
+
+@pytest.mark.parametrize(
+    ("before", "path", "key"),
+    [
+        ('"scheme": ', "", "scheme"),
+        ('"roll_rad":', "pose", "roll_rad"),
+        ('"axis": ', "trees[0]", "axis"),
+        ('"test": ', "trees[0].leaves", "test"),
+        ('"power_w":', "scenario.nodes[0]", "power_w"),
+        ('"altitude_m":', "scenario.airspace", "altitude_m"),
+    ],
+)
+def test_keys_given_twice_are_refused_by_path(before: str, path: str, key: str, text: str) -> None:
+    """Of two values for one thing neither counts."""
+    at = text.index(before)
+    words = refusal(f"{text[:at]}{before}0, {text[at:]}")
+    place = f"{path}: " if path else ""
+    assert words == f'is no certificate: {place}the key "{key}" is given twice in one object; keep one'
+
+
+def test_what_came_with_a_later_version_is_unknown_to_an_earlier(data: Data) -> None:
+    """A column of the second version in a file of the first is refused, not ignored."""
+    assert data["version"] == 1
+    data["trees"][0]["leaves"]["band"] = []
+    assert fault(data).startswith("trees[0].leaves.band: unknown key")
+
+
+@pytest.mark.parametrize(
+    ("start", "words"), [("", "do not name the format"), (f'{{"format": "{FORMAT}', "grows beyond")]
+)
+def test_archives_that_grow_are_refused(start: str, words: str, tmp_path: Path) -> None:
+    """A small file that would unpack to very much is refused by its start, or at the limit."""
+    path = tmp_path / "proof.json.gz"
+    with gzip.open(path, "wb") as file:
+        file.write(start.encode())
+        for _ in range(7):
+            file.write(b" " * 10_000_000)
+    assert path.stat().st_size < 100_000
+    with pytest.raises(CertificateError, match=words):
+        read_certificate(path)
+
+
+def test_a_full_disk_leaves_the_old_certificate(certificate: Certificate, tmp_path: Path) -> None:
+    """Half a proof never takes the place of a whole one."""
+    path = tmp_path / "proof.json"
+    write_certificate(certificate, path)
+    before = path.read_bytes()
+    code = (
+        "import resource, signal, sys; from pathlib import Path\n"
+        "from nullpose.certificate import read_certificate, write_certificate\n"
+        "path = Path(sys.argv[1]); certificate = read_certificate(path)\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (999, 999))\n"
+        "write_certificate(certificate, path)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=False)
+    assert f"OutputError: cannot write {path}: File too large" in done.stderr
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]

@@ -170,3 +170,43 @@ def test_endless_number(tmp_path: Path) -> None:
     path = tmp_path / "long.toml"
     path.write_text("x = " + "9" * 5000, encoding="utf-8")
     assert "too many digits" in fault_of(path).message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = 1\n" + "a." * 50_000 + "a = 1\n",
+        "[" + "a . " * 50_000 + "a]\n",
+        ".".join(['"="'] * 50_000) + " = 1\n",
+        'x = { y = """\n"x"""", ' + '"=".' * 50_000 + '"=" = 1 }\n',
+        "x = " + "9" * 1_000_000 + "\n",
+        "k" * 1_000_000 + " = 1\n",
+    ],
+    ids=["dotted", "header", "quoted", "behind text", "number", "key"],
+)
+def test_monstrous_words_are_refused_at_once(text: str, tmp_path: Path) -> None:
+    """Keys of very many parts, which would take gigabytes to read, and very long words are not read."""
+    path = tmp_path / "long.toml"
+    path.write_text(text, encoding="utf-8")
+    assert "a key has more than 64 parts, or a word more than 10000 characters" in fault_of(path).message
+
+
+def test_long_texts_comments_and_lists_are_no_keys(tmp_path: Path) -> None:
+    """Dots in texts, comments and numbers are no parts of keys."""
+    dots = "." * 20_000
+    numbers = "1.5, " * 9000
+    text = f'"..." = "{dots}"\na = """\n{dots}"""\nb = \'{dots}\' # {dots}\nc = [{numbers}]\n'
+    path = tmp_path / "dots.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    assert {'"..."', "a", "b", "c"} & {fault.path for fault in caught.value.faults}
+
+
+def test_a_file_that_is_too_large(tmp_path: Path) -> None:
+    """More than 10 MB are not read, and neither is a pipe."""
+    with (tmp_path / "large.toml").open("wb") as file:
+        file.truncate(10_000_001)
+    assert "it is larger than 10 MB" in fault_of(tmp_path / "large.toml").message
+    os.mkfifo(tmp_path / "pipe")
+    assert "it is a device or a pipe" in fault_of(tmp_path / "pipe").message

@@ -138,6 +138,7 @@ GEOJSON_CASES = [
     ("[1]", "n.geojson", "got a list of one value, must be a FeatureCollection"),
     ("{", "n.geojson: line 1, column 2", "this is not JSON"),
     ('{"type": 1, "type": 2}', "n.geojson", 'the key "type" is given twice'),
+    ('{"features": [0, {"id": 1, "id": 2}]}', "n.geojson: features[1]", 'the key "id" is given twice'),
     ("[" * 100_000, "n.geojson", "nested too deeply"),
     (f'{{"a": {"9" * 5000}}}', "n.geojson", "too many digits"),
     (json.dumps(feature()), "n.geojson: type", 'got the text "Feature", must be "FeatureCollection"'),
@@ -339,3 +340,46 @@ def test_a_dictionary_names_no_file() -> None:
     (fault,) = caught.value.faults
     assert fault.path == "nodes_from"
     assert "only a scenario file may name" in fault.message
+
+
+def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:
+    """By an absolute path, by dots or through a link: what lies outside the folder is not even looked at."""
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (tmp_path / "n.csv").write_text("secret\n", encoding="utf-8")
+    (folder / "link.csv").symlink_to(tmp_path / "n.csv")
+    (folder / "linked").symlink_to(tmp_path)
+    for file in (str(tmp_path / "n.csv"), "../n.csv", "link.csv", "linked/n.csv", "../none.csv"):
+        (fault,) = faults_of(folder, file, None)
+        assert fault.path == "nodes_from"
+        assert "outside the folder of the file that names it; put it there, or allow this by" in fault.message
+        assert "secret" not in fault.message
+
+
+def test_nodes_from_elsewhere_may_be_allowed(tmp_path: Path) -> None:
+    """If the caller says so they are read; below the scenario's folder they are in any case."""
+    (tmp_path / "scene" / "below").mkdir(parents=True)
+    text = LOCAL + "a,1,2,3,4\n"
+    (tmp_path / "n.csv").write_text(text, encoding="utf-8")
+    path = written(tmp_path / "scene", "../n.csv", None)
+    assert load(path, allow_outside=True).node_names == ("a",)
+    (tmp_path / "scene" / "below" / "n.csv").write_text(text, encoding="utf-8")
+    for file in ("below/n.csv", str(tmp_path / "scene" / "below" / "n.csv"), "../scene/below/n.csv"):
+        assert load(written(tmp_path / "scene", file, None)).node_names == ("a",)
+
+
+def test_a_file_of_another_kind_is_not_read(tmp_path: Path) -> None:
+    """The name decides before the content does: a device of another name is told by its name."""
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    (fault,) = faults_of(tmp_path, "zero", None)
+    assert "must end in one of" in fault.message
+
+
+def test_too_many_nodes(tmp_path: Path) -> None:
+    """Files of more nodes than are allowed are refused for that."""
+    for file, content in (
+        ("n.csv", LOCAL + "a,1,2,3,4\n" * 20_000),
+        ("n.json", '{"type": "FeatureCollection", "features": [' + "[]," * 20_000 + "1]}"),
+    ):
+        fault = faults_of(tmp_path, file, content)[-1]
+        assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario import Airspace, Jammer, Node, Receiver
+from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.scenario.section import Section
 
 
@@ -49,3 +49,29 @@ def test_import_is_lean() -> None:
     script = f"import nullpose.scenario, sys; print(sorted({heavy} & sys.modules.keys()))"
     ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert ran.stdout.strip() == "[]"
+
+
+def test_very_many_unknown_keys_are_told_in_few_words() -> None:
+    """The first twenty are named and the others counted; a list that is far too long is one fault."""
+    with pytest.raises(ScenarioError) as caught:
+        Receiver.from_dict(
+            {f"k{number}": 1 for number in range(100_000)} | {"noise_w": 1.0, "frequency_hz": 1e9}
+        )
+    assert [fault.path for fault in caught.value.faults if fault.path] == [
+        f"k{number}" for number in range(20)
+    ]
+    assert [fault.message for fault in caught.value.faults if not fault.path] == [
+        "99980 more keys are unknown; remove them too"
+    ]
+    assert str(caught.value).endswith("... and 1 more")
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_dict({"nodes": [1] * 10_001})
+    (fault,) = caught.value.faults
+    assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"
+
+
+def test_very_long_keys_are_cut_in_messages() -> None:
+    """A key of a megabyte is no message of a megabyte."""
+    with pytest.raises(ScenarioError) as caught:
+        Receiver.from_dict({"k" * 1_000_000: 1})
+    assert len(str(caught.value)) < 1000

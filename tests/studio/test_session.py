@@ -168,3 +168,19 @@ def test_a_closed_session_leaves_no_thread(paper: Scenario) -> None:
         time.sleep(pause_s)
         assert session.close(_PATIENCE_S)
     assert not [thread for thread in threading.enumerate() if thread.name == "nullpose-studio-worker"]
+
+
+@pytest.mark.parametrize("file", ["/etc/hostname", "/etc/passwd.csv", "nodes.csv", "../nodes.csv"])
+def test_a_loaded_file_may_name_no_other(file: str) -> None:
+    """What the page sends reads no file of this machine: it is refused, and told what to do instead."""
+    with pytest.raises(ScenarioError) as raised:
+        scenario_from_text(f'nodes_from = "{file}"\n'.encode(), "mine.toml")
+    (fault,) = raised.value.faults
+    assert fault.path == "nodes_from"
+    assert "list the nodes here, under [[nodes]]" in fault.message
+
+
+def test_a_loaded_file_is_bounded() -> None:
+    """More than 10 MB are refused unread."""
+    with pytest.raises(ScenarioError, match="larger than 10 MB"):
+        scenario_from_text(b"#" * 10_000_001, "mine.toml")

@@ -18,6 +18,7 @@ from nullpose.certificate.certificate import OFF_BAND, Certificate, Leaves, Tree
 from nullpose.errors import CertificateError, ScenarioError
 from nullpose.files import parse_json, read_bytes, replacing
 from nullpose.scenario import Scenario
+from nullpose.scenario.wording import printable
 
 __all__ = [
     "FORMAT",
@@ -252,7 +253,9 @@ def _plain(text: str) -> dict[str, Any]:
 def _refuse_unknown(table: object, path: str, known: Collection[str]) -> None:
     for key in table if isinstance(table, dict) else ():
         if key not in known:
-            raise CertificateError(f"{path}{key[:40]!r}: unknown key; the keys here are {', '.join(known)}")
+            raise CertificateError(
+                f"{path}{printable(key)}: unknown key; the keys here are {', '.join(known)}"
+            )
 
 
 def _no_number(name: str) -> None:

@@ -20,7 +20,6 @@ KIND = "scenario"
 """The type that every fault worded here carries through pydantic."""
 
 
-_LONGEST_KEY = 80  # characters of a key that a path repeats
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -47,8 +46,7 @@ def path_of(place: Iterable[str | int]) -> str:
         if isinstance(step, int):
             path += f"[{step}]"
         else:
-            key = step if len(step) <= _LONGEST_KEY else f"{step[: _LONGEST_KEY - 3]}..."
-            key = key if _BARE_KEY.fullmatch(key) else f'"{printable(key)}"'
+            key = printable(step) if _BARE_KEY.fullmatch(step) else f'"{printable(step)}"'
             path += f".{key}" if path else key
     return path
 

@@ -186,9 +186,9 @@ def _text(path: str, kind: _Kind = _SCENARIO_FILE, base: Path = Path()) -> str:
         others = _other_files(Path(path) / kind.usual_name, kind, base)
         raise _UnusableFileError(f"this is a folder, must be {kind.noun}{others}") from None
     except OSError as error:
+        reason = error.strerror or "unknown reason"
         raise _UnusableFileError(
-            f"the file cannot be read ({(error.strerror or 'unknown reason').lower()}); check its name and "
-            "permissions"
+            f"the file cannot be read ({reason[:1].lower()}{reason[1:]}); check its name and permissions"
         ) from None
     except ValueError:  # a null character in the name
         raise _UnusableFileError("this cannot be the name of a file") from None

@@ -98,14 +98,15 @@ class Section(BaseModel):
                 message = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
                 raise collected(cls.__name__, [as_error_details((key,), message)])
         table, error = None, None
-        untold = [key for key in data if key not in cls.model_fields][_MOST_UNKNOWN:]
+        known = cls.model_fields
+        untold = set([key for key in data if key not in known][_MOST_UNKNOWN:])
         if untold:
-            data = {key: data[key] for key in data.keys() - set(untold)}
+            data = {key: value for key, value in data.items() if key not in untold}
         try:
             table = handler(cls.completed(data))
         except ValidationError as several:
             error = several
-        details = table_faults(error, data, cls.model_fields, cls.pairs, cls.alternatives, cls.ways)
+        details = table_faults(error, data, known, cls.pairs, cls.alternatives, cls.ways)
         if untold:
             details.append(as_error_details((), f"{len(untold)} more keys are unknown; remove them too"))
         details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]

@@ -12,7 +12,7 @@ import numpy as np
 __all__ = ["described", "listed", "nearest", "plain", "printable"]
 
 _LONGEST_QUOTE = 40  # characters of a given text that a message repeats
-_LONGEST_WORD = 300  # characters of a word that is compared with others
+_LONGEST_WORD = 100  # characters of a word that is repeated, or compared with others
 _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting
 
 
@@ -59,8 +59,9 @@ def _number(value: float) -> str:
 
 
 def printable(text: str) -> str:
-    """Returns the text with control characters written as escapes."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    """Returns the text with control characters written as escapes; of a very long one the beginning."""
+    shown = text if len(text) <= _LONGEST_WORD else f"{text[: _LONGEST_WORD - 3]}..."
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in shown)
 
 
 def listed(words: Collection[str]) -> str:

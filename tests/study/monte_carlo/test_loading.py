@@ -1,6 +1,7 @@
 """A spec file is read whole, with every fault at once, each by its path."""
 
 import re
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -197,3 +198,53 @@ def test_a_path_needs_no_quotes(tables: Tables) -> None:
     bare = tables(sweep={"jammers": {"M": {"power_w": [1.0, 2.0]}, "radius_m": SPACED}})
     quoted = tables(sweep={"jammers.M.power_w": [1.0, 2.0], "jammers.radius_m": [1.0, 2.0]})
     assert StudySpec.from_dict(bare) == StudySpec.from_dict(quoted)
+
+
+def test_scenarios_from_elsewhere_are_refused(tmp_path: Path) -> None:
+    """A spec names files in its folder or below, and these likewise, unless it is allowed to."""
+    (tmp_path / "inner").mkdir()
+    shutil.copy(EXAMPLE.with_name("paper.toml"), tmp_path)
+    spec = 'scenes = 1\n[scene]\nfile = "../paper.toml"\n'
+    faults = _faults(tmp_path / "inner", spec)
+    assert "outside the folder of the file that names it" in faults["../paper.toml"]
+    assert load_spec(tmp_path / "inner" / "spec.toml", allow_outside=True).n_scenes == 1
+
+
+@pytest.mark.parametrize(
+    ("nodes", "words"),
+    [
+        ('layout = "poisson"\ndensity_per_m2 = 1e6', "means 4e+20 points, at most 10000"),
+        ('layout = "clusters"\nparents = 10000\ncount = 10000\nspread_m = 1.0', "means 1e+08 points"),
+    ],
+)
+def test_more_points_than_memory_holds(nodes: str, words: str, tmp_path: Path) -> None:
+    """How many points a layout means is looked at before they are drawn."""
+    tables = "scenes = 1\n[scene.airspace]\naltitude_m = [8, 30]\n[scene.receiver]\nnoise_w = 1.0\n"
+    region = "x_m = [-1e7, 1e7]\ny_m = [-1e7, 1e7]\npower_w = 1.0\n"
+    faults = _faults(tmp_path, f"{tables}reference_gain_db = 0.0\n[nodes]\n{nodes}\n{region}")
+    assert words in faults["scene 0: nodes"]
+
+
+def test_a_sweep_of_tables_in_tables(tmp_path: Path) -> None:
+    """Tables nested deeper than any path are a fault, whatever their depth."""
+    value = "{" + ".".join(["a"] * 60) + " = "
+    faults = _faults(tmp_path, TOO_DEEP.format(value * 100 + "1" + "}" * 100))
+    assert any("unknown key" in words for words in faults.values())
+
+
+TOO_DEEP = """
+scenes = 1
+[scene.airspace]
+altitude_m = [8, 30]
+[scene.receiver]
+noise_w = 1.0
+reference_gain_db = 0.0
+[nodes]
+layout = "disc"
+count = 1
+centre_m = [0, 0]
+radius_m = 1
+power_w = 1.0
+[sweep]
+x = {}
+"""

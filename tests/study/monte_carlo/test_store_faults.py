@@ -1,6 +1,8 @@
 """Damage on disk: nothing that is half written or altered is read, and a further run mends it."""
 
+import hashlib
 import json
+import os
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,7 +12,14 @@ import pandas as pd
 import pytest
 
 from nullpose import OutputError, UsageError
-from nullpose.study.monte_carlo import StudyProgress, StudySpec, read_study, run_study, study_status
+from nullpose.study.monte_carlo import (
+    StudyProgress,
+    StudySpec,
+    read_study,
+    run_study,
+    study_spec,
+    study_status,
+)
 
 Rows = Callable[[Path], pd.DataFrame]
 Spec = Callable[..., StudySpec]
@@ -134,3 +143,113 @@ def test_a_full_disk_ends_the_program_with_a_message(small_disk: Path, spec_file
     assert client.returncode == 2
     assert "No space left on device" in said
     assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("name", 3),
+        ("objective", "best"),
+        ("objective", None),
+        ("scenes", "many"),
+        ("scenes", 10**400),
+        ("chunk", 0),
+        ("spec_sha256", None),
+        ("versions", []),
+        ("spec", 3),
+    ],
+)
+def test_a_manifest_with_something_wrong_is_refused(study: Path, key: str, value: Any) -> None:
+    """Each thing that is asked of it is looked at, and named."""
+    path = study / "manifest.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {key: value}), encoding="utf-8")
+    for read in (study_status, read_study):
+        with pytest.raises(UsageError, match=rf"manifest\.json: {key} is missing or wrong"):
+            read(study)
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["[" * 100_000, '{"format": 1, "format": 1}', '{"format": 1, "name": ' + "9" * 5000, "\0", "[]" * 9],
+)
+def test_a_manifest_that_is_none_is_refused(study: Path, content: str) -> None:
+    """Whatever is in its place ends in words."""
+    (study / "manifest.json").write_text(content, encoding="utf-8")
+    with pytest.raises(UsageError, match=r"manifest\.json: .*restore it|another format"):
+        study_status(study)
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "parts.jsonl", "lock"])
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
+def test_what_never_ends_is_not_read(study: Path, name: str, kind: str) -> None:
+    """A pipe, a device or a folder in the place of a study's file is refused, not waited for."""
+    (study / name).unlink()
+    if kind == "pipe":
+        os.mkfifo(study / name)
+    elif kind == "device":
+        (study / name).symlink_to("/dev/zero")
+    else:
+        (study / name).mkdir()
+    if name == "lock":
+        assert study_status(study).running == ""
+        with pytest.raises(OutputError, match="in the way"):
+            run_study(read_study(study).spec, study, workers=0)
+    else:
+        with pytest.raises(UsageError, match=name):
+            study_status(study)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "[" * 4000,
+        "[" * 1_000_000,
+        "{}",
+        "3",
+        {"first": "0"},
+        {"first": -1},
+        {"first": 5, "last": 4},
+        {"rows": 10**300},
+        {"seconds": float("inf")},
+        {"sha256": 3},
+        {"extra": 1},
+    ],
+    ids=str,
+)
+def test_a_line_that_is_none_is_passed_over(study: Path, line: Any) -> None:
+    """Whatever stands in the journal, the lines that are sound count, and no others."""
+    before, path = study_status(study), study / "parts.jsonl"
+    if isinstance(line, dict):
+        line = json.dumps(json.loads(path.read_text().splitlines()[0]) | line)
+    path.write_text(f"{line}\n" + path.read_text(), encoding="utf-8")
+    assert study_status(study) == before
+
+
+def test_a_part_beyond_the_scenes_is_done_away_with(study: Path, rows: Rows) -> None:
+    """A journal that lists more scenes than the study has does not stop a further run."""
+    before, path = rows(study), study / "parts.jsonl"
+    lines = path.read_text().splitlines()
+    last = json.loads(lines[-1])
+    part = study / "parts" / f"part-{last['first']:09d}-{last['last']:09d}.parquet"
+    last |= {"first": 10**6, "last": 10**6 + 9}
+    part.rename(part.with_name("part-001000000-001000009.parquet"))
+    path.write_text("\n".join([*lines[:-1], json.dumps(last)]) + "\n", encoding="utf-8")
+    assert run_study(study_spec(study), study, workers=0).done >= SCENES
+    assert len(before) == SCENES
+
+
+@pytest.mark.parametrize("content", [b"no table", b""])
+def test_a_part_that_is_no_table_is_told(study: Path, content: bytes) -> None:
+    """A file whose checksum is the one listed, but which holds other columns or none, is refused by name."""
+    path = study / "parts.jsonl"
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    part = sorted((study / "parts").iterdir())[0]
+    if content:
+        part.write_bytes(content)
+    else:
+        pd.DataFrame({"scene": [1.0]}).to_parquet(part)
+    content = part.read_bytes()
+    lines[0] |= {"size": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+    path.write_text("\n".join(map(json.dumps, lines)) + "\n", encoding="utf-8")
+    with pytest.raises(UsageError, match=rf"{part.name}: (cannot be read|has other columns)"):
+        read_study(study).frame()

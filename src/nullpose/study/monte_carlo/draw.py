@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study.monte_carlo.distribution import Distribution
-from nullpose.study.monte_carlo.layout import Points
+from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.scene import POINT_LISTS
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -249,14 +249,23 @@ def _places(
 ) -> FloatArray:
     """Return positions seen from above [m], (n, 2)."""
     if points.layout == "poisson":
-        count = int(counting.poisson((points.density_per_m2 or 0.0) * _area_m2(points)))
-        return _evenly(points, placing, count)
+        mean = _bounded(points, (points.density_per_m2 or 0.0) * _area_m2(points))
+        return _evenly(points, placing, int(counting.poisson(mean)))
     if points.layout != "clusters":
         return _evenly(points, placing, _between(counting, points.count))
     centres_m = _evenly(points, parents, _between(counting, points.parents))
     sizes = [_between(counting, points.count) for _ in centres_m]
-    around_m = (points.spread_m or 0.0) * placing.standard_normal((sum(sizes), 2))
+    total = int(_bounded(points, sum(sizes)))
+    around_m = (points.spread_m or 0.0) * placing.standard_normal((total, 2))
     return np.asarray(np.repeat(centres_m, sizes, axis=0) + around_m)
+
+
+def _bounded(points: Points, count: float) -> float:
+    """Return a number of points, unless it is more than a scene may have."""
+    if count > MOST_POINTS:
+        message = f"layout {points.layout} means {count:g} points, at most {MOST_POINTS} are allowed"
+        raise ScenarioError([Fault(type(points).__name__.lower(), message)])
+    return count
 
 
 def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int:

@@ -22,6 +22,7 @@ __all__ = ["MOST_POINTS", "SweepAxes", "points_of"]
 MOST_POINTS = 1_000_000
 """The most combinations of swept values."""
 
+_DEEPEST = 16  # parts of a path: no value of a scene is deeper
 _KEYS = ("from", "to", "points", "spacing")
 _VALUE = Quantity("a number", -1e30, 1e30, "in the unit that the path ends in")
 _POINTS = Count("a number of values", 2, 100_000, "both ends included")
@@ -79,7 +80,7 @@ def points_of(axes: tuple[Axis, ...]) -> tuple[dict[str, float], ...]:
 def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str, object]]:
     """Yield each path with what is given for it; one without quotes has come as tables within tables."""
     for key, given in table.items():
-        if isinstance(given, Mapping) and given and not set(given) & set(_KEYS):
+        if isinstance(given, Mapping) and given and not set(given) & set(_KEYS) and len(at) < _DEEPEST:
             yield from _paths(given, (*at, str(key)))
         else:
             yield (path_of((*at, str(key))) if at else str(key)), given
