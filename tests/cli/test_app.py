@@ -44,7 +44,7 @@ VERBS = {
         "--json",
     }
     | PROOF,
-    "verify": {"--scenario", "--json"},
+    "verify": {"--scenario", "--allow-outside", "--json"},
     "reproduce": {"--out", "--seed", "--json"},
     "check": {"--set", "--allow-outside", "--json"},
     "schema": set(),

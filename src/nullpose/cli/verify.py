@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nullpose.cli.faults import INTERNAL
-from nullpose.cli.options import JsonOutput
+from nullpose.cli.options import AllowOutside, JsonOutput
 from nullpose.cli.output import Ticker, show, show_json
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def verify(
             show_default=False,
         ),
     ] = None,
+    allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
     """Check a certificate in outward-rounded arithmetic, by code that imports nothing from the solver."""
@@ -38,7 +39,7 @@ def verify(
     from nullpose.scenario import load
 
     certificate = read_certificate(file)
-    unlike = () if scenario is None else differences(certificate, load(scenario))
+    unlike = () if scenario is None else differences(certificate, load(scenario, allow_outside=allow_outside))
     with Ticker("checking leaves") as ticker:
         verdict = verify_certificate(certificate, on_progress=ticker)
     if json_output:
