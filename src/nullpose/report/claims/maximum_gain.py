@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from nullpose.physics import received_power_w, to_db
-from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.equidistant import best_equidistant
 from nullpose.report.claims.study import JammingStudy, bound_db, lead_range_db
 from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.report.numbers import at_least, at_most
 from nullpose.schemes import Scheme
 
 __all__ = ["equidistant", "null_at_jammer"]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from nullpose.report.numbers import listed, number, percent, span, with_unit
 from nullpose.report.study.cases import ReportCase, whole_of
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, listed, number, percent, span, with_unit
+from nullpose.report.study.wording import count_of
 
 __all__ = ["MOST_OF_IT", "answer_of"]
 

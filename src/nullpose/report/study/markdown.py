@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+from nullpose.report.numbers import percent
 from nullpose.report.study import tables
 from nullpose.report.study.answer import answer_of
 from nullpose.report.study.cases import whole_of
 from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, replicates_of
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, escaped, percent
+from nullpose.report.study.wording import count_of, escaped
 
 __all__ = ["report_text", "title_of"]
 

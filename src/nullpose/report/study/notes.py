@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
+from nullpose.report.numbers import listed, percent
 from nullpose.report.study.statistics import FEW_SCENES
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, listed, percent
+from nullpose.report.study.wording import count_of
 
 __all__ = ["certainty_of", "outage_words", "unfinished_note"]
 

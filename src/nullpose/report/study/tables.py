@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from nullpose.report.numbers import number, percent, with_interval
 from nullpose.report.study.cases import ReportCase, nominal_of, whole_of
 from nullpose.report.study.summary import Summary
 from nullpose.report.study.values import STATUSES
-from nullpose.report.study.wording import escaped, number, percent, with_interval
+from nullpose.report.study.wording import escaped
 
 __all__ = [
     "best_table",

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import Curve, house_style
+from nullpose.report.numbers import percent
 from nullpose.report.study.figures.panels import finish, looks_of, step_curve
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
 from nullpose.report.study.values import STATUSES
-from nullpose.report.study.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

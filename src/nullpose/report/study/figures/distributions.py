@@ -9,11 +9,11 @@ import numpy as np
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import INK, Curve, house_style
+from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import finish, looks_of, new_panels, points_with, step_curve
 from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nullpose.report.figures.style import INK, Curve, house_style
+from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase, nominal_of
 from nullpose.report.study.figures.panels import finish, looks_of, new_panels, points_with, row_axis
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
