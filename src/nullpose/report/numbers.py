@@ -9,11 +9,15 @@ from nullpose.physics.quantity import Quantity
 
 __all__ = [
     "MINUS",
+    "NONE",
     "at_least",
     "at_most",
+    "axis_label",
     "begun",
+    "count_of",
     "count_words",
     "degrees_text",
+    "escaped",
     "fixed",
     "listed",
     "number",
@@ -21,12 +25,14 @@ __all__ = [
     "share_text",
     "short",
     "span",
+    "unit_of",
     "with_interval",
     "with_unit",
 ]
 
 MINUS = "\N{MINUS SIGN}"
-_NONE = "\N{EN DASH}"
+_UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}
+NONE = "\N{EN DASH}"
 
 
 def begun(text: str) -> str:
@@ -119,7 +125,7 @@ def number(value: float, quantity: Quantity | None = None) -> str:
         quantity: whose it is; None for one in decibels.
     """
     if math.isnan(value):
-        return _NONE
+        return NONE
     if math.isinf(value):
         return "\N{INFINITY}" if value > 0.0 else f"{MINUS}\N{INFINITY}"
     text = f"{value:z.3g}" if quantity is not None and quantity.is_rate else f"{value:z.2f}"
@@ -169,7 +175,7 @@ def percent(share: float, digits: int = 0) -> str:
         digits: decimals.
     """
     if math.isnan(share):
-        return _NONE
+        return NONE
     text = f"{100.0 * share:.{digits}f}"
     step = 10.0**-digits
     if float(text) == 100.0 and share < 1.0 - 1e-9:
@@ -198,3 +204,42 @@ def share_text(share: float) -> str:
     """
     per_cent = 100.0 * share
     return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
+
+
+def count_of(count: int, noun: str) -> str:
+    """Return a count with its noun, thousands apart, as in "2,000 scenes".
+
+    Args:
+        count: how many.
+        noun: of one.
+    """
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def escaped(text: str) -> str:
+    """Return a text that Markdown shows as it is.
+
+    Args:
+        text: a title, a name or a reason, on one line.
+    """
+    return "".join(f"\\{letter}" if letter in "\\`*|<>[]#$" else letter for letter in " ".join(text.split()))
+
+
+def unit_of(path: str) -> str:
+    """Return the unit of a setting by the end of its name, as in ``power_w``; empty if it has none.
+
+    Args:
+        path: of the setting.
+    """
+    leaf = path.rsplit(".", 1)[-1].split("[", 1)[0]
+    return _UNITS.get(leaf.rsplit("_", 1)[-1].lower(), "") if "_" in leaf else ""
+
+
+def axis_label(path: str) -> str:
+    """Return what an axis of a swept setting is labelled.
+
+    Args:
+        path: of the setting.
+    """
+    unit = unit_of(path)
+    return f"{path}  ({unit})" if unit else path
