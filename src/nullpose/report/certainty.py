@@ -144,8 +144,5 @@ def _widest(schemes: Sequence[str], curves: Mapping[str, Certainty]) -> str:
 
 
 def _who(schemes: Sequence[str], curves: Collection[str]) -> str:
-    return "" if len(schemes) == len(curves) else ", ".join(_label(name) for name in schemes) + ": "
-
-
-def _label(scheme: str) -> str:
-    return Scheme(scheme).label.lower()
+    labels = (Scheme(scheme).label.lower() for scheme in schemes)
+    return "" if len(schemes) == len(curves) else f"{', '.join(labels)}: "
