@@ -8,8 +8,9 @@ import pytest
 from rich.console import Console
 
 from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
-from nullpose.report.airframes import airframes_view, answer_lines, proof_lines, share_text
+from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
 from nullpose.report.figures import draw_airframes
+from nullpose.report.numbers import share_text
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nullpose import Pose
-from nullpose.report.certainty import Certainty, at_least, at_most, certainty_lines, short
+from nullpose.report.certainty import Certainty, certainty_lines
+from nullpose.report.numbers import at_least, at_most, short
 from nullpose.solve import Objective
 from nullpose.study import SweepRow, SweepTable
 

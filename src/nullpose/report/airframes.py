@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from nullpose.physics.quantity import Quantity
-from nullpose.report.certainty import rigour_lines, short
+from nullpose.report.certainty import rigour_lines
+from nullpose.report.document import document, head, table
+from nullpose.report.numbers import begun, fixed, share_text, short
 from nullpose.report.quantity import bound_text
-from nullpose.report.tables import fixed, new_table
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-    from rich.table import Table
 
-__all__ = ["airframes_view", "answer_lines", "proof_lines", "share_text"]
+__all__ = ["airframes_view", "answer_lines", "proof_lines"]
 
 _WITHIN = "1 %"  # the tolerance of the study, in words
 _STATUS = {
@@ -34,64 +33,60 @@ def airframes_view(comparison: AirframeComparison) -> RenderableType:
     Args:
         comparison: what each vehicle makes of a scenario.
     """
-    from rich.console import Group
-    from rich.text import Text
-
-    answer = Text("\n".join(answer_lines(comparison)), style="bold")
-    parts: list[RenderableType] = [
-        Text(f"{comparison.scenario.name or 'scenario'}\n", style="bold"),
-        _values_table(comparison),
-    ]
+    quantity = Quantity.of(comparison.scenario)
+    title = f"S{quantity.smallest[1:]} over the nodes ({quantity.unit})"
+    rows = [_value_cells(comparison, quantity, result) for result in comparison.results]
+    rows.insert(len(comparison.dipoles), {})
+    guaranteed = []
     if comparison.scenario.is_uncertain:
-        parts.append(_guaranteed_table(comparison))
-    return Group(*parts, Text("\n".join(proof_lines(comparison))), Text(), answer)
+        guaranteed = [_guaranteed_cells(comparison, quantity, result) for result in comparison.dipoles]
+    bold = [] if comparison.stated is None else [comparison.stated.case.label]
+    return document(
+        head(comparison.scenario.name),
+        "",
+        table(title, rows, bold=bold, left=["status"], no_wrap=True),
+        table(f"Guaranteed under the file's errors ({quantity.unit})", guaranteed, bold=bold, no_wrap=True),
+        "\n".join(proof_lines(comparison)),
+        "",
+        head("\n".join(answer_lines(comparison))),
+    )
 
 
-def _values_table(comparison: AirframeComparison) -> Table:
-    """Return the table of values: ratio, value, bound, difference from the omnidirectional one, status."""
-    quantity = Quantity.of(comparison.scenario)
-    heads = ([] if quantity.is_rate else ["ratio"]) + ["value", "at most", "difference"]
-    table = _table(f"S{quantity.smallest[1:]} over the nodes ({quantity.unit})", heads)
-    table.add_column("status", no_wrap=True)
-    whole = quantity.in_unit(comparison.omnidirectional.value)
-    for index, result in enumerate(comparison.results):
-        if index == len(comparison.dipoles):
-            table.add_section()
-        objective, cells = result.objective, ["-"] * len(heads)
-        if objective is not None:
-            value = quantity.in_unit(objective.value)
-            cells = [] if quantity.is_rate else [f"{objective.value:.5g}"]
-            cells.append(_number(value))
-            cells.append("-" if objective.upper_bound is None else bound_text(objective, 4))
-            cells.append(_number(value - whole, 3))
-        style = "bold" if result is comparison.stated else ""
-        table.add_row(result.case.label, *cells, _STATUS[result.status], style=style)
-    return table
+def _value_cells(
+    comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
+) -> dict[str, str]:
+    """Return a vehicle's ratio, value, bound, difference from the omnidirectional one, and status."""
+    objective, cells = result.objective, {"vehicle, dipole": result.case.label}
+    if not quantity.is_rate:
+        cells["ratio"] = "-" if objective is None else f"{objective.value:.5g}"
+    value = math.nan if objective is None else quantity.in_unit(objective.value)
+    bound = "-" if objective is None or objective.upper_bound is None else bound_text(objective, 4)
+    return {
+        **cells,
+        "value": _number(value),
+        "at most": bound,
+        "difference": _number(value - quantity.in_unit(comparison.omnidirectional.value), 3),
+        "status": _STATUS[result.status],
+    }
 
 
-def _guaranteed_table(comparison: AirframeComparison) -> Table:
-    """Return the table of what each dipole guarantees under the file's errors."""
-    quantity = Quantity.of(comparison.scenario)
-    heads = ["pose above", "robust pose", "at most", "difference"]
-    table = _table(f"Guaranteed under the file's errors ({quantity.unit})", heads)
-    best = comparison.omnidirectional.guaranteed
-    whole = best.robust_pose if best is not None and best.robust_pose is not None else math.nan
-    for result in comparison.dipoles:
-        found, cells = result.guaranteed, ["-"] * len(heads)
-        if found is not None:
-            robust = math.nan if found.robust_pose is None else found.robust_pose
-            bound = math.nan if found.upper_bound is None else found.upper_bound
-            values = [quantity.in_unit(value) for value in (found.nominal_pose, robust, bound, whole)]
-            cells = [_number(value, 3) for value in (*values[:3], values[1] - values[3])]
-        table.add_row(result.case.label, *cells, style="bold" if result is comparison.stated else "")
-    return table
-
-
-def _table(title: str, heads: Sequence[str]) -> Table:
-    table = new_table(title, heads, first="vehicle, dipole")
-    for column in table.columns[1:]:
-        column.no_wrap = True
-    return table
+def _guaranteed_cells(
+    comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
+) -> dict[str, str]:
+    """Return what a dipole guarantees under the file's errors."""
+    found, best = result.guaranteed, comparison.omnidirectional.guaranteed
+    known = [None] * 3 if found is None else [found.nominal_pose, found.robust_pose, found.upper_bound]
+    whole = None if best is None else best.robust_pose
+    nominal, robust, bound, most = (
+        math.nan if value is None else quantity.in_unit(value) for value in (*known, whole)
+    )
+    return {
+        "vehicle, dipole": result.case.label,
+        "pose above": _number(nominal, 3),
+        "robust pose": _number(robust, 3),
+        "at most": _number(bound, 3),
+        "difference": _number(robust - most, 3),
+    }
 
 
 def _number(value: float, digits: int = 4) -> str:
@@ -110,9 +105,9 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     certified = [result for result in dipoles if result.status is Status.CERTIFIED]
     lines = ["Difference: from the omnidirectional vehicle."]
     if certified:
-        gaps = [r.objective.relative_gap for r in certified if r.objective is not None]
-        widest = short(max(gap for gap in gaps if gap is not None))
-        who = "Every dipole's value is" if len(certified) == len(dipoles) else f"{_names(certified)}:"
+        widest = short(max(each.objective.relative_gap or 0.0 for each in certified if each.objective))
+        names = ", ".join(result.case.label for result in certified)
+        who = "Every dipole's value is" if len(certified) == len(dipoles) else f"{names}:"
         lines.append(f"{who} certified: proved to be within {widest} of the best that the vehicle can reach.")
     lines += [f"{result.case.label}: {result.reason}" for result in comparison.dipoles if result.reason]
     if any(result.status is Status.BEST_FOUND for result in dipoles):
@@ -136,10 +131,6 @@ def _array_proof(comparison: AirframeComparison) -> list[str]:
     share = f"{len(arrays) - len(others)} of {len(arrays)}"
     reasons = "; ".join(dict.fromkeys(result.reason for result in others if result.reason))
     return [f"Arrays: {share} values are certified, the others the best found{reasons and f' ({reasons})'}."]
-
-
-def _names(results: list[AirframeResult]) -> str:
-    return ", ".join(result.case.label for result in results)
 
 
 def _guaranteed_line(comparison: AirframeComparison) -> str:
@@ -167,9 +158,10 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
     least = comparison.least_sufficient
     if least is None:
         return ["No vehicle with one dipole gives every node anything here."]
-    lines = [_least_line(comparison, least)]
-    if comparison.stated is not None and comparison.stated is not least:
-        lines.append(_stated_line(comparison, comparison.stated))
+    lines, own = [_least_line(comparison, least)], comparison.stated
+    if own is not None and own is not least:
+        enough = "suffices too" if comparison.suffices(own) else "does not suffice"
+        lines.append(f"{begun(own.case.phrase)} {enough}: it gives {_share(comparison, own)}.")
     if comparison.arrays:
         lines.append(_array_line(comparison))
     if comparison.scenario.is_uncertain:
@@ -183,18 +175,13 @@ def _least_line(comparison: AirframeComparison, least: AirframeResult) -> str:
         nearest = max(others, key=lambda result: result.value)
         return (
             f"It takes an omnidirectional vehicle here: none of the others comes within {_WITHIN} of it. "
-            f"{_begun(nearest.case.phrase)} comes nearest, with {_share(comparison, nearest)} of its value."
+            f"{begun(nearest.case.phrase)} comes nearest, with {_share(comparison, nearest)} of its value."
         )
     rank = "the least of these that comes" if least is not comparison.results[0] else "it comes"
     return (
-        f"{_begun(least.case.phrase)} gives {_share(comparison, least)} of what an omnidirectional "
+        f"{begun(least.case.phrase)} gives {_share(comparison, least)} of what an omnidirectional "
         f"vehicle gives here: {rank} within {_WITHIN} of it."
     )
-
-
-def _stated_line(comparison: AirframeComparison, own: AirframeResult) -> str:
-    enough = "suffices too" if comparison.suffices(own) else "does not suffice"
-    return f"{_begun(own.case.phrase)} {enough}: it gives {_share(comparison, own)}."
 
 
 def _array_line(comparison: AirframeComparison) -> str:
@@ -210,10 +197,10 @@ def _array_line(comparison: AirframeComparison) -> str:
                 f"with {words} none of up to {_size(arrays[-1])} elements was found to be enough "
                 f"({_share(comparison, best)} with {_size(best)})"
             )
-    lead = [f"On a level vehicle an array is enough {' or '.join(enough)}"] if enough else []
-    if not lead:
+    if not enough:
         return f"An array on a level vehicle: {'; '.join(short_of_it)}."
-    return f"{'; '.join([*lead, *short_of_it])}."
+    lead = f"On a level vehicle an array is enough {' or '.join(enough)}"
+    return f"{'; '.join([lead, *short_of_it])}."
 
 
 def _times(comparison: AirframeComparison, result: AirframeResult) -> str:
@@ -251,19 +238,3 @@ def _errors_lines(comparison: AirframeComparison) -> list[str]:
 def _share(comparison: AirframeComparison, result: AirframeResult) -> str:
     share = comparison.share(result)
     return "nothing" if share is None else share_text(share)
-
-
-def share_text(share: float) -> str:
-    """Return a share in per cent: three digits, whole numbers from 100 on, as in ``99.3 %``.
-
-    Never rounded up to 100 by more than a twentieth of a per cent.
-
-    Args:
-        share: at least 0.
-    """
-    per_cent = 100.0 * share
-    return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
-
-
-def _begun(phrase: str) -> str:
-    return phrase[0].upper() + phrase[1:]

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from nullpose.report.numbers import begun, short
 from nullpose.solve import Rigour, Scheme, Status
 from nullpose.study import SweepRow, SweepTable
 
 __all__ = [
     "Certainty",
-    "at_least",
-    "at_most",
     "certainty_by_scheme",
     "certainty_lines",
     "rigour_lines",
@@ -123,7 +122,7 @@ def certainty_lines(table: SweepTable) -> list[str]:
         )
     if kinds["searched"]:
         lines.append(f"{_who(kinds['searched'], curves)}best found by searching, nothing is proved")
-    return [line[0].upper() + line[1:] for line in lines]
+    return [begun(line) for line in lines]
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
@@ -145,50 +144,5 @@ def _widest(schemes: Sequence[str], curves: Mapping[str, Certainty]) -> str:
 
 
 def _who(schemes: Sequence[str], curves: Collection[str]) -> str:
-    return "" if len(schemes) == len(curves) else ", ".join(_label(name) for name in schemes) + ": "
-
-
-def _label(scheme: str) -> str:
-    return Scheme(scheme).label.lower()
-
-
-def short(number: float) -> str:
-    """Return a number rounded up to two digits, small and large ones as in ``1e-6``.
-
-    Args:
-        number: at least 0.
-    """
-    if not math.isfinite(number) or number == 0.0 or 1e-3 < number < 1e3:
-        return at_most(number)
-    mantissa, exponent = f"{_rounded(number, 2, math.ceil):.1e}".split("e")
-    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
-
-
-def at_most(number: float, digits: int = 2) -> str:
-    """Return a number rounded up to so many significant digits.
-
-    Args:
-        number: any.
-        digits: how many.
-    """
-    return f"{_rounded(number, digits, math.ceil):.{digits}g}"
-
-
-def at_least(number: float, digits: int = 2) -> str:
-    """Return a number rounded down to so many significant digits.
-
-    Args:
-        number: any.
-        digits: how many.
-    """
-    return f"{_rounded(number, digits, math.floor):.{digits}g}"
-
-
-def _rounded(number: float, digits: int, towards: Callable[[float], int]) -> float:
-    if number == 0.0 or not math.isfinite(number):
-        return number
-    place = digits - 1 - math.floor(math.log10(abs(number)))
-    scaled = number * 10.0**place
-    nearest = round(scaled)
-    whole = nearest if abs(scaled - nearest) < 1e-9 else towards(scaled)
-    return float(whole / 10.0**place)
+    labels = (Scheme(scheme).label.lower() for scheme in schemes)
+    return "" if len(schemes) == len(curves) else f"{', '.join(labels)}: "

@@ -6,7 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from nullpose.physics.quantity import Quantity
-from nullpose.report.tables import azimuth_text, count_words, degrees_text, fixed, new_table
+from nullpose.report.document import beside, document, head, table
+from nullpose.report.numbers import count_words, degrees_text, fixed
+from nullpose.report.tables import azimuth_text, work_words
 from nullpose.scenario import Scenario
 from nullpose.solve.robust import GuardedPose, RobustSolution
 
@@ -39,50 +41,35 @@ def robust_view(solution: RobustSolution) -> RenderableType:
     Args:
         solution: what was found.
     """
-    from rich.console import Group
-    from rich.text import Text
-
     scenario = solution.scenario
-    quantity = Quantity.of(scenario)
-    title = scenario.name or "scenario"
-    head = Text.assemble((title, "bold"), "\n", ("Robust", "bold blue"), ": ")
-    head.append(
-        f"{quantity.smallest} guaranteed {_value(quantity, solution.robust.guaranteed)}", style="bold"
+    quantity, guaranteed = Quantity.of(scenario), solution.robust.guaranteed
+    value = f"{guaranteed:.7g} {quantity.unit}"
+    if not quantity.is_rate:
+        value = f"{quantity.in_unit(guaranteed):.5g} dB ({guaranteed:.5g})"
+    lines = (_bound_words(solution), _status_words(solution), f"errors: {error_words(scenario)}")
+    columns = {"robust pose": solution.robust, "best pose as stated": solution.nominal}
+    rows = beside({name: _cells(quantity, one) for name, one in columns.items()})
+    return document(
+        head(scenario.name, "Robust", f"{quantity.smallest} guaranteed {value}", lines),
+        table("", rows, bold=[f"guaranteed ({quantity.unit})"]),
+        f"worst for the robust pose: {solution.robust.worst_case}",
+        f"worst for the best as stated: {solution.nominal.worst_case}\n",
+        _gain_words(solution, quantity),
     )
-    for line in (_bound_words(solution), _status_words(solution), f"errors: {error_words(scenario)}"):
-        head.append(f"\n{line}")
-    table = new_table("", ("robust pose", "best pose as stated"))
-    both = (solution.robust, solution.nominal)
-    rows = {
-        f"guaranteed ({quantity.unit})": [_unit(quantity, one.guaranteed) for one in both],
-        f"worst found ({quantity.unit})": [_unit(quantity, one.worst) for one in both],
-        f"without errors ({quantity.unit})": [_unit(quantity, one.nominal) for one in both],
-        "position (m)": [", ".join(fixed(float(x), 3) for x in one.pose.position_m) for one in both],
-        "roll, pitch, yaw (deg)": [_angles(one) for one in both],
-        "azimuth of the axis (deg)": [azimuth_text(one.pose) for one in both],
-        "worst off": [one.binding_node for one in both],
+
+
+def _cells(quantity: Quantity, one: GuardedPose) -> dict[str, str]:
+    pose, unit = one.pose, quantity.unit
+    angles = (pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
+    return {
+        f"guaranteed ({unit})": f"{quantity.in_unit(one.guaranteed):.4f}",
+        f"worst found ({unit})": f"{quantity.in_unit(one.worst):.4f}",
+        f"without errors ({unit})": f"{quantity.in_unit(one.nominal):.4f}",
+        "position (m)": ", ".join(fixed(float(x), 3) for x in pose.position_m),
+        "roll, pitch, yaw (deg)": ", ".join(map(degrees_text, angles)),
+        "azimuth of the axis (deg)": azimuth_text(pose),
+        "worst off": one.binding_node,
     }
-    for name, cells in rows.items():
-        table.add_row(name, *cells, style="bold" if name.startswith("guaranteed") else "")
-    worst = Text()
-    for name, one in zip(("robust pose", "best as stated"), both, strict=True):
-        worst.append(f"worst for the {name}: {one.worst_case}\n")
-    return Group(head, Text(), table, worst, Text(_gain_words(solution, quantity)))
-
-
-def _value(quantity: Quantity, value: float) -> str:
-    if quantity.is_rate:
-        return f"{value:.7g} {quantity.unit}"
-    return f"{quantity.in_unit(value):.5g} dB ({value:.5g})"
-
-
-def _unit(quantity: Quantity, value: float) -> str:
-    return f"{quantity.in_unit(value):.4f}" if value > 0.0 or quantity.is_rate else "-inf"
-
-
-def _angles(one: GuardedPose) -> str:
-    pose = one.pose
-    return ", ".join(degrees_text(angle) for angle in (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))
 
 
 def _bound_words(solution: RobustSolution) -> str:
@@ -98,13 +85,8 @@ def _bound_words(solution: RobustSolution) -> str:
 def _status_words(solution: RobustSolution) -> str:
     reason = f": {solution.reason}" if solution.reason else ""
     stats = solution.stats
-    effort = (
-        count_words(solution.cases, "error case"),
-        count_words(stats.starts, "start"),
-        count_words(stats.boxes, "box", "boxes"),
-    )
-    rigour = solution.rigour.message
-    return f"{solution.status.value}{reason}\n{rigour}\n{', '.join(effort)}, {stats.wall_s:.2g} s"
+    work = f"{count_words(solution.cases, 'error case')}, {work_words(stats.starts, stats.boxes)}"
+    return f"{solution.status.value}{reason}\n{solution.rigour.message}\n{work}, {stats.wall_s:.2g} s"
 
 
 def _gain_words(solution: RobustSolution, quantity: Quantity) -> str:

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 from nullpose.physics import Link, Pose, evaluate, to_db
 from nullpose.physics.quantity import Quantity
-from nullpose.report.certainty import short
+from nullpose.report.numbers import short
 from nullpose.scenario import Scenario
 from nullpose.solve import Solution, Status
 from nullpose.solve.robust import RobustSolution

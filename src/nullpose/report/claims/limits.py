@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from nullpose.physics import Pose
-from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, bound_db
+from nullpose.report.numbers import at_least, at_most
 from nullpose.schemes import Scheme
 
 __all__ = ["strong_jamming", "weak_jamming", "zero_interference_constant"]

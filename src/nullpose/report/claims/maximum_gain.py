@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from nullpose.physics import received_power_w, to_db
-from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.equidistant import best_equidistant
 from nullpose.report.claims.study import JammingStudy, bound_db, lead_range_db
 from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.report.numbers import at_least, at_most
+from nullpose.report.paper import with_jamming
 from nullpose.schemes import Scheme
 
 __all__ = ["equidistant", "null_at_jammer"]
@@ -69,7 +71,7 @@ def _null_angle_deg(study: JammingStudy, level: float) -> float:
 
 
 def _jamming_to_noise_db(study: JammingStudy, level: float) -> float:
-    scenario, pose = study.scenario_at(level), study.at(_SCHEME, level).pose
+    scenario, pose = with_jamming(study.scenario, level), study.at(_SCHEME, level).pose
     received_w = received_power_w(
         pose.position_m,
         pose.antenna_axis,
@@ -125,11 +127,11 @@ def _equidistant_proved(study: JammingStudy, limit: float | None) -> str:
     )
 
 
-def _equidistant_finding(limit: float | None, three: dict[str, object], printed: dict[str, float]) -> str:
+def _equidistant_finding(limit: float | None, three: dict[str, Any], printed: dict[str, float]) -> str:
     if limit is None:
         return "At no swept level is the best maximum-gain position equidistant."
     apart_m = printed["largest_distance_difference_m"]
-    first, second = _pair(three["distances_m"])
+    first, second = three["distances_m"]
     return (
         f"Equidistant up to P_M/P = {limit:.3f} only. At P_M/P = 3 the best position is {first:.1f} m and "
         f"{second:.1f} m from the nodes and reaches {three['best_db']:.3f} dB; the best equidistant one "
@@ -138,16 +140,11 @@ def _equidistant_finding(limit: float | None, three: dict[str, object], printed:
     )
 
 
-def _pair(values: object) -> tuple[float, float]:
-    first, second = values if isinstance(values, list) else (math.nan, math.nan)
-    return float(first), float(second)
-
-
 def _advantage_db(study: JammingStudy, level: float) -> float:
     return study.at(_SCHEME, level).min_sinr_db - study.equidistant_at(level).min_sinr_db
 
 
-def _row(study: JammingStudy, level: float) -> dict[str, object]:
+def _row(study: JammingStudy, level: float) -> dict[str, Any]:
     row, equal = study.at(_SCHEME, level), study.equidistant_at(level)
     return {
         "jamming_to_transmission_ratio": level,
@@ -164,10 +161,9 @@ def _printed_evidence(study: JammingStudy) -> dict[str, float]:
     nodes = study.scenario.node_positions_m
     rows = study.curve(Scheme.MAXIMUM_GAIN_PRINTED)
     differences = [abs(distance_m(row.pose, nodes[0]) - distance_m(row.pose, nodes[1])) for row in rows]
-    leads_db = [
-        row.min_sinr_db - float(to_db(best_equidistant(study.scenario_at(row.value), as_printed=True)[1]))
-        for row in rows
-    ]
+    scenarios = [with_jamming(study.scenario, row.value) for row in rows]
+    equal_db = [float(to_db(best_equidistant(each, as_printed=True)[1])) for each in scenarios]
+    leads_db = [row.min_sinr_db - level_db for row, level_db in zip(rows, equal_db, strict=True)]
     return {
         "largest_distance_difference_m": max(differences),
         "largest_lead_over_equidistant_db": max(leads_db),

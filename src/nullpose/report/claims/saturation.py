@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from nullpose.report.certainty import at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, lead_range_db
 from nullpose.report.geometry import distance_m
+from nullpose.report.numbers import at_most
 from nullpose.schemes import Scheme
 
 __all__ = ["saturation"]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 
-from nullpose.report.paper import JAMMER_POWER, with_jamming
+from nullpose.report.paper import JAMMER_POWER
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.schemes import Scheme
 from nullpose.study import SweepRow, SweepTable, sweep
@@ -86,14 +85,6 @@ class JammingStudy:
         self._used[key] = self._rows[key]
         return self._rows[key]
 
-    def scenario_at(self, level: float) -> Scenario:
-        """Return the scenario at a jamming level.
-
-        Args:
-            level: P_M/P, a power ratio.
-        """
-        return with_jamming(self.scenario, level)
-
     def lead_db(self, scheme: str, other: str, level: float) -> float:
         """Return how far one scheme's smallest SINR is above another's, dB.
 
@@ -123,12 +114,7 @@ class JammingStudy:
         Args:
             condition: what is asked of a level.
         """
-        for low, high in pairwise(self.levels):
-            if not condition(low):
-                return None
-            if not condition(high):
-                return _bisected(condition, low, high)
-        return self.levels[-1]
+        return _last_holding(condition, self.levels)
 
     def holds_from(self, condition: Callable[[float], bool]) -> float | None:
         """Return the smallest level from which a condition holds, nothing if it fails at the last.
@@ -136,12 +122,7 @@ class JammingStudy:
         Args:
             condition: what is asked of a level.
         """
-        for high, low in pairwise(reversed(self.levels)):
-            if not condition(high):
-                return None
-            if not condition(low):
-                return _bisected(condition, high, low)
-        return self.levels[0]
+        return _last_holding(condition, self.levels[::-1])
 
 
 def bound_db(row: SweepRow) -> float:
@@ -161,6 +142,18 @@ def lead_range_db(row: SweepRow, other: SweepRow) -> tuple[float, float]:
         other: the one it is compared with.
     """
     return row.min_sinr_db - bound_db(other), bound_db(row) - other.min_sinr_db
+
+
+def _last_holding(condition: Callable[[float], bool], levels: Sequence[float]) -> float | None:
+    """Return the last level, bisected, up to which a condition was seen to hold from the first of some on."""
+    holding = levels[0]
+    if not condition(holding):
+        return None
+    for failing in levels[1:]:
+        if not condition(failing):
+            return _bisected(condition, holding, failing)
+        holding = failing
+    return holding
 
 
 def _bisected(condition: Callable[[float], bool], holding: float, failing: float) -> float:

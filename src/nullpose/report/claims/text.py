@@ -92,12 +92,8 @@ def _evidence_table(evidence: Mapping[str, object]) -> list[str]:
     """Return the rows of the evidence that has levels, as a table; single numbers as a list before it."""
     lines: list[str] = []
     for name, value in evidence.items():
-        if isinstance(value, int | float | str):
+        if isinstance(value, int | float | str | Mapping):
             lines.append(f"- {_words(name)}: {_cell(value)}")
-        elif isinstance(value, Mapping):
-            lines.append(
-                f"- {_words(name)}: " + ", ".join(f"{_words(k)} {_cell(v)}" for k, v in value.items())
-            )
     rows = evidence.get("levels")
     if isinstance(rows, list) and rows:
         heads = ["P_M/P" if name == "jamming_to_transmission_ratio" else _words(name) for name in rows[0]]
@@ -118,6 +114,8 @@ def _words(name: str) -> str:
 def _cell(value: object) -> str:
     if value is None:
         return "never"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{_words(name)} {_cell(item)}" for name, item in value.items())
     if isinstance(value, list):
         return "(" + ", ".join(_cell(item) for item in value) + ")"
     if isinstance(value, float):

@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from nullpose.report.certainty import at_least, at_most
 from nullpose.report.claims.claim import Claim, Verdict
 from nullpose.report.claims.study import JammingStudy, lead_range_db
+from nullpose.report.numbers import at_least, at_most
 from nullpose.schemes import Scheme
 
 __all__ = ["above_jammer", "pose_optimisation_wins"]

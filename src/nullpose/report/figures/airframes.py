@@ -7,8 +7,9 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from nullpose.physics.quantity import Quantity
-from nullpose.report.airframes import answer_lines, share_text
+from nullpose.report.airframes import answer_lines
 from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
+from nullpose.report.numbers import share_text
 from nullpose.study import AirframeComparison, AirframeResult
 
 if TYPE_CHECKING:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nullpose.physics import Pose
 from nullpose.physics.array import element_positions
 from nullpose.report.figures.pattern import beam_surface_m, draw_beam
-from nullpose.report.figures.poses import escaped, plain_name
+from nullpose.report.figures.poses import draw_stages, escaped, plain_name
 from nullpose.report.figures.scene import (
     ALONE,
     DRONE,
@@ -18,10 +19,9 @@ from nullpose.report.figures.scene import (
     Stage,
     View,
     draw_line,
-    draw_names,
-    draw_scene,
 )
-from nullpose.report.figures.style import INK, house_style
+from nullpose.report.figures.style import INK
+from nullpose.report.numbers import MINUS
 from nullpose.solve import ArraySolution
 
 if TYPE_CHECKING:
@@ -45,25 +45,15 @@ def draw_array(solution: ArraySolution) -> Figure:
     Args:
         solution: what was found.
     """
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
+
+    def vehicle(axes: Any, stage: Stage, _: Pose) -> None:
+        _draw_vehicle(axes, stage, solution)
 
     stage = Stage(scenario=solution.scenario, poses=(solution.pose,), view=_view(solution))
-    with house_style():
-        figure = Figure(figsize=(ALONE.width_inch, ALONE.height_inch))
-        figure.subplots_adjust(left=0.016, right=0.962, bottom=ALONE.bottom, top=ALONE.top)
-        axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
-        draw_scene(axes, stage, solution.pose)
-        _draw_vehicle(axes, stage, solution)
-        draw_names(axes, stage, solution.pose, _BEAM * stage.extent_m)
-        figure.suptitle(_title(solution), fontsize=10)
-        handles, labels = axes.get_legend_handles_labels()
-        once = dict(zip(labels, handles, strict=True))
-        handles = [*once.values(), Patch(color=SURFACE, alpha=0.8, label=_beam_words(solution))]
-        figure.legend(
-            handles=handles, loc="lower center", ncols=ALONE.columns, frameon=False, handlelength=2.2
-        )
-    return figure
+    words = _beam_words(solution)
+    return draw_stages(
+        [stage], [solution.pose], [], _title(solution), vehicle=vehicle, radius=_BEAM, surface=words
+    )
 
 
 def _view(solution: ArraySolution) -> View:
@@ -81,7 +71,7 @@ def _title(solution: ArraySolution) -> str:
     objective = solution.objective
     value = f"{objective.quantity.smallest} {objective.value_db:.2f} dB"
     yaw = f"yaw {math.degrees(solution.yaw_rad):.1f}°"
-    words = f"{solution.label}: {value}, {yaw}".replace("-", "\N{MINUS SIGN}")
+    words = f"{solution.label}: {value}, {yaw}".replace("-", MINUS)
     return f"{plain_name(solution.scenario)}\n{words}".strip()
 
 

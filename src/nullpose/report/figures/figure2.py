@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.report.certainty import Certainty, short
+from nullpose.report.certainty import Certainty
 from nullpose.report.figures.style import CURVES, house_style
 from nullpose.report.figures.sweep import draw_bounds, draw_caption, draw_curve
+from nullpose.report.numbers import MINUS, short
 from nullpose.schemes import Scheme
 from nullpose.study import SweepTable
 
@@ -72,7 +73,7 @@ def _mark_printed_form(axes: Axes, table: SweepTable) -> None:
         3.2,
         -2.95,
         f"{curve.label}: it never saturates,\nand reaches {last_db:.0f} dB at the right edge".replace(
-            "-", "\N{MINUS SIGN}"
+            "-", MINUS
         ),
         color=curve.colour,
         fontsize=8.5,

@@ -59,7 +59,7 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
     axes.apply_aspect()
     points = [_on_paper(axes, label.point_m) for label in labels]
     taken = [_around(at, _MARKER_PT) for label, at in zip(labels, points, strict=True) if not label.on]
-    taken.append(_ball(axes, centre_m, radius_m))
+    taken.append(_around(_on_paper(axes, centre_m), 0.9 * _size(axes, centre_m, radius_m)))
     for label, at in zip(labels, points, strict=True):
         around = _size(axes, label.point_m, label.around_m)
         places = _places(label, around if around <= _FARTHEST_PT else 0.0)
@@ -99,11 +99,6 @@ def _on_paper(axes: Any, point_m: FloatArray) -> FloatArray:
 
 def _around(at: FloatArray, half: float) -> Box:
     return at[0] - half, at[1] - half, at[0] + half, at[1] + half
-
-
-def _ball(axes: Any, centre_m: FloatArray, radius_m: float) -> Box:
-    """Return the box around a ball on the paper."""
-    return _around(_on_paper(axes, centre_m), 0.9 * _size(axes, centre_m, radius_m))
 
 
 def _size(axes: Any, centre_m: FloatArray, radius_m: float) -> float:

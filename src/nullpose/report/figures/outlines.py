@@ -88,8 +88,8 @@ def draw_outlines(axes: Any, outlines: Sequence[Outline], colour: str) -> None:
             axes.add_collection3d(
                 Poly3DCollection(faces, facecolor=colour, alpha=0.10, linewidth=0.0, zorder=1.0)
             )
-        for height_m in (low, high):
-            axes.plot(*ring.T, np.full(len(ring), height_m), color=colour, linewidth=0.8, zorder=1.2)
+        for ends in (lower, upper):
+            axes.plot(*np.vstack([ends, ends[:1]]).T, color=colour, linewidth=0.8, zorder=1.2)
     if any(outline.name for outline in outlines):
         axes.plot([], [], [], color=colour, linewidth=0.8, label="no-fly zone")
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from nullpose.physics import Pose
 from nullpose.physics.quantity import Quantity
@@ -19,11 +17,13 @@ from nullpose.report.figures.scene import (
     PANELS,
     SURFACE,
     Stage,
+    draw_line,
     draw_names,
     draw_scene,
 )
 from nullpose.report.figures.style import house_style
 from nullpose.report.geometry import null_angle_rad
+from nullpose.report.numbers import MINUS
 from nullpose.report.robust import error_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution
@@ -33,10 +33,9 @@ from nullpose.study import SweepRow
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_pose", "draw_poses", "draw_robust"]
+__all__ = ["draw_pose", "draw_poses", "draw_robust", "draw_stages", "escaped", "plain_name"]
 
 _LETTERS = 100  # in a line of a title
-_MINUS = "\N{MINUS SIGN}"
 
 
 def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
@@ -81,10 +80,8 @@ def draw_robust(solution: RobustSolution) -> Figure:
         for name, one in zip(("robust pose", "best pose as stated"), both, strict=True)
     ]
     errors = f"{Quantity.of(scenario).smallest}; errors: {error_words(scenario)}"
-    head = (
-        f"{plain_name(scenario)}\n{escaped(textwrap.shorten(errors, _LETTERS, placeholder=' ...'))}".strip()
-    )
-    return _draw([stage, stage], poses, titles, head)
+    words = escaped(textwrap.shorten(errors, _LETTERS, placeholder=" ..."))
+    return _draw([stage, stage], poses, titles, f"{plain_name(scenario)}\n{words}".strip())
 
 
 def escaped(text: str) -> str:
@@ -108,7 +105,7 @@ def plain_name(scenario: Scenario) -> str:
 def _value_words(objective: Objective) -> str:
     if objective.quantity.is_rate:
         return f"{objective.quantity.smallest} {objective.value:.3f} bits/s/Hz"
-    return f"{objective.quantity.smallest} {objective.value_db:.2f} dB".replace("-", _MINUS)
+    return f"{objective.quantity.smallest} {objective.value_db:.2f} dB".replace("-", MINUS)
 
 
 def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:
@@ -116,7 +113,7 @@ def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:
     quantity = Quantity.of(scenario)
     digits = 3 if quantity.is_rate else 2
     guaranteed, stated = (
-        f"{quantity.in_unit(value):.{digits}f}".replace("inf", "\N{INFINITY}").replace("-", _MINUS)
+        f"{quantity.in_unit(value):.{digits}f}".replace("inf", "\N{INFINITY}").replace("-", MINUS)
         for value in (one.guaranteed, one.nominal)
     )
     return f"{guaranteed} {quantity.unit} guaranteed, {stated} {quantity.unit} without errors"
@@ -137,9 +134,29 @@ def _angle_words(scenario: Scenario, pose: Pose, *, first: bool = False) -> str:
     return f"null {', '.join(each)}"
 
 
-def _draw(stages: Sequence[Stage], poses: Sequence[Pose], titles: Sequence[str], head: str = "") -> Figure:
-    """Return a figure with a panel for each pose; the titles are theirs, the head is the figure's."""
+def draw_stages(
+    stages: Sequence[Stage],
+    poses: Sequence[Pose],
+    titles: Sequence[str],
+    head: str = "",
+    *,
+    vehicle: Callable[[Any, Stage, Pose], None],
+    radius: float,
+    surface: str,
+) -> Figure:
+    """Return a figure with a panel for each pose: the scene, the vehicle, and the names of points.
+
+    Args:
+        stages: what each panel has to show; all have the same view.
+        poses: one for each panel.
+        titles: of the panels; none for no titles.
+        head: title of the figure; empty for none.
+        vehicle: draws the vehicle at a pose.
+        radius: of its pattern, which names keep off, as a share of the scene's extent.
+        surface: what the pattern is called in the legend.
+    """
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
     view = stages[0].view
     with house_style():
@@ -148,35 +165,29 @@ def _draw(stages: Sequence[Stage], poses: Sequence[Pose], titles: Sequence[str],
         for index, (stage, pose) in enumerate(zip(stages, poses, strict=True)):
             axes: Any = figure.add_subplot(1, len(poses), index + 1, projection="3d", computed_zorder=False)
             draw_scene(axes, stage, pose)
-            _draw_vehicle(axes, stage, pose)
-            draw_names(axes, stage, pose, view.pattern * stage.extent_m)
+            vehicle(axes, stage, pose)
+            draw_names(axes, stage, pose, radius * stage.extent_m)
             if titles:
                 axes.set_title(titles[index], fontsize=10, y=0.96)
         if head:
             figure.suptitle(head, fontsize=10)
-        handles = _legend(figure.axes[0])
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        once = dict(zip(labels, handles, strict=True))
+        handles = [*once.values(), Patch(color=SURFACE, alpha=0.8, label=surface)]
         columns = min(len(handles), view.columns)
         figure.legend(handles=handles, loc="lower center", ncols=columns, frameon=False, handlelength=2.6)
     return figure
 
 
-def _legend(axes: Any) -> list[Any]:
-    from matplotlib.patches import Patch
-
-    handles, labels = axes.get_legend_handles_labels()
-    once = dict(zip(labels, handles, strict=True))
-    return [*once.values(), Patch(color=SURFACE, alpha=0.8, label="radiation pattern, near side cut away")]
+def _draw(stages: Sequence[Stage], poses: Sequence[Pose], titles: Sequence[str], head: str = "") -> Figure:
+    words, radius = "radiation pattern, near side cut away", stages[0].view.pattern
+    return draw_stages(stages, poses, titles, head, vehicle=_draw_vehicle, radius=radius, surface=words)
 
 
 def _draw_vehicle(axes: Any, stage: Stage, pose: Pose) -> None:
     view, extent_m, position = stage.view, stage.extent_m, pose.position_m
     reach = view.axis * extent_m * pose.antenna_axis
-    axes.plot(
-        *np.stack([position - reach, position + reach]).T,
-        color=DRONE,
-        linewidth=1.8,
-        zorder=6.5,
-        label="antenna axis (null)",
-    )
+    label = "antenna axis (null)"
+    draw_line(axes, position - reach, position + reach, color=DRONE, linewidth=1.8, zorder=6.5, label=label)
     draw_pattern(axes, pose, view.pattern * extent_m, view)
     axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")

@@ -4,37 +4,30 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nullpose.physics.quantity import Quantity
+from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, GREY, Curve, house_style
+from nullpose.report.numbers import axis_label
 from nullpose.study import SweepRow, SweepTable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_bounds", "draw_caption", "draw_curve", "draw_sweep", "finite_or_gap", "quantity_of"]
+__all__ = ["draw_bounds", "draw_caption", "draw_curve", "draw_sweep", "quantity_of"]
 
-_UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees"}
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
 _ROOM = 3.0  # at least so many dB above the curves are shown
 _CARET_DOWN = 7  # Matplotlib's name for it
 _CAPTION_LETTERS = 125  # letters in a line of the caption
 _ABOVE_CURVES = 5.0
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
-
-
-def finite_or_gap(numbers: list[float]) -> list[float]:
-    """Return the numbers with infinities turned into NaN, which Matplotlib draws as a gap.
-
-    Args:
-        numbers: dB; minus infinity stands for no signal.
-    """
-    return [number if math.isfinite(number) else math.nan for number in numbers]
 
 
 def quantity_of(table: SweepTable) -> Quantity:
@@ -46,13 +39,18 @@ def quantity_of(table: SweepTable) -> Quantity:
     return Quantity.named(table.rows[0].objective.name)
 
 
-def _value(row: SweepRow) -> float:
-    return row.objective.quantity.in_unit(row.objective.value)
+def _values(rows: Iterable[SweepRow]) -> FloatArray:
+    return _in_unit((row, row.objective.value) for row in rows)
 
 
-def _bound(row: SweepRow) -> float | None:
-    bound = row.objective.upper_bound
-    return None if bound is None else row.objective.quantity.in_unit(bound)
+def _bounds(rows: Iterable[SweepRow]) -> FloatArray:
+    return _in_unit((row, row.objective.upper_bound) for row in rows)
+
+
+def _in_unit(numbers: Iterable[tuple[SweepRow, float | None]]) -> FloatArray:
+    """Return numbers in dB, or rates as they are; NaN, which Matplotlib draws as a gap, for no number."""
+    found = [math.nan if value is None else row.objective.quantity.in_unit(value) for row, value in numbers]
+    return np.where(np.isfinite(found), found, math.nan)
 
 
 def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:
@@ -68,7 +66,7 @@ def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:
     first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
     axes.plot(
         [row.value for row in rows],
-        finite_or_gap([_value(row) for row in rows]),
+        _values(rows),
         color=curve.colour,
         linestyle=curve.line,
         linewidth=curve.width,
@@ -94,9 +92,7 @@ def draw_bounds(axes: Axes, table: SweepTable, scheme: str) -> None:
     rows = [row for row in table.of(scheme) if row.upper_bound is not None]
     if not rows:
         return
-    levels = [row.value for row in rows]
-    values = np.array(finite_or_gap([_value(row) for row in rows]))
-    bounds = np.array(finite_or_gap([_bound(row) or 0.0 for row in rows]))
+    levels, values, bounds = [row.value for row in rows], _values(rows), _bounds(rows)
     axes.fill_between(
         levels, values, bounds, color=curve.colour, alpha=0.10, linewidth=0.0, zorder=curve.order - 2.0
     )
@@ -115,12 +111,6 @@ def draw_bounds(axes: Axes, table: SweepTable, scheme: str) -> None:
         )
 
 
-def _axis_label(path: str) -> str:
-    leaf = path.rsplit(".", 1)[-1].split("[", 1)[0]
-    unit = _UNITS.get(leaf.rsplit("_", 1)[-1].lower())
-    return f"{path}  ({unit})" if unit else path
-
-
 def draw_caption(figure: Figure, lines: list[str]) -> None:
     """Write what is proved of the curves under the axes, broken into lines.
 
@@ -134,35 +124,27 @@ def draw_caption(figure: Figure, lines: list[str]) -> None:
 
 def _caption(table: SweepTable) -> list[str]:
     lines = [f"{line}." for line in certainty_lines(table)]
-    if any(_gap(row) > _visible(table) for row in table.rows):
+    if np.any(_bounds(table.rows) - _values(table.rows) > _visible(table)):
         lines.append(
             "Bands reach from the value found up to the bound, a small triangle above which no pose is."
         )
     return lines
 
 
-def _gap(row: SweepRow) -> float:
-    bound = _bound(row)
-    return 0.0 if bound is None else bound - _value(row)
-
-
 def _visible(table: SweepTable) -> float:
     """Return the gap that is wider than a line: of a rate, a hundredth of the greatest."""
-    if not quantity_of(table).is_rate:
-        return _VISIBLE
-    return 0.01 * max(_value(row) for row in table.rows)
+    return 0.01 * float(np.max(_values(table.rows))) if quantity_of(table).is_rate else _VISIBLE
 
 
 def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
-    values = [value for value in map(_value, table.rows) if math.isfinite(value)]
-    bounds = [bound for bound in map(_bound, table.rows) if bound is not None]
-    if not values or not bounds:
+    values, bounds = _values(table.rows), _bounds(table.rows)
+    if np.all(np.isnan(values)) or np.all(np.isnan(bounds)):
         return
-    low, high = min(values), max(values)
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _ROOM
     room = max(least, high - low)
-    if max(bounds) > high + room:
+    if np.nanmax(bounds) > high + room:
         axes.set_ylim(low - 0.05 * room, high + room)
 
 
@@ -184,7 +166,7 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
         _keep_curves_large(axes, table)
         if log:
             axes.set_xscale("log")
-        axes.set_xlabel(_axis_label(table.path))
+        axes.set_xlabel(axis_label(table.path))
         quantity = quantity_of(table)
         axes.set_ylabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
         axes.margins(x=0.02)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from nullpose.physics.quantity import Quantity
+from nullpose.report.numbers import begun, count_of, listed, number, percent, span, with_unit
 from nullpose.report.study.cases import ReportCase, whole_of
 from nullpose.report.study.statistics import CONFIDENCE
-from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, listed, number, percent, span, with_unit
+from nullpose.report.study.summary import Summary, three_of
 
 __all__ = ["MOST_OF_IT", "answer_of"]
 
@@ -30,12 +31,8 @@ def answer_of(summary: Summary) -> str:
         return "No scene is done yet, so there is nothing to say."
     if not summary.values.counts()["failed"] < summary.values.status.size:
         return "Every row of this study is a failure, so there is nothing to compare; the reasons are below."
-    told = []
-    for robust in (False, True):
-        group = [case for case in summary.cases if case.robust is robust]
-        if group:
-            told.append(_of_group(summary, group, last))
-    return " ".join(sentence for sentence in told if sentence)
+    groups = ([case for case in summary.cases if case.robust is robust] for robust in (False, True))
+    return " ".join(_of_group(summary, group, last) for group in groups if group)
 
 
 def _of_group(summary: Summary, group: list[ReportCase], point: int) -> str:
@@ -48,21 +45,26 @@ def _of_group(summary: Summary, group: list[ReportCase], point: int) -> str:
     opening = "In what is guaranteed under the errors stated" if second else _opening(summary, point)
     if not others:
         return f"{opening} {_level_words(summary, point, reference)}."
-    best = whole if whole is not None and whole is not reference else _most_gaining(summary, point, others)
-    row = summary.row(point, best)
-    if not row["pairs"]:
+    best = max(others, key=lambda case: _number(summary.row(point, case)["gain_median"], -math.inf))
+    if whole in others:
+        best = whole
+    if not summary.row(point, best)["pairs"]:
         return f"{opening} no scene has a value of both {best.phrase} and {reference.phrase}."
-    lead = f"{opening} {_gain_words(summary, point, best, reference)}."
-    sentences = [lead]
+    rest = [case for case in others if case is not best]
+    sentences = [f"{opening} {_gain_words(summary, point, best, reference)}."]
     if best is whole:
-        sentences.append(_shares_words(summary, point, [case for case in others if case is not whole]))
-        sentences.append(_least_tilt_words(summary, point, others, whole))
+        sentences.append(_shares_words(summary, point, rest))
+        sentences.append(_least_tilt_words(summary, point, rest))
     else:
-        sentences.append(_others_words(summary, point, [case for case in others if case is not best]))
+        sentences.append(_others_words(summary, point, rest))
     if reference.role != "level-vertical" and summary.against is None:
-        sentences.append(_missing_words(group, reference, whole))
+        sentences.append(_missing_words(reference, whole))
     sentences.append(_sweep_words(summary, point, best))
     return " ".join(sentence for sentence in sentences if sentence)
+
+
+def _number(value: Any, unknown: float) -> float:
+    return unknown if math.isnan(value) else float(value)
 
 
 def _opening(summary: Summary, point: int) -> str:
@@ -84,72 +86,50 @@ def _level_words(summary: Summary, point: int, case: ReportCase) -> str:
     )
 
 
-def _most_gaining(summary: Summary, point: int, cases: list[ReportCase]) -> ReportCase:
-    def gain(case: ReportCase) -> float:
-        median = float(summary.row(point, case)["gain_median"])
-        return -math.inf if math.isnan(median) else median
-
-    return max(cases, key=gain)
-
-
 def _gain_words(summary: Summary, point: int, case: ReportCase, reference: ReportCase) -> str:
     row, quantity = summary.row(point, case), summary.quantity
     median, tenth = float(row["gain_median"]), float(row["shift_worst_tenth"])
-    names = (case.phrase, reference.phrase)
-    if summary.values.scenes == 1:
-        return f"{names[0]} {_beats(median, quantity.is_rate)} {names[1]} by {_size(summary, median)}"
     verb, sign = ("beats", 1.0) if median >= 0.0 else ("falls behind", -1.0)
-    if not _tells(median, quantity.is_rate) and not _tells(tenth, quantity.is_rate):
-        return f"{names[0]} gains nothing over {names[1]}, in the median or in the worst tenth"
-    turned = sign * tenth < 0.0 and _tells(tenth, quantity.is_rate)
+    if summary.values.scenes == 1:
+        return f"{case.phrase} {verb} {reference.phrase} by {with_unit(abs(median), quantity)}"
+    if not _tells(median, quantity) and not _tells(tenth, quantity):
+        return f"{case.phrase} gains nothing over {reference.phrase}, in the median or in the worst tenth"
+    turned = sign * tenth < 0.0 and _tells(tenth, quantity)
     joined = "and" if not turned else "but loses" if sign > 0.0 else "but gains"
     other = -sign if turned else sign
     return (
-        f"{names[0]} {verb} {names[1]} by {with_unit(sign * median, quantity)} in the median "
+        f"{case.phrase} {verb} {reference.phrase} by {with_unit(sign * median, quantity)} in the median "
         f"{_interval(summary, row, 'gain_median', sign)}{joined} {with_unit(other * tenth, quantity)} in the "
         f"worst tenth {_interval(summary, row, 'shift_worst_tenth', other)}".rstrip()
     )
 
 
 def _interval(summary: Summary, row: Any, name: str, sign: float) -> str:
-    ends = sorted((sign * float(row[f"{name}_{end}"]) for end in ("low", "high")), key=_nan_last)
-    if any(math.isnan(end) for end in ends):
+    _, *ends = (sign * number for number in three_of(row, name))
+    if any(map(math.isnan, ends)):
         return ""
-    return f"({percent(CONFIDENCE)} confidence: {span(ends[0], ends[1], summary.quantity)}) "
+    return f"({percent(CONFIDENCE)} confidence: {span(min(ends), max(ends), summary.quantity)}) "
 
 
-def _nan_last(value: float) -> tuple[bool, float]:
-    return math.isnan(value), value
-
-
-def _tells(value: float, is_rate: bool) -> bool:
-    return abs(value) >= (5e-4 if is_rate else 5e-3)
-
-
-def _beats(median: float, is_rate: bool) -> str:
-    return "beats" if median >= 0.0 else "falls behind"
-
-
-def _size(summary: Summary, value: float) -> str:
-    return with_unit(abs(value), summary.quantity)
+def _tells(value: float, quantity: Quantity) -> bool:
+    return abs(value) >= (5e-4 if quantity.is_rate else 5e-3)
 
 
 def _shares_words(summary: Summary, point: int, cases: list[ReportCase]) -> str:
     """Return what part of the omnidirectional vehicle's gain the others buy, by tilt."""
     parts: list[str] = []
+    gain = "the gain" if summary.values.scenes == 1 else "the median gain"
     for case in sorted(cases, key=lambda case: math.inf if case.tilt_deg is None else case.tilt_deg):
         row = summary.row(point, case)
         median, tenth = _shares(summary, row)
-        if math.isnan(median) and math.isnan(tenth):
-            continue
-        name = case.phrase
-        if all(math.isnan(share) or share >= _ALL_OF_IT for share in (median, tenth)):
-            parts.append(f"{name} all of it" if parts else f"{name} buys all of it")
-            continue
         verb = "" if parts else " buys"
-        gain = "the gain" if summary.values.scenes == 1 else "the median gain"
-        parts.append(f"{name}{verb} {_share(median)} of {gain}{_tenth_words(summary, row, tenth)}")
-    return f"{_capital('; '.join(parts))}." if parts else ""
+        known = [share for share in (median, tenth) if not math.isnan(share)]
+        if known and min(known) >= _ALL_OF_IT:
+            parts.append(f"{case.phrase}{verb} all of it")
+        elif known:
+            words = f"{_share(median)} of {gain}{_tenth_words(summary, row, tenth)}"
+            parts.append(f"{case.phrase}{verb} {words}")
+    return f"{begun('; '.join(parts))}." if parts else ""
 
 
 def _shares(summary: Summary, row: Any) -> tuple[float, float]:
@@ -162,8 +142,9 @@ def _tenth_words(summary: Summary, row: Any, share: float) -> str:
     """Return what part of the worst tenth's gain a case has, or how far it falls behind there."""
     if math.isnan(share):
         return ""
-    if share < 0.0 and _tells(float(row["shift_worst_tenth"]), summary.quantity.is_rate):
-        return f", but loses {_size(summary, float(row['shift_worst_tenth']))} in the worst tenth"
+    shift = float(row["shift_worst_tenth"])
+    if share < 0.0 and _tells(shift, summary.quantity):
+        return f", but loses {with_unit(abs(shift), summary.quantity)} in the worst tenth"
     return f" and {_share(share)} of that in the worst tenth"
 
 
@@ -173,62 +154,45 @@ def _share(share: float) -> str:
     return "none" if share <= 0.0 else "all" if share >= _ALL_OF_IT else percent(share)
 
 
-def _least_tilt_words(summary: Summary, point: int, cases: list[ReportCase], whole: ReportCase | None) -> str:
+def _least_tilt_words(summary: Summary, point: int, cases: list[ReportCase]) -> str:
     """Return which of the tilts that were tried is the least that buys most of the gain."""
-    known = [case for case in cases if case.tilt_deg is not None and case is not whole]
-    if not known:
-        return ""
-
-    def buys_most(case: ReportCase) -> bool:
-        shares = [each for each in _shares(summary, summary.row(point, case)) if not math.isnan(each)]
-        return bool(shares) and min(shares) >= MOST_OF_IT
-
-    enough = [case for case in sorted(known, key=lambda case: case.tilt_deg or 0.0) if buys_most(case)]
+    tilts = sorted((case.tilt_deg, case.place) for case in cases if case.tilt_deg is not None)
+    known = [summary.cases[place] for _, place in tilts]
+    shares = [_shares(summary, summary.row(point, case)) for case in known]
     both = "" if summary.values.scenes == 1 else " of both"
     most = f"most of it ({percent(MOST_OF_IT)} or more{both})"
-    if enough:
-        return f"The least of these that buys {most} is {enough[0].phrase}."
-    if all(math.isnan(float(summary.row(point, case)["share_of_median"])) for case in known):
-        return ""
-    return f"None of these buys {most}."
+    for case, (median, tenth) in zip(known, shares, strict=True):
+        least = min(_number(median, math.inf), _number(tenth, math.inf))
+        if MOST_OF_IT <= least < math.inf:
+            return f"The least of these that buys {most} is {case.phrase}."
+    return "" if all(math.isnan(median) for median, _ in shares) else f"None of these buys {most}."
 
 
 def _others_words(summary: Summary, point: int, cases: list[ReportCase]) -> str:
-    parts = []
-    for case in cases[:_MOST_TOLD]:
-        row = summary.row(point, case)
-        if not math.isnan(row["gain_median"]):
-            words = f"{number(row['gain_median'], summary.quantity)} and "
-            words += f"{number(row['shift_worst_tenth'], summary.quantity)} {summary.quantity.unit}"
-            parts.append(f"{case.phrase} {words}")
+    rows = [(case.phrase, summary.row(point, case)) for case in cases[:_MOST_TOLD]]
+    parts = [f"{name} {_gains(summary, row)}" for name, row in rows if not math.isnan(row["gain_median"])]
     return f"The same of the others: {'; '.join(parts)}." if parts else ""
 
 
-def _missing_words(group: list[ReportCase], reference: ReportCase, whole: ReportCase | None) -> str:
+def _gains(summary: Summary, row: Any) -> str:
+    """Return the gains in the median and in the worst tenth."""
+    median, tenth = (number(row[name], summary.quantity) for name in ("gain_median", "shift_worst_tenth"))
+    return f"{median} and {tenth} {summary.quantity.unit}"
+
+
+def _missing_words(reference: ReportCase, whole: ReportCase | None) -> str:
     """Return which of the vehicles that the question is about are not in the study."""
-    missing = []
-    if reference.tilt_deg != 0.0:
-        missing.append("no level vehicle")
-    elif reference.role != "level-vertical":
+    if reference.tilt_deg == 0.0:
         return f"The level vehicle here is {reference.phrase}: there is none with a vertical dipole."
+    missing = ["no level vehicle"]
     if whole is None:
         missing.append("no omnidirectional one")
-    return f"There is {listed(missing)} in this study." if missing else ""
+    return f"There is {listed(missing)} in this study."
 
 
 def _sweep_words(summary: Summary, point: int, case: ReportCase) -> str:
     """Return how the gain runs over the other combinations of swept values."""
-    others = [number_ for number_ in summary.points.shown if number_ != point]
-    if not others:
-        return ""
-    parts = []
-    for each in others[: _MOST_TOLD + 1]:
-        row = summary.row(each, case)
-        gains = (number(row[name], summary.quantity) for name in ("gain_median", "shift_worst_tenth"))
-        parts.append(f"{' and '.join(gains)} {summary.quantity.unit} at {summary.points.words(each)}")
+    others = [each for each in summary.points.shown if each != point][: _MOST_TOLD + 1]
+    parts = [f"{_gains(summary, summary.row(each, case))} at {summary.points.words(each)}" for each in others]
     few = "" if len(summary.spec.points) == len(summary.points.shown) else ", among others"
-    return f"For {case.phrase} the two gains are {listed(parts)}{few}."
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
+    return f"For {case.phrase} the two gains are {listed(parts)}{few}." if parts else ""

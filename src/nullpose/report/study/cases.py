@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from nullpose.errors import UsageError
@@ -75,12 +75,11 @@ def reference_of(
     if against is not None and against not in [case.name for case in cases]:
         raise UsageError(f"against: given {against!r}; allowed: {', '.join(case.name for case in cases)}")
     group = [case for case in cases if case.robust is robust]
-    for case in group:
-        if case.name == against:
-            return case
-    upright = (case for case in group if case.role == _LEVEL.name)
-    level = (case for case in group if case.tilt_deg == 0.0)
-    return next(upright, None) or next(level, None) or next(iter(group), None)
+    return max(
+        group,
+        key=lambda case: (case.name == against, case.role == _LEVEL.name, case.tilt_deg == 0.0),
+        default=None,
+    )  # the first of equals
 
 
 def whole_of(cases: Sequence[ReportCase], *, robust: bool = False) -> ReportCase | None:
@@ -101,15 +100,13 @@ def nominal_of(spec: StudySpec, cases: Sequence[ReportCase], case: ReportCase) -
         cases: of the study.
         case: one of them.
     """
-    if not case.robust:
-        return None
-    airframe = spec.cases[case.place].airframe
-    for other in cases:
+
+    def is_nominal(other: ReportCase) -> bool:
         stated = spec.cases[other.place]
         plain = stated.pose is None and stated.array is None and stated.scheme in (None, Scheme.OPTIMUM)
-        if plain and not other.robust and stated.airframe == airframe:
-            return other
-    return None
+        return plain and not other.robust and stated.airframe == spec.cases[case.place].airframe
+
+    return next(filter(is_nominal, cases), None) if case.robust else None
 
 
 def _scenes_airframe(spec: StudySpec) -> Airframe | None:
@@ -141,22 +138,20 @@ def _case(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
         return replace(plain, phrase=f"the {Scheme(case.scheme).label.lower()} pose")
     if airframe is None:
         return replace(plain, robust=bool(case.robust))
-    role, phrase = _vehicle(airframe, (each.airframe for each in AIRFRAME_CASES))
-    guaranteed = " in its robust pose" if case.robust else ""
-    tilt_deg = math.degrees(airframe.tilt_max_rad)
+    role, phrase = _vehicle(airframe)
     return replace(
         plain,
-        phrase=phrase + guaranteed,
+        phrase=f"{phrase} in its robust pose" if case.robust else phrase,
         role=role,
-        tilt_deg=round(tilt_deg, 9),
+        tilt_deg=round(math.degrees(airframe.tilt_max_rad), 9),
         robust=bool(case.robust),
     )
 
 
-def _vehicle(airframe: Airframe, known: Iterable[Airframe]) -> tuple[str, str]:
+def _vehicle(airframe: Airframe) -> tuple[str, str]:
     """Return role and phrase of a vehicle: two that reach the same axes are the same."""
-    for each, vehicle in zip(AIRFRAME_CASES, known, strict=True):
-        if vehicle.axis_band == airframe.axis_band:
+    for each in AIRFRAME_CASES:
+        if each.airframe.axis_band == airframe.axis_band:
             return each.name, each.phrase
     tilt, mount = (
         f"{round(math.degrees(angle), 6):g}" for angle in (airframe.tilt_max_rad, airframe.mount_rad)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
+from nullpose.report.numbers import count_of, escaped, percent
 from nullpose.report.study import tables
 from nullpose.report.study.answer import answer_of
-from nullpose.report.study.cases import whole_of
+from nullpose.report.study.cases import reference_of
 from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, replicates_of
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, escaped, percent
 
 __all__ = ["report_text", "title_of"]
 
@@ -33,19 +33,14 @@ def report_text(summary: Summary, figures: Collection[str]) -> str:
         summary: of the study.
         figures: names of those that were drawn.
     """
-    blocks = [f"# {escaped(title_of(summary))}"]
     note = unfinished_note(summary)
-    if note:
-        blocks.append(f"> **{note}**")
-    blocks += [escaped(answer_of(summary))]
-    blocks += [escaped(text) for text in (outage_words(summary), certainty_of(summary)) if text]
+    blocks = [f"# {escaped(title_of(summary))}", f"> **{note}**" if note else ""]
+    blocks += map(escaped, (answer_of(summary), outage_words(summary), certainty_of(summary)))
     if summary.values.scenes:
         blocks.append(_definitions(summary))
-        for part in (_levels, _gains, _sweep, _best, _outage, _robustness):
+        for part in (_levels, _gains, _sweep, _best, _outage, _robustness, _effort):
             blocks += part(summary, figures)
-        blocks += _effort(summary, figures)
-    blocks += _data(summary)
-    return "\n\n".join(blocks) + "\n"
+    return "\n\n".join(filter(None, [*blocks, *_data(summary)])) + "\n"
 
 
 def _definitions(summary: Summary) -> str:
@@ -58,17 +53,9 @@ def _definitions(summary: Summary) -> str:
     )
 
 
-def _figure(name: str, figures: Collection[str], caption: str) -> Iterator[str]:
-    if name in figures:
-        yield f"![{escaped(caption)}](figures/{name}.png)"
-        yield f"*{escaped(caption)}*"
-
-
-def _shown_note(summary: Summary) -> list[str]:
-    shown, count = len(summary.points.shown), len(summary.spec.points)
-    if shown == count:
-        return []
-    return [f"{shown} of {count:,} combinations of swept values are shown; `summary.csv` has all."]
+def _figure(name: str, figures: Collection[str], caption: str) -> list[str]:
+    words = escaped(caption)
+    return [f"![{words}](figures/{name}.png)", f"*{words}*"] if name in figures else []
 
 
 def _tabled(heading: str, table: str) -> list[str]:
@@ -77,9 +64,9 @@ def _tabled(heading: str, table: str) -> list[str]:
 
 def _levels(summary: Summary, figures: Collection[str]) -> list[str]:
     quantity = summary.quantity
-    guaranteed = (
-        " Of robust cases it is what is guaranteed under the errors stated." if summary.has_robust else ""
-    )
+    shown, count = len(summary.points.shown), len(summary.spec.points)
+    few = f"{shown} of {count:,} combinations of swept values are shown; `summary.csv` has all."
+    robust = " Of robust cases it is what is guaranteed under the errors stated."
     caption = (
         f"Share of scenes whose {quantity.smallest} is no more than what is across. Each band holds a whole "
         f"true curve with {_SURE} confidence; it is drawn as far as there are numbers."
@@ -87,9 +74,9 @@ def _levels(summary: Summary, figures: Collection[str]) -> list[str]:
     return [
         f"## {quantity.smallest.capitalize().replace('sinr', 'SINR')}",
         f"The {quantity.smallest} over the nodes at each case's pose, as it is distributed over scenes."
-        f"{guaranteed}",
+        f"{robust if summary.has_robust else ''}",
         *_figure("distribution", figures, caption),
-        *_shown_note(summary),
+        few if shown < count else "",
         *_tabled(f"Median, {quantity.unit}", tables.level_table(summary, "median")),
         *_tabled(
             f"Worst tenth (10th percentile), {quantity.unit}", tables.level_table(summary, "worst_tenth")
@@ -101,21 +88,20 @@ def _gains(summary: Summary, figures: Collection[str]) -> list[str]:
     table = tables.gain_table(summary, "gain_median")
     if not table:
         return []
-    references = []
-    for robust in (False, True):
-        group = [case for case in summary.cases if case.robust is robust]
-        reference = summary.reference(group[0]) if group else None
-        if reference is not None:
-            of_what = "What is guaranteed" if robust else "Each case"
-            name = f"{reference.phrase} ({reference.name})"
-            references.append(f"{of_what} is measured against {escaped(name)} on the same scenes.")
+    references = [
+        f"{of_what} is measured against {escaped(f'{one.phrase} ({one.name})')} on the same scenes."
+        for robust, of_what in ((False, "Each case"), (True, "What is guaranteed"))
+        if (one := reference_of(summary.cases, robust=robust, against=summary.against)) is not None
+    ]
+    first = summary.reference(summary.cases[0])
+    level = " over the level vehicle" if first is not None and first.tilt_deg == 0.0 else ""
     unit = summary.quantity.unit
     caption = (
         "Disc: median of the gains on the same scenes; diamond: gain of the worst tenth; lines: their "
         f"{_SURE} confidence intervals; bar: from what nine scenes in ten gain to what one in ten does."
     )
-    blocks = [
-        "## Gain over the level vehicle" if _is_level(summary) else "## Gain",
+    return [
+        f"## Gain{level}",
         " ".join(references),
         *_figure("gain", figures, caption),
         *_tabled(f"Median of the gains, {unit}", table),
@@ -127,21 +113,14 @@ def _gains(summary: Summary, figures: Collection[str]) -> list[str]:
             f"10th percentile of the gains (nine scenes in ten gain this or more), {unit}",
             tables.gain_table(summary, "gain_worst_tenth"),
         ),
-    ]
-    if any(whole_of(summary.cases, robust=robust) is not None for robust in (False, True)):
-        blocks += _tabled(
+        *_tabled(
             "Share of the omnidirectional vehicle's median gain, %",
             tables.share_table(summary, "share_of_median"),
-        )
-        blocks += _tabled(
+        ),
+        *_tabled(
             "Share of its gain in the worst tenth, %", tables.share_table(summary, "share_of_worst_tenth")
-        )
-    return blocks
-
-
-def _is_level(summary: Summary) -> bool:
-    reference = summary.reference(summary.cases[0])
-    return reference is not None and reference.tilt_deg == 0.0
+        ),
+    ]
 
 
 def _sweep(summary: Summary, figures: Collection[str]) -> list[str]:
@@ -197,7 +176,6 @@ def _robustness(summary: Summary, figures: Collection[str]) -> list[str]:
 
 
 def _effort(summary: Summary, figures: Collection[str]) -> list[str]:
-    reasons = tables.reasons_table(summary)
     return [
         "## Proofs, gaps and time",
         "Rows of all combinations by status. *Certified*: no pose exceeds the value by more than the gap "
@@ -207,7 +185,7 @@ def _effort(summary: Summary, figures: Collection[str]) -> list[str]:
         tables.status_table(summary),
         *_figure("effort", figures, "Time of a solve, and relative gap between bound and value."),
         tables.effort_table(summary),
-        *_tabled("Why rows failed or were not certified", reasons),
+        *_tabled("Why rows failed or were not certified", tables.reasons_table(summary)),
     ]
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from nullpose.report.numbers import begun, count_of, listed, percent
 from nullpose.report.study.statistics import FEW_SCENES
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import count_of, listed, percent
 
 __all__ = ["certainty_of", "outage_words", "unfinished_note"]
 
@@ -35,11 +35,8 @@ def outage_words(summary: Summary) -> str:
     if summary.requirement is None or not summary.values.scenes:
         return ""
     point = len(summary.spec.points) - 1
-    parts = []
-    for case in summary.cases:
-        share = float(summary.row(point, case)["outage"])
-        if not math.isnan(share):
-            parts.append(f"{percent(share, 1)} of scenes by {case.phrase}")
+    shares = [(case, float(summary.row(point, case)["outage"])) for case in summary.cases]
+    parts = [f"{percent(share, 1)} of scenes by {c.phrase}" for c, share in shares if not math.isnan(share)]
     if not parts:
         return ""
     words = summary.points.words(point)
@@ -59,25 +56,17 @@ def certainty_of(summary: Summary) -> str:
     rows = sum(counts.values())
     if not rows:
         return ""
-    unproved = counts["gap-not-reached"] + counts["best-found"]
-    sentences = []
+    sentences = [f"Of {count_of(rows, 'row')}, {counts['certified']:,} are certified."]
     if counts["certified"] == rows:
-        sentences.append(f"All {rows:,} poses are certified: proved to be the best within the gap asked for.")
-    else:
-        sentences.append(f"Of {count_of(rows, 'row')}, {counts['certified']:,} are certified.")
+        sentences = [f"All {rows:,} poses are certified: proved to be the best within the gap asked for."]
+    kinds = {
+        "gap-not-reached": "with a proof that stopped before its gap",
+        "best-found": "of which nothing is proved",
+    }
+    unproved = [f"{counts[name]:,} {words}" for name, words in kinds.items() if counts[name]]
     if unproved:
-        kinds = [
-            f"{counts[name]:,} {words}"
-            for name, words in (
-                ("gap-not-reached", "with a proof that stopped before its gap"),
-                ("best-found", "of which nothing is proved"),
-            )
-            if counts[name]
-        ]
-        sentences.append(
-            f"{listed(kinds)[:1].upper() + listed(kinds)[1:]} enter by what their pose reaches, which is "
-            "a lower bound of the best."
-        )
+        reach = "enter by what their pose reaches, which is a lower bound of the best."
+        sentences.append(f"{begun(listed(unproved))} {reach}")
     if counts["failed"]:
         are = "is" if counts["failed"] == 1 else "are"
         sentences.append(f"{count_of(counts['failed'], 'row')} failed, without a pose, and {are} left out.")

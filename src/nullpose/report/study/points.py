@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from nullpose.physics import from_db
+from nullpose.report.numbers import axis_label, unit_of
 from nullpose.study.monte_carlo import StudySpec
 
 __all__ = ["MOST_SHOWN", "SweptPoints"]
@@ -14,7 +15,6 @@ __all__ = ["MOST_SHOWN", "SweptPoints"]
 MOST_SHOWN = 6
 """At most so many combinations have a panel or a column; the tables on disk have all."""
 
-_UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}
 _JAMMING = re.compile(r"jammers(\.[^.\[\]]+|\[0\])?\.power_w")
 
 
@@ -90,22 +90,16 @@ class SweptPoints:
         """
         if self._is_ratio(path):
             return r"$P_M / P$  (jammer's power over a node's)"
-        unit = _unit(path)
-        return f"{path}  ({unit})" if unit else path
+        return axis_label(path)
 
     def _one(self, point: int, path: str) -> str:
         number = f"{self.number(point, path):.6g}"
         if self._is_ratio(path):
             return f"P_M/P = {number}"
-        return f"{path} = {number} {_unit(path)}".rstrip()
+        return f"{path} = {number} {unit_of(path)}".rstrip()
 
     def _is_ratio(self, path: str) -> bool:
         return self.node_power_w > 0.0 and _JAMMING.fullmatch(path) is not None
-
-
-def _unit(path: str) -> str:
-    leaf = path.rsplit(".", 1)[-1].split("[", 1)[0]
-    return _UNITS.get(leaf.rsplit("_", 1)[-1].lower(), "") if "_" in leaf else ""
 
 
 def _has_one_jammer(spec: StudySpec) -> bool:

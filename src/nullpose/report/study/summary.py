@@ -30,7 +30,7 @@ from nullpose.study.monte_carlo import StudySpec, StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Summary", "summarise"]
+__all__ = ["Summary", "summarise", "three_of"]
 
 Cells = dict[str, Any]
 
@@ -69,6 +69,16 @@ class Summary:
         """Whether some cases state what is guaranteed."""
         return any(case.robust for case in self.cases)
 
+    @property
+    def compared(self) -> list[ReportCase]:
+        """The cases that are measured against another."""
+        return [case for case in self.cases if self.reference(case) is not case]
+
+    @property
+    def paired(self) -> list[ReportCase]:
+        """The robust cases of which there is a nominal one."""
+        return [case for case in self.cases if nominal_of(self.spec, self.cases, case) is not None]
+
     def reference(self, case: ReportCase) -> ReportCase | None:
         """Return what a case is measured against: what is guaranteed only against what is guaranteed.
 
@@ -90,12 +100,17 @@ class Summary:
         """Return the statistics with the unit in the names of columns, for a file."""
         unit = "bps_hz" if self.quantity.is_rate else "db"
         heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "cost_")
-        names = {
-            name: f"{name}_{unit}"
-            for name in self.frame.columns
-            if name.startswith(heads) and name != "gain_of"
-        }
-        return self.frame.rename(columns=names)
+        return self.frame.rename(columns=lambda name: f"{name}_{unit}" if name.startswith(heads) else name)
+
+
+def three_of(row: Any, name: str) -> tuple[float, float, float]:
+    """Return a statistic and the ends of its interval; NaN for what is not known.
+
+    Args:
+        row: of a summary.
+        name: of the statistic.
+    """
+    return float(row[name]), float(row[f"{name}_low"]), float(row[f"{name}_high"])
 
 
 def summarise(
@@ -226,14 +241,13 @@ def _best(cases: tuple[ReportCase, ...], values: StudyValues, point: int, case: 
     own, bound = value[:, case.place], values.bound[:, point, case.place]
     certified = values.status[:, point, case.place] == STATUSES.index("certified")
     reach = np.where(certified & ~np.isnan(bound), np.fmax(bound, own), own)
-    hits, count = int(np.sum(known & (reach >= best))), int(np.sum(known))
+    hits = int(np.sum(known & (reach >= best)))
+    return {"best_in": hits, **_shares("best_share", hits, int(np.sum(known)))}
+
+
+def _shares(name: str, hits: int, count: int) -> Cells:
     low, high = share_interval(hits, count)
-    return {
-        "best_in": hits,
-        "best_share": hits / count if count else math.nan,
-        "best_share_low": low,
-        "best_share_high": high,
-    }
+    return {name: hits / count if count else math.nan, f"{name}_low": low, f"{name}_high": high}
 
 
 def _outage(values: StudyValues, point: int, case: ReportCase, requirement: float | None) -> Cells:
@@ -242,15 +256,9 @@ def _outage(values: StudyValues, point: int, case: ReportCase, requirement: floa
         return {}
     value, bound = (each[:, point, case.place] for each in (values.value, values.bound))
     known = ~np.isnan(value)
-    hits, count = int(np.sum(value[known] < requirement)), int(np.sum(known))
-    low, high = share_interval(hits, count)
-    proved = int(np.sum(bound[known] < requirement))
-    return {
-        "outage": hits / count if count else math.nan,
-        "outage_low": low,
-        "outage_high": high,
-        "outage_proved": proved / count if count else math.nan,
-    }
+    count, proved = int(np.sum(known)), int(np.sum(bound[known] < requirement))
+    cells = _shares("outage", int(np.sum(value[known] < requirement)), count)
+    return {**cells, "outage_proved": proved / count if count else math.nan}
 
 
 def _cost(
@@ -273,8 +281,7 @@ def _cost(
 
 def _effort(values: StudyValues, point: int, case: ReportCase) -> Cells:
     """Return the gaps that were reached and the seconds that were needed, failures left out."""
-    gap, seconds = (each[:, point, case.place].astype(float) for each in (values.gap, values.seconds))
-    seconds = np.where(values.status[:, point, case.place] == STATUSES.index("failed"), math.nan, seconds)
+    gap, seconds = values.effort(case.place, point)
     cells: Cells = {"proved": int(np.sum(~np.isnan(gap)))}
     for name, numbers in (("gap", gap), ("seconds", seconds)):
         for suffix, share in (("median", 0.5), ("p95", 0.95), ("worst", 1.0)):

@@ -6,10 +6,13 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from nullpose.report.study.cases import ReportCase, nominal_of, whole_of
-from nullpose.report.study.summary import Summary
+import numpy as np
+
+from nullpose.report.numbers import NONE, escaped, number, percent, with_interval
+from nullpose.report.study.cases import ReportCase, whole_of
+from nullpose.report.study.statistics import quantile
+from nullpose.report.study.summary import Summary, three_of
 from nullpose.report.study.values import STATUSES
-from nullpose.report.study.wording import escaped, number, percent, with_interval
 
 __all__ = [
     "best_table",
@@ -46,8 +49,7 @@ def gain_table(summary: Summary, name: str) -> str:
         summary: of a study.
         name: ``gain_median``, ``gain_worst_tenth`` or ``shift_worst_tenth``.
     """
-    compared = [case for case in summary.cases if summary.reference(case) is not case]
-    return _by_point(summary, compared, lambda row: _interval(summary, row, name))
+    return _by_point(summary, summary.compared, lambda row: _interval(summary, row, name))
 
 
 def share_table(summary: Summary, name: str) -> str:
@@ -57,18 +59,13 @@ def share_table(summary: Summary, name: str) -> str:
         summary: of a study.
         name: ``share_of_median`` or ``share_of_worst_tenth``.
     """
-
-    def cell(row: Any) -> str:
-        share, low, high = (float(row[key]) for key in (name, f"{name}_low", f"{name}_high"))
-        return _per_cent(share, low, high, 0)
-
     known = [
         case
-        for case in summary.cases
-        if case not in (summary.reference(case), whole_of(summary.cases, robust=case.robust))
+        for case in summary.compared
+        if case != whole_of(summary.cases, robust=case.robust)
         and summary.frame.loc[summary.frame["case"] == case.name, name].notna().any()
     ]
-    return _by_point(summary, known, cell)
+    return _by_point(summary, known, lambda row: _share(row, name, 0))
 
 
 def best_table(summary: Summary) -> str:
@@ -77,7 +74,7 @@ def best_table(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    return _by_point(summary, summary.cases, lambda row: _share(row, "best_share"))
+    return _by_point(summary, summary.cases, lambda row: _share(row, "best_share", 1))
 
 
 def outage_table(summary: Summary) -> str:
@@ -86,9 +83,8 @@ def outage_table(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    if summary.requirement is None:
-        return ""
-    return _by_point(summary, summary.cases, lambda row: _share(row, "outage"))
+    cases = () if summary.requirement is None else summary.cases
+    return _by_point(summary, cases, lambda row: _share(row, "outage", 1))
 
 
 def cost_table(summary: Summary) -> str:
@@ -97,13 +93,12 @@ def cost_table(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    paired = [case for case in summary.cases if nominal_of(summary.spec, summary.cases, case) is not None]
 
     def cell(row: Any) -> str:
         worst = number(float(row["cost_worst_tenth"]), summary.quantity)
         return f"{_interval(summary, row, 'cost_median')}; {worst}"
 
-    return _by_point(summary, paired, cell)
+    return _by_point(summary, summary.paired, cell)
 
 
 def status_table(summary: Summary) -> str:
@@ -112,13 +107,11 @@ def status_table(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    names = [status.replace("-", "_") for status in STATUSES]
-    sums = summary.frame.groupby("case", sort=False)[names].sum()
+    sums = summary.frame.groupby("case", sort=False)[[name.replace("-", "_") for name in STATUSES]].sum()
     rows = [
-        [escaped(case.name), *(f"{int(sums.loc[case.name, name]):,}" for name in names)]
-        for case in summary.cases
+        [escaped(str(case)), *(f"{int(count):,}" for count in counts)] for case, *counts in sums.itertuples()
     ]
-    return _table(["case", "certified", "gap not reached", "best found", "failed"], rows)
+    return _table(["case", *(name.replace("-", " ") for name in STATUSES)], rows)
 
 
 def effort_table(summary: Summary) -> str:
@@ -127,27 +120,13 @@ def effort_table(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    import numpy as np
-
-    from nullpose.report.study.statistics import quantile
-
     rows = []
     for case in summary.cases:
-        gap, seconds = (
-            each[:, :, case.place].ravel().astype(float)
-            for each in (summary.values.gap, summary.values.seconds)
-        )
-        solved = summary.values.status[:, :, case.place].ravel() != STATUSES.index("failed")
-        gaps = [quantile(gap, share) for share in (0.5, 0.95, 1.0)]
-        times = [quantile(seconds[solved], share) for share in (0.5, 0.95, 1.0)]
-        rows.append(
-            [
-                escaped(case.name),
-                *("\N{EN DASH}" if math.isnan(each) else f"{each:.1e}" for each in gaps),
-                *("\N{EN DASH}" if math.isnan(each) else f"{each:.3g}" for each in times),
-                f"{float(np.sum(seconds[solved])):.3g}",
-            ]
-        )
+        gap, seconds = summary.values.effort(case.place)
+        gaps, times = ([quantile(each, share) for share in (0.5, 0.95, 1.0)] for each in (gap, seconds))
+        cells = [f"{each:.1e}" for each in gaps]
+        cells += [f"{each:.3g}" for each in (*times, float(np.nansum(seconds)))]
+        rows.append([escaped(case.name), *(cell.replace("nan", NONE) for cell in cells)])
     heads = ["gap: median", "95 %", "worst", "seconds: median", "95 %", "worst", "sum"]
     return _table(["case", *heads], rows)
 
@@ -160,7 +139,7 @@ def reasons_table(summary: Summary) -> str:
     """
     found = summary.values.reasons.most_common(_MOST_REASONS)
     rows = [
-        [escaped(case), status.replace("-", " "), f"{count:,}", escaped(_short(reason))]
+        [escaped(case), status.replace("-", " "), f"{count:,}", escaped(_shortened(reason))]
         for (case, status, reason), count in found
     ]
     left = len(summary.values.reasons) - len(rows)
@@ -170,36 +149,26 @@ def reasons_table(summary: Summary) -> str:
     return _table(["case", "status", "rows", "reason"], rows) if rows else ""
 
 
-def _short(reason: str) -> str:
+def _shortened(reason: str) -> str:
     return reason if len(reason) <= _LONGEST_REASON else f"{reason[:_LONGEST_REASON]} ..."
 
 
 def _interval(summary: Summary, row: Any, name: str) -> str:
-    return with_interval(
-        float(row[name]), float(row[f"{name}_low"]), float(row[f"{name}_high"]), summary.quantity
-    )
+    return with_interval(*three_of(row, name), summary.quantity)
 
 
-def _share(row: Any, name: str) -> str:
-    share, low, high = (float(row[key]) for key in (name, f"{name}_low", f"{name}_high"))
-    return _per_cent(share, low, high, 1)
-
-
-def _per_cent(share: float, low: float, high: float, digits: int) -> str:
+def _share(row: Any, name: str, digits: int) -> str:
     """Return a share and its interval in per cent, without the sign, which the heading has."""
-    if math.isnan(share):
-        return percent(share)
-    whole, *ends = (percent(each, digits).replace(" %", "") for each in (share, low, high))
-    return whole if math.isnan(low) or math.isnan(high) else f"{whole} ({ends[0]} to {ends[1]})"
+    share, low, high = three_of(row, name)
+    whole, *ends = (percent(each, digits).removesuffix(" %") for each in (share, low, high))
+    return whole if math.isnan(share + low + high) else f"{whole} ({ends[0]} to {ends[1]})"
 
 
 def _by_point(summary: Summary, cases: Sequence[ReportCase], cell: Cell) -> str:
-    if not cases:
-        return ""
     points = summary.points.shown
     heads = [escaped(summary.points.words(point)) or "value" for point in points]
     rows = [[escaped(case.name), *(cell(summary.row(point, case)) for point in points)] for case in cases]
-    return _table(["case", *heads], rows)
+    return _table(["case", *heads], rows) if rows else ""
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

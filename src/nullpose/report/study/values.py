@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.physics import to_db
 from nullpose.physics.quantity import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.study.monte_carlo import StudyTable
@@ -49,6 +50,18 @@ class StudyValues:
     def scenes(self) -> int:
         """How many scenes there are rows of."""
         return int(self.value.shape[0])
+
+    def effort(self, place: int, point: int | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return the gaps and the seconds of a case, NaN where nothing is proved and where a row failed.
+
+        Args:
+            place: of the case.
+            point: number of a combination of swept values; None for all of them.
+        """
+        at = (slice(None), slice(None) if point is None else point, place)
+        failed = self.status[at] == STATUSES.index("failed")
+        seconds = np.where(failed, np.nan, self.seconds[at].astype(float))
+        return self.gap[at].astype(float).ravel(), seconds.ravel()
 
     def counts(self) -> dict[str, int]:
         """Return how many rows have each status."""
@@ -103,21 +116,11 @@ def _columns(batch: pd.DataFrame, quantity: Quantity) -> dict[str, NDArray[Any]]
     value, bound, gap, seconds = (
         batch[name].to_numpy(float, na_value=np.nan) for name in ("value", "bound", "gap", "seconds")
     )
+    if not quantity.is_rate:
+        value, bound = to_db(value), to_db(bound)
     codes = {name: code for code, name in enumerate(STATUSES)}
-    return {
-        "value": _in_unit(value, quantity),
-        "bound": _in_unit(bound, quantity),
-        "gap": gap,
-        "status": batch["status"].map(codes).to_numpy(np.uint8),
-        "seconds": seconds,
-    }
-
-
-def _in_unit(values: FloatArray, quantity: Quantity) -> FloatArray:
-    if quantity.is_rate:
-        return values
-    with np.errstate(divide="ignore"):
-        return np.asarray(10.0 * np.log10(values))
+    status = batch["status"].map(codes).to_numpy(np.uint8)
+    return {"value": value, "bound": bound, "gap": gap, "status": status, "seconds": seconds}
 
 
 def _with_decibels(batch: pd.DataFrame, columns: dict[str, Any], quantity: Quantity) -> pd.DataFrame:
@@ -131,8 +134,6 @@ def _with_decibels(batch: pd.DataFrame, columns: dict[str, Any], quantity: Quant
 
 def _count_reasons(reasons: Counter[tuple[str, str, str]], batch: pd.DataFrame) -> None:
     told = batch.loc[batch["reason"] != "", ["case", "status", "reason"]]
-    for (case, status, reason), count in told.value_counts(sort=False).items():
-        if count and (case, status, reason) not in reasons and len(reasons) >= _MOST_REASONS:
-            reason = "other reasons"
-        if count:
-            reasons[str(case), str(status), str(reason)] += int(count)
+    for (case, status, reason), count in told.astype(str).value_counts(sort=False).items():
+        known = (case, status, reason) in reasons or len(reasons) < _MOST_REASONS
+        reasons[case, status, reason if known else "other reasons"] += int(count)

@@ -1,5 +1,39 @@
-"""The figures of a study's report."""
+"""The figures of a study's report, by the names of their files."""
 
-from nullpose.report.study.figures.all_figures import FIGURES, figures_of
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from nullpose.report.study.figures.curves import draw_along, draw_effort
+from nullpose.report.study.figures.distributions import draw_distributions, draw_outage
+from nullpose.report.study.figures.intervals import draw_costs, draw_gains, draw_shares
+from nullpose.report.study.summary import Summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["FIGURES", "figures_of"]
+
+FIGURES: dict[str, Callable[[Summary], Figure | None]] = {
+    "distribution": draw_distributions,
+    "gain": draw_gains,
+    "sweep": draw_along,
+    "best": draw_shares,
+    "outage": draw_outage,
+    "robustness": draw_costs,
+    "effort": draw_effort,
+}
+"""What draws each figure, in the order of the report; None where there is nothing to draw."""
+
+
+def figures_of(summary: Summary) -> Iterator[tuple[str, Figure]]:
+    """Yield the figures that a study has something for, each with the name of its file.
+
+    Args:
+        summary: of the study.
+    """
+    for name, draw in FIGURES.items():
+        figure = draw(summary)
+        if figure is not None:
+            yield name, figure

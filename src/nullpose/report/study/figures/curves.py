@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import Curve, house_style
-from nullpose.report.study.figures.panels import finish, looks_of, step_curve
+from nullpose.report.numbers import percent
+from nullpose.report.study.figures.panels import finish, looks_of, step_curve, style_of
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary
 from nullpose.report.study.values import STATUSES
-from nullpose.report.study.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,14 +78,8 @@ def _along(
         axes.plot(
             across[order],
             middle,
-            color=look.colour,
-            linestyle=look.line,
-            linewidth=look.width,
-            marker=look.marker,
             markersize=4.4,
-            markerfacecolor="white",
-            zorder=look.order,
-            label=look.label,
+            **style_of(look, look.marker),
         )
         known = np.isfinite(low) & np.isfinite(high)
         axes.fill_between(
@@ -135,9 +129,5 @@ def _step(axes: Axes, numbers: FloatArray, look: Curve, least: float) -> None:
             np.concatenate([across[:1], across]),
             np.concatenate([[0.0], shares]),
             where="post",
-            color=look.colour,
-            linestyle=look.line,
-            linewidth=look.width,
-            label=look.label,
-            zorder=look.order,
+            **style_of(look),
         )

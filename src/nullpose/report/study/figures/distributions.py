@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import INK, Curve, house_style
+from nullpose.report.figures.style import INK, house_style
+from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
-from nullpose.report.study.figures.panels import finish, looks_of, new_panels, points_with, step_curve
+from nullpose.report.study.figures.panels import (
+    finish,
+    looks_of,
+    new_panels,
+    points_with,
+    step_curve,
+    style_of,
+)
 from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
 from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,30 +38,16 @@ def draw_distributions(summary: Summary) -> Figure | None:
     Args:
         summary: of a study.
     """
-    points = points_with(summary, summary.cases)
-    if not points:
-        return None
+
+    def dress(axes: Axes) -> None:
+        axes.set_ylim(0.0, 1.0)
+        axes.axhline(WORST_TENTH, color=INK, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
+        axes.set_yticks([0.0, 0.1, 0.25, 0.5, 0.75, 1.0], ["0", "10 %", "25 %", "50 %", "75 %", "100 %"])
+
     quantity = summary.quantity
-    with house_style():
-        figure, panels = new_panels(summary, points, height=2.9 if len(points) == 1 else 2.2)
-        low, high = _range(summary, points)
-        for axes, point in zip(panels, points, strict=True):
-            handles = _curves(axes, summary, point, low, high, banded=True)
-            axes.set_xlim(low, high)
-            axes.set_ylim(0.0, 1.0)
-            axes.axhline(WORST_TENTH, color=INK, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
-            axes.set_yticks([0.0, 0.1, 0.25, 0.5, 0.75, 1.0], ["0", "10 %", "25 %", "50 %", "75 %", "100 %"])
-        note = (
-            f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
-        )
-        finish(
-            figure,
-            handles,
-            f"{quantity.smallest} over the nodes  ({quantity.unit})",
-            "scenes with no more",
-            note,
-        )
-    return figure
+    note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
+    labels = (f"{quantity.smallest} over the nodes  ({quantity.unit})", "scenes with no more", note)
+    return _draw(summary, dress, labels, banded=True)
 
 
 def draw_outage(summary: Summary) -> Figure | None:
@@ -62,25 +56,38 @@ def draw_outage(summary: Summary) -> Figure | None:
     Args:
         summary: of a study.
     """
+    required = summary.requirement
+
+    def dress(axes: Axes) -> None:
+        axes.set_yscale("log")
+        axes.set_ylim(max(0.7 / summary.values.scenes, 1e-6), 1.15)
+        if required is not None:
+            axes.axvline(required, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=1.8)
+
+    note = "" if required is None else "Dashed upright: the requirement."
+    labels = (f"required {summary.quantity.noun}  ({summary.quantity.unit})", "outage probability", note)
+    return _draw(summary, dress, labels, banded=False)
+
+
+def _draw(
+    summary: Summary, dress: Callable[[Axes], None], labels: tuple[str, str, str], *, banded: bool
+) -> Figure | None:
+    """Return panels with a curve for each case, or None if no case has a value."""
     points = points_with(summary, summary.cases)
     if not points:
         return None
-    quantity = summary.quantity
     with house_style():
         figure, panels = new_panels(summary, points, height=2.9 if len(points) == 1 else 2.2)
         low, high = _range(summary, points)
-        if summary.requirement is not None:
+        if summary.requirement is not None and not banded:
             low, high = min(low, summary.requirement - 1.0), max(high, summary.requirement + 1.0)
-        least = 0.7 / summary.values.scenes
         for axes, point in zip(panels, points, strict=True):
-            handles = _curves(axes, summary, point, low, high, banded=False)
+            handles = [
+                _curve(axes, summary, point, case, (low, high), banded=banded) for case in summary.cases
+            ]
             axes.set_xlim(low, high)
-            axes.set_yscale("log")
-            axes.set_ylim(max(least, 1e-6), 1.15)
-            if summary.requirement is not None:
-                axes.axvline(summary.requirement, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=1.8)
-        note = "" if summary.requirement is None else "Dashed upright: the requirement."
-        finish(figure, handles, f"required {quantity.noun}  ({quantity.unit})", "outage probability", note)
+            dress(axes)
+        finish(figure, handles, *labels)
     return figure
 
 
@@ -98,35 +105,21 @@ def _range(summary: Summary, points: tuple[int, ...]) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _curves(axes: Axes, summary: Summary, point: int, low: float, high: float, *, banded: bool) -> list[Any]:
-    looks = looks_of(summary.cases)
-    return [
-        _curve(axes, summary, point, case, looks[case.name], (low, high), banded=banded)
-        for case in summary.cases
-    ]
-
-
 def _curve(
-    axes: Axes,
-    summary: Summary,
-    point: int,
-    case: ReportCase,
-    look: Curve,
-    ends: tuple[float, float],
-    *,
-    banded: bool,
+    axes: Axes, summary: Summary, point: int, case: ReportCase, ends: tuple[float, float], *, banded: bool
 ) -> Any:
+    """Draw a case's curve and its band if there are values; return what stands for it in the legend."""
     from matplotlib.lines import Line2D
 
-    style: dict[str, Any] = {"color": look.colour, "linestyle": look.line, "linewidth": look.width}
-    style |= {"marker": look.marker, "markersize": 4.0, "markerfacecolor": "white"}
+    look = looks_of(summary.cases)[case.name]
+    style = style_of(look, look.marker) | {"markersize": 4.0}
     column = summary.values.value[:, point, case.place]
     column = column[~np.isnan(column)]
     if len(column):
         across, shares = _closed(*step_curve(column), ends)
         every = max(1, len(across) // 7)
         start = 1 + int(every * case.place / max(1, len(summary.cases)))
-        axes.step(across, shares, where="post", markevery=(start, every), zorder=look.order, **style)
+        axes.step(across, shares, where="post", markevery=(start, every), **style)
         if banded:
             half = band_half_width(len(column))
             own = (across >= np.min(column)) & (across <= np.max(column))  # beyond them it says little
@@ -140,7 +133,7 @@ def _curve(
                 linewidth=0.0,
                 zorder=1.0,
             )
-    return Line2D([], [], label=look.label, **style)
+    return Line2D([], [], **style)
 
 
 def _closed(

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nullpose.report.figures.style import INK, Curve, house_style
-from nullpose.report.study.cases import ReportCase, nominal_of
+from nullpose.report.numbers import percent
+from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import finish, looks_of, new_panels, points_with, row_axis
 from nullpose.report.study.statistics import CONFIDENCE
-from nullpose.report.study.summary import Summary
-from nullpose.report.study.wording import percent
+from nullpose.report.study.summary import Summary, three_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,8 +29,7 @@ def draw_gains(summary: Summary) -> Figure | None:
     Args:
         summary: of a study.
     """
-    compared = [case for case in summary.cases if summary.reference(case) is not case]
-    unit = summary.quantity.unit
+    compared, unit = summary.compared, summary.quantity.unit
 
     def draw(axes: Axes, place: int, row: Any, look: Curve) -> None:
         _reach(axes, place, row, "gain_worst_tenth", "gain_best_tenth", look)
@@ -59,11 +58,10 @@ def draw_shares(summary: Summary) -> Figure | None:
     """
 
     def draw(axes: Axes, place: int, row: Any, look: Curve) -> None:
-        share = float(row["best_share"])
+        share, *ends = three_of(row, "best_share")
         if math.isnan(share):
             return
         axes.barh(place, share, height=0.6, color=look.colour, alpha=0.75, zorder=2.0)
-        ends = [float(row["best_share_low"]), float(row["best_share_high"])]
         axes.plot(ends, [place, place], color=INK, linewidth=1.1, marker="|", markersize=5.0, zorder=3.0)
         axes.annotate(
             percent(share),
@@ -88,7 +86,6 @@ def draw_costs(summary: Summary) -> Figure | None:
     Args:
         summary: of a study.
     """
-    paired = [case for case in summary.cases if nominal_of(summary.spec, summary.cases, case) is not None]
 
     def draw(axes: Axes, place: int, row: Any, look: Curve) -> None:
         if not math.isnan(row["cost_median"]) and not math.isnan(row["cost_worst_tenth"]):
@@ -99,7 +96,7 @@ def draw_costs(summary: Summary) -> Figure | None:
 
     unit = summary.quantity.unit
     label = f"nominal less guaranteed {summary.quantity.smallest}  ({unit})"
-    return _rows(summary, paired, draw, label, _marks("median", "", "up to the worst tenth"))
+    return _rows(summary, summary.paired, draw, label, _marks("median", "", "up to the worst tenth"))
 
 
 def _rows(
@@ -139,10 +136,9 @@ def _reach(axes: Axes, place: float, row: Any, low: str, high: str, look: Curve)
 
 
 def _estimate(axes: Axes, place: float, row: Any, name: str, look: Curve, *, filled: bool) -> None:
-    value = float(row[name])
+    value, *ends = three_of(row, name)
     if not math.isfinite(value):
         return
-    ends = [float(row[f"{name}_low"]), float(row[f"{name}_high"])]
     if all(map(math.isfinite, ends)):
         axes.plot(ends, [place, place], color=INK, linewidth=1.1, zorder=2.6)
     axes.plot(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["finish", "looks_of", "new_panels", "points_with", "row_axis", "step_curve"]
+__all__ = ["finish", "looks_of", "new_panels", "points_with", "row_axis", "step_curve", "style_of"]
 
 _WIDTH = 7.0  # inches: the text of a page
 _LETTERS = 92  # of a legend's row, a handle being as wide as six
@@ -49,6 +49,17 @@ def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
             others += 1
         looks[case.name] = look
     return looks
+
+
+def style_of(look: Curve, marker: str = "") -> dict[str, Any]:
+    """Return how a case's line is drawn, as Matplotlib's arguments.
+
+    Args:
+        look: of the case.
+        marker: of its points; empty for none.
+    """
+    style: dict[str, Any] = {"color": look.colour, "linestyle": look.line, "linewidth": look.width}
+    return style | {"marker": marker, "markerfacecolor": "white", "zorder": look.order, "label": look.label}
 
 
 def points_with(summary: Summary, cases: Iterable[ReportCase]) -> tuple[int, ...]:

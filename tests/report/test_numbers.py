@@ -3,7 +3,7 @@
 import math
 
 from nullpose.physics.quantity import Quantity
-from nullpose.report.study.wording import count_of, escaped, listed, number, percent, with_interval
+from nullpose.report.numbers import count_of, escaped, listed, number, percent, with_interval
 
 RATE = Quantity.named("min_secrecy_rate")
 MINUS = "\N{MINUS SIGN}"

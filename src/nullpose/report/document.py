@@ -1,0 +1,112 @@
+"""What a terminal shows: a head, tables of rows, pairs of names and words, notes.
+
+Every text is shown as it is given: what looks like markup is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = ["beside", "document", "head", "pairs", "table"]
+
+
+def document(*parts: RenderableType | None) -> RenderableType:
+    """Return parts one below the other, those that are nothing left out.
+
+    Args:
+        parts: texts, tables and heads.
+    """
+    from rich.console import Group
+    from rich.text import Text
+
+    return Group(*(Text(part) if isinstance(part, str) else part for part in parts if part is not None))
+
+
+def head(name: str, label: str = "", value: str = "", lines: Sequence[str] = ()) -> RenderableType:
+    """Return what stands above a result: the scenario, what was asked for, the value, and lines on it.
+
+    Args:
+        name: of the scenario; may be empty.
+        label: of the result.
+        value: in words.
+        lines: below it; empty ones are left out.
+    """
+    from rich.text import Text
+
+    text = Text(name or "scenario", style="bold")
+    if label:
+        below = "\n".join(("", *filter(None, lines), ""))
+        text = Text.assemble(text, "\n", (label, "bold blue"), ": ", (value, "bold"), below)
+    return text
+
+
+def table(
+    title: str,
+    rows: Sequence[Mapping[str, str]],
+    *,
+    bold: Collection[str] = (),
+    left: Collection[str] = (),
+    no_wrap: bool = False,
+) -> RenderableType | None:
+    """Return rows as a table in the house's look; None if there are none.
+
+    Args:
+        title: stands above it; may be empty.
+        rows: cells by heading, the first of which names the row; an empty one is a rule.
+        bold: names of the rows that stand out.
+        left: headings of columns of words; those of numbers are to the right.
+        no_wrap: whether columns after the first keep their width.
+    """
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    if not any(rows):
+        return None
+    view = Table(title=title or None, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
+    view.pad_edge = False
+    for place, heading in enumerate(rows[0]):
+        view.add_column(Text(heading), no_wrap=no_wrap and place > 0, overflow="fold")
+        if place and heading not in left:
+            view.columns[place].justify = "right"
+    for row in rows:
+        if row:
+            cells = list(map(Text, row.values()))
+            view.add_row(*cells, style="bold" if cells[0].plain in bold else "")
+        else:
+            view.add_section()
+    return view
+
+
+def beside(columns: Mapping[str, Mapping[str, str]]) -> list[Mapping[str, str]]:
+    """Return the rows of a table that has what is compared side by side.
+
+    Args:
+        columns: by heading, each with the same labels and its own cells.
+    """
+    labels = next(iter(columns.values()), {})
+    return [{"": label} | {name: cells[label] for name, cells in columns.items()} for label in labels]
+
+
+def pairs(title: str, rows: Sequence[tuple[str, str]]) -> RenderableType:
+    """Return names with their words beside them.
+
+    Args:
+        title: stands above them; may be empty.
+        rows: names, which may be empty, and words.
+    """
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    view = Table.grid(padding=(0, 2))
+    if title:
+        view = Table(box=box.SIMPLE, show_header=False, pad_edge=False, title=title, title_style="bold")
+        view.title_justify = "left"
+    for name, words in rows:
+        view.add_row(name, Text(words))
+    return view

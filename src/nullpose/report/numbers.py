@@ -1,0 +1,245 @@
+"""Numbers as every report writes them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from nullpose.physics.quantity import Quantity
+
+__all__ = [
+    "MINUS",
+    "NONE",
+    "at_least",
+    "at_most",
+    "axis_label",
+    "begun",
+    "count_of",
+    "count_words",
+    "degrees_text",
+    "escaped",
+    "fixed",
+    "listed",
+    "number",
+    "percent",
+    "share_text",
+    "short",
+    "span",
+    "unit_of",
+    "with_interval",
+    "with_unit",
+]
+
+MINUS = "\N{MINUS SIGN}"
+_UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}
+NONE = "\N{EN DASH}"
+
+
+def begun(text: str) -> str:
+    """Return a text with a capital letter first.
+
+    Args:
+        text: may be empty.
+    """
+    return text[:1].upper() + text[1:]
+
+
+def count_words(count: int, noun: str, nouns: str = "") -> str:
+    """Return a number of things in words, as in ``2 boxes``.
+
+    Args:
+        count: how many.
+        noun: the word for one.
+        nouns: the word for several, if it is not formed with an s.
+    """
+    return f"{count} {noun if count == 1 else nouns or noun + 's'}"
+
+
+def fixed(value: float, digits: int) -> str:
+    """Return a number with so many decimals, without the sign of a zero.
+
+    Args:
+        value: any number.
+        digits: how many decimals.
+    """
+    return f"{value:z.{digits}f}"
+
+
+def degrees_text(angle_rad: float, digits: int = 2) -> str:
+    """Return an angle in degrees.
+
+    Args:
+        angle_rad: the angle, radians.
+        digits: how many decimals.
+    """
+    return fixed(math.degrees(angle_rad), digits)
+
+
+def short(number: float) -> str:
+    """Return a number rounded up to two digits, small and large ones as in ``1e-6``.
+
+    Args:
+        number: at least 0.
+    """
+    if not math.isfinite(number) or number == 0.0 or 1e-3 < number < 1e3:
+        return at_most(number)
+    mantissa, exponent = f"{_rounded(number, 2, math.ceil):.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def at_most(number: float, digits: int = 2) -> str:
+    """Return a number rounded up to so many significant digits.
+
+    Args:
+        number: any.
+        digits: how many.
+    """
+    return f"{_rounded(number, digits, math.ceil):.{digits}g}"
+
+
+def at_least(number: float, digits: int = 2) -> str:
+    """Return a number rounded down to so many significant digits.
+
+    Args:
+        number: any.
+        digits: how many.
+    """
+    return f"{_rounded(number, digits, math.floor):.{digits}g}"
+
+
+def _rounded(number: float, digits: int, towards: Callable[[float], int]) -> float:
+    if number == 0.0 or not math.isfinite(number):
+        return number
+    place = digits - 1 - math.floor(math.log10(abs(number)))
+    scaled = number * 10.0**place
+    nearest = round(scaled)
+    whole = nearest if abs(scaled - nearest) < 1e-9 else towards(scaled)
+    return float(whole / 10.0**place)
+
+
+def number(value: float, quantity: Quantity | None = None) -> str:
+    """Return a number of decibels with two decimals, or of a rate with three digits; a dash if there is none.
+
+    Args:
+        value: the number.
+        quantity: whose it is; None for one in decibels.
+    """
+    if math.isnan(value):
+        return NONE
+    if math.isinf(value):
+        return "\N{INFINITY}" if value > 0.0 else f"{MINUS}\N{INFINITY}"
+    text = f"{value:z.3g}" if quantity is not None and quantity.is_rate else f"{value:z.2f}"
+    return text.replace("-", MINUS)
+
+
+def with_unit(value: float, quantity: Quantity) -> str:
+    """Return a number with its unit, for a sentence.
+
+    Args:
+        value: the number.
+        quantity: whose it is.
+    """
+    return f"{number(value, quantity)} {quantity.unit}"
+
+
+def span(low: float, high: float, quantity: Quantity | None = None) -> str:
+    """Return an interval, as in "3.9 to 4.3"; an end that is not known is a dash.
+
+    Args:
+        low: its lower end.
+        high: its upper end.
+        quantity: whose it is; None for decibels.
+    """
+    return f"{number(low, quantity)} to {number(high, quantity)}"
+
+
+def with_interval(value: float, low: float, high: float, quantity: Quantity | None = None) -> str:
+    """Return a number with its interval, as in "4.10 (3.90 to 4.30)"; without, if neither end is known.
+
+    Args:
+        value: the number.
+        low: the interval's lower end.
+        high: its upper end.
+        quantity: whose it is; None for decibels.
+    """
+    if math.isnan(low) and math.isnan(high):
+        return number(value, quantity)
+    return f"{number(value, quantity)} ({span(low, high, quantity)})"
+
+
+def percent(share: float, digits: int = 0) -> str:
+    """Return a share in per cent, never rounded to all or nothing unless it is.
+
+    Args:
+        share: 1 for all.
+        digits: decimals.
+    """
+    if math.isnan(share):
+        return NONE
+    text = f"{100.0 * share:.{digits}f}"
+    step = 10.0**-digits
+    if float(text) == 100.0 and share < 1.0 - 1e-9:
+        text = f"{100.0 - step:.{digits}f}"
+    if float(text) == 0.0 and share > 1e-12:
+        return f"under {step:g} %"
+    return f"{text} %".replace("-", MINUS)
+
+
+def listed(parts: list[str]) -> str:
+    """Return parts as a list in a sentence, with "and" before the last.
+
+    Args:
+        parts: at least one.
+    """
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+def share_text(share: float) -> str:
+    """Return a share in per cent: three digits, whole numbers from 100 on, as in ``99.3 %``.
+
+    Never rounded up to 100 by more than a twentieth of a per cent.
+
+    Args:
+        share: at least 0.
+    """
+    per_cent = 100.0 * share
+    return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
+
+
+def count_of(count: int, noun: str) -> str:
+    """Return a count with its noun, thousands apart, as in "2,000 scenes".
+
+    Args:
+        count: how many.
+        noun: of one.
+    """
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def escaped(text: str) -> str:
+    """Return a text that Markdown shows as it is.
+
+    Args:
+        text: a title, a name or a reason, on one line.
+    """
+    return "".join(f"\\{letter}" if letter in "\\`*|<>[]#$" else letter for letter in " ".join(text.split()))
+
+
+def unit_of(path: str) -> str:
+    """Return the unit of a setting by the end of its name, as in ``power_w``; empty if it has none.
+
+    Args:
+        path: of the setting.
+    """
+    leaf = path.rsplit(".", 1)[-1].split("[", 1)[0]
+    return _UNITS.get(leaf.rsplit("_", 1)[-1].lower(), "") if "_" in leaf else ""
+
+
+def axis_label(path: str) -> str:
+    """Return what an axis of a swept setting is labelled.
+
+    Args:
+        path: of the setting.
+    """
+    unit = unit_of(path)
+    return f"{path}  ({unit})" if unit else path

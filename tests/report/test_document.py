@@ -1,0 +1,29 @@
+"""What every view for a terminal shares: texts shown as they are, columns that keep their order."""
+
+import io
+
+from rich.console import Console
+
+from nullpose.report.document import beside, document, head, pairs, table
+
+
+def test_texts_are_shown_as_they_are() -> None:
+    """What looks like markup is none, in a head, a heading, a cell or a note."""
+    odd = "[red]gate[/red]"
+    view = document(head(odd), pairs(odd, [("name", odd)]), None, table("", [{odd: odd}]), odd)
+    console = Console(width=120, file=io.StringIO(), highlight=False)
+    console.print(view)
+    assert console.file.getvalue().count(odd) >= 5
+
+
+def test_nothing_has_no_table() -> None:
+    """Without rows, or with rules alone, there is no table."""
+    assert table("title", []) is None
+    assert table("title", [{}, {}]) is None
+    assert beside({}) == []
+
+
+def test_what_is_compared_stands_side_by_side() -> None:
+    """Each label has a row, each of those compared a column."""
+    rows = beside({"one": {"x": "1", "y": "2"}, "two": {"y": "4", "x": "3"}})
+    assert rows == [{"": "x", "one": "1", "two": "3"}, {"": "y", "one": "2", "two": "4"}]
