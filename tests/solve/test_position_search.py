@@ -76,3 +76,14 @@ def test_an_objective_without_a_value_is_said(paper: Callable) -> None:
     """An objective that is minus infinity everywhere has no best position, and that is said."""
     with pytest.raises(SolveError, match="widen the airspace"):
         search_positions(lambda p: -math.inf, build_family(paper(1.0)), seed=0)
+
+
+def test_a_wall_between_zones_is_searched(scene: Callable) -> None:
+    """Where the airspace leaves a wall of no width, a position on it is found."""
+    zones = [
+        {"polygon_m": [(west, -5), (east, -5), (east, 45), (west, 45)]} for west, east in ((-5, 5), (5, 15))
+    ]
+    walled = scene([(0, 0, 0), (10, 40, 1)], x_m=(0.0, 10.0), y_m=(0.0, 40.0), no_fly=zones)
+    place, value, _, _ = search_positions(lambda p: -float(p[2]), build_family(walled), seed=0)
+    assert walled.airspace.allows(place)
+    assert value == -8.0

@@ -16,24 +16,36 @@ from nullpose.family.airspace import loosened
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.precompile import precompile
 
-__all__ = ["CLIMBS", "SearchSettings", "landmarks", "multistart", "shift_of"]
+__all__ = [
+    "BORDER_M",
+    "CLIMBS",
+    "NOT_RECEIVED",
+    "NO_POSITION",
+    "SearchSettings",
+    "landmarks",
+    "multistart",
+    "shift_of",
+]
 
 FloatArray = NDArray[np.float64]
 
 
+BORDER_M = 4e-10
+"""How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
+NO_POSITION = (
+    "no position was found in what the airspace leaves, which is very small or narrow; widen the airspace or "
+    "the gaps between zones, or reduce keep_out_m"
+)
+"""What is said where no position was met."""
+NOT_RECEIVED = (
+    "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
+)
+"""What is said where some were."""
 CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
 """Barrier weights of the climbs after a search."""
 _CLIMB_STEPS = 300
 _SAME = 1e-12
 _PAIRED = 4  # interferers whose lines are looked at
-_BORDER_M = 4e-10  # less than what counts as on a border
-NO_POSITION = (
-    "no position was found in what the airspace leaves, which is very small or narrow; widen the airspace or "
-    "the gaps between zones, or reduce keep_out_m"
-)
-NOT_RECEIVED = (
-    "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +136,7 @@ def multistart(
     places = landmarks(family)
     for attempt in range(2):
         if attempt == 1:  # what is allowed may be of no width: a point, a line or a wall
-            domain, places = loosened(family, _BORDER_M).domain, np.vstack([places, _corners(family)])
+            domain, places = loosened(family, BORDER_M).domain, np.vstack([places, _corners(family)])
         log_value, starts, evaluations = search(
             family.arrays,
             domain,

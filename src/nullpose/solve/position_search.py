@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import Family
-from nullpose.solve.multistart import landmarks
+from nullpose.family.airspace import loosened
+from nullpose.solve.multistart import BORDER_M, NO_POSITION, NOT_RECEIVED, landmarks
 
 __all__ = ["search_positions"]
 
@@ -43,6 +44,10 @@ def search_positions(
     from nullpose.solve.kernels.search import cut_box, push_out
     from nullpose.solve.kernels.zones import in_zone
 
+    starts = [place for place in landmarks(family) if push_out(place, family.domain)]
+    if not starts:  # what is allowed may be of no width
+        family = loosened(family, BORDER_M)
+        starts = [place for place in landmarks(family) if push_out(place, family.domain)]
     low, high, keep_points, keep_radius = family.domain[:4]
     evaluations = 0
 
@@ -56,13 +61,14 @@ def search_positions(
         evaluations += 1
         return -objective(position) if inside(position) else math.inf
 
-    starts = [place for place in landmarks(family) if push_out(place, family.domain)]
+    if not starts:
+        raise SolveError(NO_POSITION)
     best_value, best_position = max(((-cost(place), place) for place in starts), key=lambda pair: pair[0])
     box_low, box_high = np.empty(3), np.empty(3)
     if math.isfinite(best_value):
         cut_box(family.arrays, low, high, best_value, box_low, box_high)
     else:
-        raise SolveError("no position was found at which every node is received; widen the airspace")
+        raise SolveError(NOT_RECEIVED)
     draws = np.random.default_rng(seed).uniform(size=(_COARSE, 3))
     draws[::2, 2] = 0.0  # the optimum is often on the floor
     for draw in draws:
