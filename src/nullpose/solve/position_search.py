@@ -43,7 +43,8 @@ def search_positions(
     from nullpose.solve.kernels.search import cut_box, push_out
     from nullpose.solve.kernels.zones import in_zone
 
-    low, high, keep_points, keep_radius = family.domain[:4]
+    low, high, keep_points = family.domain.low_m, family.domain.high_m, family.domain.keep_out_points_m
+    keep_radius = family.domain.keep_out_m
     evaluations = 0
 
     def inside(position: FloatArray) -> bool:
