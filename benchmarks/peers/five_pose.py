@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from nullpose.family import Family, build_family
+from nullpose.family.records import Ratios
 from nullpose.physics import Pose, min_sinr
 from nullpose.scenario import Scenario
 from nullpose.solve.kernels.links import derivatives, min_log_ratio
@@ -40,7 +41,7 @@ def unpack(reals, counts):
     i = 5 + ratios
     j = i + ratios
     k = j + groups + 1
-    family = (
+    family = Ratios(
         reals[:a].reshape(points, 3),
         reals[a:b],
         reals[b:c],
@@ -94,7 +95,7 @@ def costs(xs, reals, counts):
 def ratios_and_slopes(x, reals, counts):
     """Return every log ratio of a pose, (R,), and its derivatives in the five scaled numbers, (R, 5)."""
     family, bounds, _, f = unpack(reals, counts)
-    ratios, groups = f.shape[0], family[5].shape[0]
+    ratios, groups = f.shape[0], family.denominator_isotropic.shape[0]
     p, u = np.empty(3), np.empty(3)
     place(x, bounds, p, u)
     grads = np.empty((ratios, 6))
@@ -179,7 +180,11 @@ class FivePose:
 
 def _pack(family: Family) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return the family as one array of floats and one of integers, in the order that `unpack` reads."""
-    points, n0, nw, npt, den, d0, start, dpt, dw = family.arrays[:9]
+    points, n0 = family.arrays.points_m, family.arrays.numerator_isotropic
+    nw, npt = family.arrays.numerator_weight, family.arrays.numerator_point
+    den, d0 = family.arrays.denominator_of, family.arrays.denominator_isotropic
+    start, dpt = family.arrays.denominator_start, family.arrays.denominator_point
+    dw = family.arrays.denominator_weight
     scratch = np.zeros(len(d0) + len(nw))
     reals = np.concatenate([points.ravel(), n0, nw, d0, dw, family.low_m, family.high_m, scratch])
     sizes = [0, len(points), len(nw), len(d0), len(dw)]

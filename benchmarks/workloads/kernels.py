@@ -39,7 +39,7 @@ FloatArray = NDArray[np.float64]
 @njit(error_model="numpy")
 def evaluate_all(family, ps, us, rounds):
     """Return the sum of the smallest log ratio over poses, so that no evaluation can be left out."""
-    logs, f = np.empty(family[5].shape[0]), np.empty(family[1].shape[0])
+    logs, f = np.empty(family.denominator_isotropic.shape[0]), np.empty(family.numerator_isotropic.shape[0])
     total = 0.0
     for _ in range(rounds):
         for m in range(ps.shape[0]):
@@ -57,7 +57,7 @@ def turn_all(family, ps, us):
 @njit(error_model="numpy")
 def polish_all(family, domain, axis_field, ps, us, mu_start, max_steps):
     """Polish every pose, on copies."""
-    multipliers = np.empty(family[1].shape[0])
+    multipliers = np.empty(family.numerator_isotropic.shape[0])
     for m in range(ps.shape[0]):
         polish(family, domain, axis_field, ps[m].copy(), us[m].copy(), mu_start, max_steps, multipliers)
 

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nullpose.family.airspace import FENCE, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, Zones, airspace_zones
+from nullpose.family.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.solve.kernels.zones import in_zone
 
@@ -65,11 +66,8 @@ def outside_pieces(zones: Zones, positions: np.ndarray) -> np.ndarray:
 def in_zones(zones: Zones, positions: np.ndarray) -> np.ndarray:
     """Returns which positions a zone forbids, by the kernel that the branch and bound asks."""
     none, no_points = np.zeros(3), np.zeros((0, 3))
-    pieces = (zones.piece_start, zones.piece_sides)
-    domain = (
-        *(none, none, no_points, 1.0, *pieces),
-        *(zones.zone_kind, zones.zone_start, zones.zone_edges, zones.zone_range_m),
-    )
+    ours = {name: getattr(zones, name) for name in zones.__slots__}
+    domain = Domain(low_m=none, high_m=none, keep_out_points_m=no_points, keep_out_m=1.0, **ours)
     count = len(zones.zone_kind)
     return np.array([any(in_zone(domain, z, p) for z in range(count)) for p in positions])
 

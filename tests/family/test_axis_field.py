@@ -15,7 +15,8 @@ from nullpose.physics import maximum_gain_axis, zero_interference_axis
 
 def axis_at(field: AxisField, position_m: np.ndarray) -> np.ndarray:
     """Returns the unit axis that an affine field gives at a position."""
-    kind, offset, matrix = field.arrays
+    kind, offset = field.arrays.points_m, field.arrays.numerator_isotropic
+    matrix = field.arrays.numerator_weight
     assert kind == 1
     axis = offset + matrix @ position_m
     return axis / np.linalg.norm(axis)

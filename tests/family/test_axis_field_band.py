@@ -17,7 +17,7 @@ def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
     """Kind 2 is a band, 3 a cone; all axes are kind 0 and the vertical one is an affine field."""
     least, greatest = sorted((one, other))
     field = AxisField.within(least, greatest)
-    kind, ends, _ = field.arrays
+    kind, ends = field.arrays.points_m, field.arrays.numerator_isotropic
     if (least, greatest) == (0.0, 1.0):
         assert kind == 0
     elif least == 1.0:

@@ -98,7 +98,8 @@ def test_the_domain_is_the_airspace(random_scene: Callable) -> None:
     np.testing.assert_array_equal(boxed.low_m, [-5.0, 0.0, 10.0])
     np.testing.assert_array_equal(boxed.high_m, [60.0, 0.0, 40.0])
     assert boxed.keep_out_m == 2.5
-    low, high, centres, radius = boxed.domain[:4]
+    low, high, centres = boxed.domain.low_m, boxed.domain.high_m, boxed.domain.keep_out_points_m
+    radius = boxed.domain.keep_out_m
     assert low is boxed.low_m
     assert high is boxed.high_m
     assert centres is boxed.keep_out_points_m

@@ -54,7 +54,8 @@ def test_the_position_is_in_the_domain(paper: Callable) -> None:
         return float(np.log(np.min(sinr(scene, p, np.array([0.0, 0.0, 1.0])))))
 
     position, value, _, _ = search_positions(objective, family, seed=0)
-    low, high, centres, radius = family.domain[:4]
+    low, high, centres = family.domain.low_m, family.domain.high_m, family.domain.keep_out_points_m
+    radius = family.domain.keep_out_m
     assert np.all((position >= low) & (position <= high))
     assert np.all(np.linalg.norm(centres - position, axis=1) >= radius)
     assert math.isfinite(value)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["AxisField"]
+from nullpose.family.records import Axes
 
-AxisFieldArrays: TypeAlias = tuple[int, NDArray[np.float64], NDArray[np.float64]]
+__all__ = ["AxisField"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +117,7 @@ class AxisField:
             return np.asarray(axis / np.linalg.norm(axis, axis=-1, keepdims=True))
 
     @property
-    def arrays(self) -> AxisFieldArrays:
+    def arrays(self) -> Axes:
         """The field as the kernels take it: (kind, offset, matrix).
 
         The kind is 0 for any axis, 1 for an affine one, 2 for a band, whose ends stand in place of the
@@ -128,8 +127,8 @@ class AxisField:
         # writable copies, as those are that kernels make: they are compiled for one kind of array
         offset, matrix = self.offset.copy(), self.matrix.copy()
         if not self.is_free:
-            return (1, offset, matrix)
+            return Axes(1, offset, matrix)
         if (low, high) == (0.0, 1.0):
-            return (0, offset, matrix)
+            return Axes(0, offset, matrix)
         offset[:2] = low, high
-        return (3 if low == high else 2, offset, matrix)
+        return Axes(3 if low == high else 2, offset, matrix)

@@ -9,34 +9,12 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["DomainArrays", "Family", "FamilyArrays"]
+from nullpose.family.records import Domain, Ratios
+
+__all__ = ["Family"]
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
-FamilyArrays: TypeAlias = tuple[
-    FloatArray,
-    FloatArray,
-    FloatArray,
-    IntArray,
-    IntArray,
-    FloatArray,
-    IntArray,
-    IntArray,
-    FloatArray,
-    FloatArray,
-]
-DomainArrays: TypeAlias = tuple[
-    FloatArray,
-    FloatArray,
-    FloatArray,
-    float,
-    IntArray,
-    FloatArray,
-    IntArray,
-    IntArray,
-    FloatArray,
-    FloatArray,
-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -105,36 +83,14 @@ class Family:
                 object.__setattr__(self, one.name, array)
 
     @property
-    def arrays(self) -> FamilyArrays:
+    def arrays(self) -> Ratios:
         """The ratios as the kernels take them."""
-        return (
-            self.points_m,
-            self.numerator_isotropic,
-            self.numerator_weight,
-            self.numerator_point,
-            self.denominator_of,
-            self.denominator_isotropic,
-            self.denominator_start,
-            self.denominator_point,
-            self.denominator_weight,
-            self.turn,
-        )
+        return Ratios(*(getattr(self, name) for name in Ratios._fields))
 
     @property
-    def domain(self) -> DomainArrays:
-        """The positions as the kernels take them: box, keep-out balls, convex pieces, zones."""
-        return (
-            self.low_m,
-            self.high_m,
-            self.keep_out_points_m,
-            self.keep_out_m,
-            self.piece_start,
-            self.piece_sides,
-            self.zone_kind,
-            self.zone_start,
-            self.zone_edges,
-            self.zone_range_m,
-        )
+    def domain(self) -> Domain:
+        """The positions as the kernels take them."""
+        return Domain(*(getattr(self, name) for name in Domain._fields))
 
     @property
     def digest(self) -> str:

@@ -48,7 +48,13 @@ def search_positions(
     if not starts:  # what is allowed may be of no width
         family = loosened(family, BORDER_M)
         starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    low, high, keep_points, keep_radius = family.domain[:4]
+    domain = family.domain
+    low, high, keep_points, keep_radius = (
+        domain.low_m,
+        domain.high_m,
+        domain.keep_out_points_m,
+        domain.keep_out_m,
+    )
     evaluations = 0
 
     def inside(position: FloatArray) -> bool:

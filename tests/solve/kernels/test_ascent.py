@@ -21,7 +21,7 @@ def ascended(family, row, mean, back, weights, v):
     """Returns what the kernel does, which has no Python name, for a free axis in the world's frame."""
     basis, nothing = np.eye(3), np.zeros((1, 6))
     whitening = (nothing, mean, back)
-    every = np.empty(family[1].shape[0])
+    every = np.empty(family.numerator_isotropic.shape[0])
     return ascend(family, False, basis, row, whitening, nothing, 0, np.zeros(1), TOLERANCE, every, weights, v)
 
 

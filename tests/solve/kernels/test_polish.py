@@ -81,7 +81,8 @@ def stationarity(family: Family, field: AxisField, p: np.ndarray, u: np.ndarray)
     else:
         gradients = length * (slopes[:, :3] + slopes[:, 3:] @ field.matrix)
     active = gradients[logs - logs.min() < 1e-8]
-    low, high, centres, radius = family.domain[:4]
+    low, high, centres = family.domain.low_m, family.domain.high_m, family.domain.keep_out_points_m
+    radius = family.domain.keep_out_m
     pushes = [
         sign * np.eye(3)[i]
         for sign, gap in ((1.0, p - low), (-1.0, high - p))
@@ -114,7 +115,8 @@ def test_the_check_tells_an_end_from_a_start(paper: Callable) -> None:
 
 def inside(family: Family, p: np.ndarray) -> bool:
     """Returns whether a position lies in the domain, to the last digit."""
-    low, high, centres, radius = family.domain[:4]
+    low, high, centres = family.domain.low_m, family.domain.high_m, family.domain.keep_out_points_m
+    radius = family.domain.keep_out_m
     clear = np.all(np.sum((centres - p) ** 2, axis=1) >= radius**2)
     return bool(np.all(p >= low) and np.all(p <= high) and clear)
 

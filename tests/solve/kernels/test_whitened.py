@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from nullpose.family.records import Ratios
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.node import CENTRE, COLUMNS, HALF, LEVEL
@@ -13,11 +14,16 @@ from nullpose.solve.kernels.whitened import axis_of, fill_values, ratio_form, wh
 def both_ways(family, row, denominator, u, by_form, by_geometry):
     """Fills every ratio's form at an axis in both ways; returns the axis' squared length when whitened."""
     basis, mean, back = np.eye(3), np.empty(6), np.empty((3, 3))
-    denominators, form, v, again = np.empty((family[5].shape[0], 6)), np.empty(6), np.empty(3), np.empty(3)
+    denominators, form, v, again = (
+        np.empty((family.denominator_isotropic.shape[0], 6)),
+        np.empty(6),
+        np.empty(3),
+        np.empty(3),
+    )
     whiten(family, basis, row, denominator, denominators, mean, back)
     whiten_axis(basis, back, u, v)
     axis_of(basis, back, v, again)
-    for k in range(family[1].shape[0]):
+    for k in range(family.numerator_isotropic.shape[0]):
         ratio_form(family, False, basis, row, (denominators, mean, back), k, form)
         by_form[k] = bilinear(form, v, v)
     size = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
@@ -34,7 +40,7 @@ def test_forms_and_geometry_agree(groups: int, turned: bool) -> None:
         ratios, each = 4, 2
         points = ratios + groups * each
         turn = np.linalg.qr(rng.normal(size=(points, 3, 3)))[0] if turned else np.zeros((0, 3, 3))
-        family = (
+        family = Ratios(
             rng.uniform(0.0, 50.0, (points, 3)),
             rng.uniform(0.0, 1.0, ratios),
             rng.uniform(10.0, 1000.0, ratios),
@@ -51,7 +57,9 @@ def test_forms_and_geometry_agree(groups: int, turned: bool) -> None:
         links = rotated(family, row[CENTRE:HALF])
         denominator = np.zeros(6)
         if groups == 1:
-            total = family[5][0] * np.eye(3) + np.einsum("e,eij->ij", family[8], links[family[7]])
+            total = family.denominator_isotropic[0] * np.eye(3) + np.einsum(
+                "e,eij->ij", family.denominator_weight, links[family.denominator_point]
+            )
             denominator = -row[LEVEL] * total[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
         by_form, by_geometry = np.empty(ratios), np.empty(ratios)
         size = both_ways(family, row, denominator, u, by_form, by_geometry)
@@ -60,9 +68,9 @@ def test_forms_and_geometry_agree(groups: int, turned: bool) -> None:
 
 def rotated(family: tuple, position_m: np.ndarray) -> np.ndarray:
     """Returns every point's link form as a matrix, in the axis' own coordinates."""
-    r = family[0] - position_m
-    if len(family[9]):
-        r = np.einsum("jai,ja->ji", family[9], r)
+    r = family.points_m - position_m
+    if len(family.turn):
+        r = np.einsum("jai,ja->ji", family.turn, r)
     square = np.sum(r**2, axis=1)
     across = square[:, None, None] * np.eye(3) - r[:, :, None] * r[:, None, :]
     return across / square[:, None, None] ** 2

@@ -17,7 +17,8 @@ __all__ = ["branch_array"]
 @inner_kernel
 def is_forbidden(domain, centre, half):
     """Return whether no position of a box is allowed: all of it inside one ball or one forbidden piece."""
-    keep_points, keep_radius, start, sides = domain[2], domain[3], domain[4], domain[5]
+    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
+    start, sides = domain.piece_start, domain.piece_sides
     for q in range(keep_points.shape[0]):
         far = 0.0
         for i in range(3):

@@ -28,7 +28,8 @@ _GAIN = 1e-5
 @inner_kernel
 def walls(domain, x, stiffness, chosen, slope):
     """Return half the stiffness times the square of how far a position is outside; take its slope away."""
-    low, high, keep_points, keep_radius = domain[:4]
+    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
+    keep_radius = domain.keep_out_m
     total = 0.0
     for i in range(3):
         over = max(low[i] - x[i], 0.0) - max(x[i] - high[i], 0.0)
@@ -46,7 +47,7 @@ def walls(domain, x, stiffness, chosen, slope):
                 slope[i] += stiffness * over * (x[i] - keep_points[q, i]) / away
     choose_sides(domain, x, chosen)
     for c in range(chosen.shape[0]):
-        side = domain[5][chosen[c]]
+        side = domain.piece_sides[chosen[c]]
         slack = side_slack(side, x)
         if slack >= 0.0:
             continue
@@ -137,7 +138,7 @@ def climb(scene, base, domain, shared, x, betas, most):
         most: steps in each round.
     """
     n, nodes = x.shape[0], scene[2]
-    work = (np.empty(nodes), np.empty((nodes, n)), np.empty(domain[4].shape[0] - 1, np.int64))
+    work = (np.empty(nodes), np.empty((nodes, n)), np.empty(domain.piece_start.shape[0] - 1, np.int64))
     slope, new_slope, step, new_x = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     matrix = np.empty((n, n))
     worst = -math.inf

@@ -285,8 +285,8 @@ def best_axis(family, p, axis):
 
     Exact up to rounding with one denominator; with several, Dinkelbach's iteration over exact steps.
     """
-    ratios = family[1].shape[0]
-    groups = family[5].shape[0]
+    ratios = family.numerator_isotropic.shape[0]
+    groups = family.denominator_isotropic.shape[0]
     numerators = np.empty((ratios, 6))
     denominators = np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
@@ -311,9 +311,10 @@ def best_axis(family, p, axis):
     for _ in range(60):
         level = math.exp(best)
         for k in range(ratios):
-            below = form_value(denominators, family[4][k], axis)  # without it the iteration is only linear
+            # without the divisor the iteration is only linear
+            below = form_value(denominators, family.denominator_of[k], axis)
             for m in range(6):
-                forms[k, m] = (numerators[k, m] - level * denominators[family[4][k], m]) / below
+                forms[k, m] = (numerators[k, m] - level * denominators[family.denominator_of[k], m]) / below
         best_axis_of_forms(forms, v)
         value = min_log_ratio(family, p, v, logs, f)
         if not value > best + 1e-15 * abs(best):

@@ -29,8 +29,8 @@ def choose_border(domain, row):
 
     Zones are numbered after the balls. Without such a zone, -1 is returned.
     """
-    keep_points, keep_radius = domain[2], domain[3]
-    balls, zones = keep_points.shape[0], domain[6].shape[0]
+    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
+    balls, zones = keep_points.shape[0], domain.zone_kind.shape[0]
     row[BALL], row[NU] = reaching_ball(keep_points, keep_radius, row), 0.0
     if zones == 0:
         return -1
@@ -52,15 +52,15 @@ def choose_border(domain, row):
 def borders(domain, row, sides, counts):
     """Fill the alternatives of the row's ball or zone; return how many there are, 0 for none."""
     border = int(row[BALL])
-    balls = domain[2].shape[0]
+    balls = domain.keep_out_points_m.shape[0]
     if border < 0:
         return 0
     if border < balls:
         counts[0] = 1
         sides[0, 0, 0] = 2.0
         for i in range(3):
-            sides[0, 0, 1 + i] = domain[2][border, i]
-        sides[0, 0, 4] = domain[3]
+            sides[0, 0, 1 + i] = domain.keep_out_points_m[border, i]
+        sides[0, 0, 4] = domain.keep_out_m
         return 1
     return max(np.int64(0), zone_alternatives(domain, border - balls, row, sides, counts))
 

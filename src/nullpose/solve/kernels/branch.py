@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from nullpose.family.records import Axes
 from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solve.kernels.denominators import expand_denominator
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
@@ -69,7 +70,7 @@ _BEATS = 1e-9
 @inner_kernel
 def strongest_point(family, centre):
     """Return the denominators' point that is received most strongly at the centre, or -1."""
-    points, dpt, dw = family[0], family[7], family[8]
+    points, dpt, dw = family.points_m, family.denominator_point, family.denominator_weight
     strongest = 0.0
     anchor = -1
     for e in range(dw.shape[0]):
@@ -88,11 +89,11 @@ def best_frame(family, axis_field, row):
     A frame that turns spares us the remainder of the point that it turns towards, and makes all others
     larger: worth it where one interferer outweighs the rest.
     """
-    points, _, nw, npt = family[:4]
-    dpt, dw = family[7], family[8]
+    points, nw, npt = family.points_m, family.numerator_weight, family.numerator_point
+    dpt, dw = family.denominator_point, family.denominator_weight
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     anchor = strongest_point(family, centre)
-    if anchor < 0 or family[9].shape[0] > 0 or is_level(axis_field):
+    if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
     still = turning = 0.0
@@ -114,7 +115,8 @@ def best_frame(family, axis_field, row):
 @inner_kernel
 def is_pose(domain, centre):
     """Return whether a box's centre is a position of the domain."""
-    low, high, keep_points, keep_radius = domain[:4]
+    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
+    keep_radius = domain.keep_out_m
     inside = True
     for i in range(3):
         inside = inside and low[i] <= centre[i] <= high[i]
@@ -123,7 +125,7 @@ def is_pose(domain, centre):
         for i in range(3):
             d += (keep_points[q, i] - centre[i]) ** 2
         inside = inside and d >= keep_radius * keep_radius
-    for z in range(domain[6].shape[0]):
+    for z in range(domain.zone_kind.shape[0]):
         inside = inside and not in_zone(domain, z, centre)
     return inside
 
@@ -143,15 +145,15 @@ def examine(family, domain, axis_field, plan, row, room, axis):
     half = row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     nearest = math.inf
-    for j in range(family[0].shape[0]):
-        nearest = min(nearest, min_distance(family[0], j, row[CENTRE:HALF], half))
+    for j in range(family.points_m.shape[0]):
+        nearest = min(nearest, min_distance(family.points_m, j, row[CENTRE:HALF], half))
     if not nearest > _CLOSE * radius:
         return _BY_POSITION, side, 0
-    if axis_field[0] == 1:
+    if axis_field.kind == 1:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, plan, row, room, axis)
-    if axis_field[0] >= 2 and off_band(axis_field[1], row):
+    if axis_field.kind >= 2 and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
         return _EXCLUDED, side, 0
     verdict, sought = examine_free(family, domain, axis_field, plan, row, nearest, room, axis)
@@ -164,15 +166,15 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = scratch(3, 3)
-    is_free, is_band = axis_field[0] != 1, axis_field[0] >= 2
+    is_free, is_band = axis_field.kind != 1, axis_field.kind >= 2
     if not is_free:  # an affine axis that may vanish in the box
-        axis_field = (np.int64(0), axis_field[1], axis_field[2])
+        axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
     kind, anchor = best_frame(family, axis_field, row)
-    rho, rho_min = set_frame(family[0], kind, anchor, centre, half, basis)
+    rho, rho_min = set_frame(family.points_m, kind, anchor, centre, half, basis)
     view = (kind, anchor, basis, rho, rho_min)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
-    if family[5].shape[0] == 1:
+    if family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)
         rests = expand_denominator(family, first, row[LEVEL], view, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
@@ -190,7 +192,7 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
     )
     if is_free and followed and is_pose(domain, centre):
         value = reached * row[LEVEL]
-        if family[5].shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
+        if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
             value = math.exp(min_log_ratio(family, centre, axis, room[5], room[1]))
         if value > plan[0] * (1.0 + _BEATS):
             return _BETTER, 1
@@ -201,7 +203,7 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = followed and primal - reached > coarseness and primal > plan[2]
-    split_axes = split_axes and (family[1].shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or radius == 0.0  # one position has no halves
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
 
@@ -209,7 +211,8 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
 @inner_kernel
 def lone_ratio(family, row, below):
     """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
-    points, n0, nw, npt, den = family[:5]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den = family.numerator_point, family.denominator_of
     for k in range(nw.shape[0]):
         a = min_distance(points, npt[k], row[CENTRE:HALF], row[HALF:LEVEL])
         if n0[k] + nw[k] / (a * a) < -below[den[k], 17] * (1.0 - 1e-13):
@@ -236,9 +239,9 @@ def examine_affine(family, domain, axis_field, plan, row, room, axis):
     reached = curved_multipliers(family, axis_field, row, below, jet, room)
     if reached * row[LEVEL] > plan[0] * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
         for m in range(3):
-            axis[m] = axis_field[1][m]
+            axis[m] = axis_field.offset[m]
             for i in range(3):
-                axis[m] += axis_field[2][m, i] * row[CENTRE + i]
+                axis[m] += axis_field.matrix[m, i] * row[CENTRE + i]
         return _BETTER, 0, 1
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 1
@@ -248,7 +251,7 @@ def examine_affine(family, domain, axis_field, plan, row, room, axis):
 @inner_heap_kernel
 def make_room(family):
     """Return scratch space for a family: of its ratios, and of its denominators."""
-    ratios, groups = family[1].shape[0], family[5].shape[0]
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     return (
         np.empty(ratios + 4),
         np.empty(ratios),
@@ -262,7 +265,7 @@ def make_room(family):
 @kernel
 def may_have_gaps(family, axis_field):
     """Return whether to reckon with duality gaps: two ratios have none, or hardly any within a band."""
-    return axis_field[0] != 1 and family[1].shape[0] > 2
+    return axis_field.kind != 1 and family.numerator_isotropic.shape[0] > 2
 
 
 @heap_kernel

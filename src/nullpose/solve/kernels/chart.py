@@ -43,7 +43,7 @@ def axis_at(field, offset, matrix, p, u):
 @kernel
 def nearest_node(family, p):
     """Return the distance to the nearest numerator point."""
-    points, npt = family[0], family[3]
+    points, npt = family.points_m, family.numerator_point
     nearest = math.inf
     for k in range(npt.shape[0]):
         d = 0.0
@@ -60,10 +60,10 @@ def turning(family, p, u):
     A straight step ``(dp, -dp / rho)`` keeps an axis that points at the strongest interferer on it exactly,
     where a step in the tangent plane alone leaves it at second order, times that interferer's power.
     """
-    points, dpt, dw = family[0], family[7], family[8]
+    points, dpt, dw = family.points_m, family.denominator_point, family.denominator_weight
     strongest = 0.0
     rate = 0.0
-    if family[9].shape[0] > 0:  # points that see different axes have no common turning
+    if family.turn.shape[0] > 0:  # points that see different axes have no common turning
         return rate
     for e in range(dw.shape[0]):
         x, y, z = points[dpt[e], 0] - p[0], points[dpt[e], 1] - p[1], points[dpt[e], 2] - p[2]
@@ -108,7 +108,7 @@ def chart(field, matrix, rate, u, free, length, jacobian):
 @kernel
 def move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u):
     """Fill the pose reached by ``scale * step`` in the search variables."""
-    field, offset, matrix = axis_field
+    field, offset, matrix = axis_field.kind, axis_field.offset, axis_field.matrix
     for i in range(3):
         new_p[i] = p[i]
         new_u[i] = u[i]
@@ -132,9 +132,9 @@ def clamp_axis(axis_field, u):
     norm = math.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
     for i in range(3):
         u[i] /= norm
-    if axis_field[0] < 2:
+    if axis_field.kind < 2:
         return
-    wanted = min(max(u[2] * u[2], axis_field[1][0]), axis_field[1][1])
+    wanted = min(max(u[2] * u[2], axis_field.offset[0]), axis_field.offset[1])
     if wanted == u[2] * u[2]:
         return
     across = math.sqrt(u[0] ** 2 + u[1] ** 2)
@@ -165,7 +165,7 @@ def reduce_hessian(hess, jacobian, n, out):
 @kernel
 def slack_count(domain):
     """Return how many slacks a pose has."""
-    return 8 + domain[2].shape[0] + domain[4].shape[0] - 1
+    return 8 + domain.keep_out_points_m.shape[0] + domain.piece_start.shape[0] - 1
 
 
 @kernel
@@ -179,7 +179,7 @@ def side_slack(side, p):
 @kernel
 def choose_sides(domain, p, chosen):
     """Fill, for every forbidden piece, the side that a position is farthest outside of."""
-    start, sides = domain[4], domain[5]
+    start, sides = domain.piece_start, domain.piece_sides
     for c in range(start.shape[0] - 1):
         most = -math.inf
         for s in range(start[c], start[c + 1]):
@@ -193,7 +193,8 @@ def choose_sides(domain, p, chosen):
 @kernel
 def domain_slacks(p, u, domain, axis_field, chosen, out):
     """Fill the slacks of a pose: faces, keep-out balls (as squares), pieces' chosen sides, ends of a band."""
-    low, high, keep_points, keep_radius = domain[:4]
+    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
+    keep_radius = domain.keep_out_m
     for i in range(3):
         out[i] = p[i] - low[i]
         out[3 + i] = high[i] - p[i]
@@ -205,10 +206,10 @@ def domain_slacks(p, u, domain, axis_field, chosen, out):
         out[c] = d - keep_radius * keep_radius
         c += 1
     for s in chosen:
-        out[c] = side_slack(domain[5][s], p)
+        out[c] = side_slack(domain.piece_sides[s], p)
         c += 1
     out[c] = out[c + 1] = 1.0
-    if axis_field[0] == 2:
+    if axis_field.kind == 2:
         size = u[0] ** 2 + u[1] ** 2 + u[2] ** 2
-        out[c] = u[2] * u[2] - axis_field[1][0] * size
-        out[c + 1] = axis_field[1][1] * size - u[2] * u[2]
+        out[c] = u[2] * u[2] - axis_field.offset[0] * size
+        out[c + 1] = axis_field.offset[1] * size - u[2] * u[2]

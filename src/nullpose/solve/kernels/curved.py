@@ -52,7 +52,8 @@ def add_jet(weight, jet, total):
 @inner_kernel
 def denominator_jet(family, axis_field, row, jet, totals):
     """Fill the jet of ``-t D_g`` of each denominator over a row's box."""
-    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
+    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
+    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
     for g in range(d0.shape[0]):
         total = totals[g]
         for m in range(JET):
@@ -143,7 +144,8 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
         jet: room for a jet.
         total: output, (JET,).
     """
-    points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, turn = family.numerator_point, family.denominator_of, family.turn
     if not row[COUNT] > 0.0:
         return False
     for m in range(JET):
@@ -186,7 +188,7 @@ def excludes_allowed(domain, row, total):
         if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:
             return False
         row[NU] = nu[0]
-    if alternatives > 0 and int(row[BALL]) >= domain[2].shape[0]:
+    if alternatives > 0 and int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
         row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
     return alternatives > 0
 
@@ -220,7 +222,8 @@ def curved_multipliers(family, axis_field, row, below, jet, room):
     Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
     smallest ratio at the centre relative to the level.
     """
-    points, n0, nw, npt, den, turn = family[0], family[1], family[2], family[3], family[4], family[9]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, turn = family.numerator_point, family.denominator_of, family.turn
     ratios = nw.shape[0]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     weights, values, gradients = room[:3]

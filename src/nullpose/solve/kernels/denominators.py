@@ -31,7 +31,8 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
 @inner_kernel
 def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
     """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
-    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
+    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
+    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
     kind, anchor, basis, rho, rho_min = view
     form, slopes = scratch(6), scratch(3, 6)
     for m in range(3):
@@ -54,7 +55,7 @@ def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
 @inner_kernel
 def group_weight(family, row, s):
     """Return the weight of a slot's denominator over all slots, or zero if an earlier slot has it."""
-    den = family[4]
+    den = family.denominator_of
     g = den[int(row[INDEX + s])]
     total = 0.0
     for r in range(int(row[COUNT])):
@@ -68,7 +69,7 @@ def group_weight(family, row, s):
 @inner_kernel
 def add_mixed_denominators(family, view, row, matrix, slopes):
     """Add ``-t sum_k lambda_k D_k`` of the row's multipliers and its slopes; return its remainders."""
-    den = family[4]
+    den = family.denominator_of
     everywhere = across = 0.0
     for s in range(int(row[COUNT])):
         weight = group_weight(family, row, s) * row[LEVEL]
@@ -101,7 +102,8 @@ def sharpen(family, view, row, matrix, slopes):
     null, where T is small, far better than a remainder of the second order. The point that the frame turns
     towards keeps its own.
     """
-    points, den, dstart, dpt, dw, turn = family[0], family[4], family[6], family[7], family[8], family[9]
+    points, den, dstart = family.points_m, family.denominator_of, family.denominator_start
+    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)

@@ -37,10 +37,10 @@ def axis_clearance(axis_field, centre, half):
     """Return the axis field's length at the centre, and by how much it can change in the box."""
     length = change = 0.0
     for m in range(3):
-        u, swing = axis_field[1][m], 0.0
+        u, swing = axis_field.offset[m], 0.0
         for i in range(3):
-            u += axis_field[2][m, i] * centre[i]
-            swing += abs(axis_field[2][m, i]) * half[i]
+            u += axis_field.matrix[m, i] * centre[i]
+            swing += abs(axis_field.matrix[m, i]) * half[i]
         length += u * u
         change += swing * swing
     return math.sqrt(length), math.sqrt(change)
@@ -81,15 +81,15 @@ def relative_slopes(value, slope, swing, low, high):
 def turned_field(axis_field, turn, j, offset, matrix):
     """Fill the offset and the matrix of the axis that point j sees."""
     if turn.shape[0] == 0:
-        copy_into(axis_field[1], offset)
-        copy_table(axis_field[2], matrix)
+        copy_into(axis_field.offset, offset)
+        copy_table(axis_field.matrix, matrix)
         return
     offset[:], matrix[:, :] = 0.0, 0.0
     for i in range(3):
         for a in range(3):
-            offset[i] += turn[j, i, a] * axis_field[1][a]
+            offset[i] += turn[j, i, a] * axis_field.offset[a]
             for k in range(3):
-                matrix[i, k] += turn[j, i, a] * axis_field[2][a, k]
+                matrix[i, k] += turn[j, i, a] * axis_field.matrix[a, k]
 
 
 @kernel

@@ -60,7 +60,7 @@ def negative_definite(a0, a1, a2, a3, a4, a5):
 @inner_kernel
 def is_level(axis_field):
     """Return whether an axis field holds the level axes only."""
-    return axis_field[0] == 3 and axis_field[1][1] == 0.0
+    return axis_field.kind == 3 and axis_field.offset[1] == 0.0
 
 
 @inner_kernel
@@ -127,11 +127,11 @@ def add_side(form, weight, view, matrix, matrix_slopes):
 def add_band(axis_field, view, row, matrix, slopes):
     """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
     weight = row[BAND]
-    if axis_field[0] < 2 or weight == 0.0 or is_level(axis_field):
+    if axis_field.kind < 2 or weight == 0.0 or is_level(axis_field):
         return 0.0
     form = zeroed(6)
     form[2] = -1.0 if weight > 0.0 else 1.0
-    end = axis_field[1][1] if weight > 0.0 else axis_field[1][0]
+    end = axis_field.offset[1] if weight > 0.0 else axis_field.offset[0]
     for m in range(3):
         matrix[m] += weight * end
     return add_side(form, abs(weight), view, matrix, slopes)
@@ -140,7 +140,8 @@ def add_band(axis_field, view, row, matrix, slopes):
 @inner_kernel
 def add_numerators(family, axis_field, view, row, matrix, slopes):
     """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
-    points, n0, nw, npt, turn = family[0], family[1], family[2], family[3], family[9]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, turn = family.numerator_point, family.turn
     kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes = scratch(6), scratch(3, 6)
@@ -188,7 +189,7 @@ def excludes(family, domain, axis_field, view, row, below):
         for i in range(3):
             slopes[i, m] = below[1][i, m]
     everywhere, across = below[2]
-    if family[5].shape[0] > 1:
+    if family.denominator_isotropic.shape[0] > 1:
         matrix[:], slopes[:, :] = 0.0, 0.0
         everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
     everywhere += add_numerators(family, axis_field, view, row, matrix, slopes)
@@ -244,7 +245,7 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
         if not negative_at_corners(bent, bent_slopes, half, level_axes):
             return False
         row[NU] = nu[0]
-    if int(row[BALL]) >= domain[2].shape[0]:
+    if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
         row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
     return True
 
@@ -252,8 +253,9 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
 @inner_kernel
 def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
-    keep_points, keep_radius = domain[2], domain[3]
-    points, n0, nw, npt, den, d0 = family[:6]
+    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     for k in range(nw.shape[0]):
         a = min_distance(points, npt[k], centre, half)

@@ -124,7 +124,9 @@ def fill_form(points, turn, j, p, weight, isotropic, out):
 @kernel
 def fill_forms(family, p, numerators, denominators):
     """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
-    points, n0, nw, npt, _, d0, dstart, dpt, dw, turn = family
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, d0, dstart = family.numerator_point, family.denominator_isotropic, family.denominator_start
+    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
     for k in range(nw.shape[0]):

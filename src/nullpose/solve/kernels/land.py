@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nullpose.family.records import Axes
 from nullpose.solve.kernels.chart import (
     axis_at,
     chart,
@@ -32,14 +33,14 @@ def active_set(domain, z, zs, used, free, length, q, held, active):
     Returns how many are, or 0 if the point is not of a kind to land on: an active keep-out ball or forbidden
     piece, or too many ratios.
     """
-    low, high = domain[:2]
+    low, high = domain.low_m, domain.high_m
     for i in range(3):
         held[i] = free[i]
         if used[i] and zs[i] * length > _ACTIVE:
             held[i], q[i] = False, low[i]
         if used[3 + i] and zs[3 + i] * length > _ACTIVE:
             held[i], q[i] = False, high[i]
-    after = 6 + domain[2].shape[0]
+    after = 6 + domain.keep_out_points_m.shape[0]
     for c in range(6, zs.shape[0] - 2):
         if zs[c] * length * (length if c < after else 1.0) > _ACTIVE:
             return 0
@@ -56,14 +57,14 @@ def active_set(domain, z, zs, used, free, length, q, held, active):
 @inner_heap_kernel
 def held_axis(axis_field, zs):
     """Return the axis field, or the cone at the end of a band that holds the axis."""
-    ends = axis_field[1].copy()
-    kind = axis_field[0]
+    ends = axis_field.offset.copy()
+    kind = axis_field.kind
     if kind == 2:
         for end in range(2):
             if zs[zs.shape[0] - 2 + end] > _ACTIVE:
-                kind, ends[0] = np.int64(3), axis_field[1][end]
+                kind, ends[0] = np.int64(3), axis_field.offset[end]
                 ends[1] = ends[0]
-    return kind, ends, axis_field[2]
+    return Axes(kind, ends, axis_field.matrix)
 
 
 @inner_kernel
@@ -103,7 +104,7 @@ def land(family, domain, axis_field, place, limits, best, best_pose, multipliers
     p, u, z, zs, length = place
     chosen, used, free = limits
     best_p, best_u = best_pose
-    ratios = family[1].shape[0]
+    ratios = family.numerator_isotropic.shape[0]
     total = 0.0
     for k in range(ratios):
         total += z[k]
@@ -119,22 +120,22 @@ def land(family, domain, axis_field, place, limits, best, best_pose, multipliers
     for a in range(count):
         weights[active[a]] = multipliers[active[a]]
     axis_field = held_axis(axis_field, zs)
-    axis_at(axis_field[0], axis_field[1], axis_field[2], q, v)
-    if axis_field[0] == 3:
+    axis_at(axis_field.kind, axis_field.offset, axis_field.matrix, q, v)
+    if axis_field.kind == 3:
         clamp_axis(axis_field, v)
-    f, logs = np.empty(ratios), np.empty(family[5].shape[0])
+    f, logs = np.empty(ratios), np.empty(family.denominator_isotropic.shape[0])
     grads, hess, h = np.empty((ratios, 6)), scratch(6, 6), scratch(5, 5)
-    work = np.empty((family[5].shape[0], 50))
+    work = np.empty((family.denominator_isotropic.shape[0], 50))
     jacobian = scratch(6, 5)
     system, rhs = scratch(12, 12), scratch(12)
     slacks = np.empty(zs.shape[0])
     new_q, new_v = scratch(3), scratch(3)
     t = best
     for _ in range(_STEPS):
-        n = chart(axis_field[0], axis_field[2], turning(family, q, v), v, held, length, jacobian)
+        n = chart(axis_field.kind, axis_field.matrix, turning(family, q, v), v, held, length, jacobian)
         derivatives(family, q, v, weights, f, grads, hess, work)
         reduce_hessian(hess, jacobian, n, h)
-        if axis_field[0] == 3:
+        if axis_field.kind == 3:
             for c in range(count):
                 h[n - 1, n - 1] += weights[active[c]] * grads[active[c], 5] * v[2]
         size = fill_equations(f, grads, h, jacobian, active, count, weights, t, n, system, rhs)

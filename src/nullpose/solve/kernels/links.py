@@ -46,7 +46,10 @@ def link_form(points, turn, j, p, u):
 @kernel
 def log_ratios(family, p, u, log_denominators, out):
     """Fill the logarithm of every ratio at position p and axis u, and those of the denominators."""
-    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
+    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
+    turn = family.turn
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     for g in range(d0.shape[0]):
         total = d0[g] * uu
@@ -149,7 +152,10 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
     ``work`` is scratch of shape (G, 50): per denominator its value, its gradient, its Hessian, its total
     multiplier.
     """
-    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
+    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
+    turn = family.turn
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     for i in range(6):
         for k in range(6):

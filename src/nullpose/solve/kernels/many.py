@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from nullpose.family.records import Domain, Ratios
 from nullpose.solve.kernels.branch import BETTER, DONE, EARLY, FULL, LATE, branch, may_have_gaps
 from nullpose.solve.kernels.expansion import min_distance
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
@@ -51,7 +52,8 @@ def find(family, domain, axis_field, landmarks, shift, effort, climbs, p, u, z):
 @inner_kernel
 def reach(family, low, high, keep_out_m):
     """Return what no ratio can exceed at all: the bound of the most distant point."""
-    points, n0, nw, npt, den, d0 = family[:6]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     zero, here = zeroed(3), scratch(3)
     least = math.inf
     for k in range(nw.shape[0]):
@@ -67,10 +69,10 @@ def fill_root(family, domain, log_value, target, favourite, row):
     """Fill the box outside which no pose reaches the incumbent."""
     low, high = scratch(3), scratch(3)
     level = log_value
-    if np.any(family[1] != 0.0):  # ratios tend to one far away, however little that is
+    if np.any(family.numerator_isotropic != 0.0):  # ratios tend to one far away, however little that is
         level += math.log1p(target)
     level -= _HAIR if level > 1e-6 or level < 0.0 else 1e-3 * level
-    cut_box(family, domain[0], domain[1], level, low, high)
+    cut_box(family, domain.low_m, domain.high_m, level, low, high)
     copy_into(favourite, row)
     for i in range(3):
         row[CENTRE + i] = 0.5 * (low[i] + high[i])
@@ -92,7 +94,7 @@ def prove(family, domain, axis_field, log_value, target, axes_above, most, p, u,
     favourite = scratch(COLUMNS)
     fill_favourite(z, favourite)
     fill_root(family, domain, log_value, target, favourite, stack[0])
-    logs, f = np.empty(family[5].shape[0]), np.empty(z.shape[0])
+    logs, f = np.empty(family.denominator_isotropic.shape[0]), np.empty(z.shape[0])
     better_p, better_u, trial = scratch(3), scratch(3), np.empty(z.shape[0])
     top, nodes = np.int64(1), np.int64(0)
     doubt = 0.0
@@ -180,10 +182,10 @@ def solve_and_prove_many(
     for s in range(points.shape[0]):
         if codes[s] != OPEN:
             continue
-        family = (points[s], n0[s], nw[s], npt, den, d0[s], dstart, dpt, dw[s], turn)
-        here = (
-            domain[0], domain[1], keep_points[s], domain[3], domain[4], domain[5], domain[6], domain[7],
-            domain[8], domain[9],
+        family = Ratios(points[s], n0[s], nw[s], npt, den, d0[s], dstart, dpt, dw[s], turn)
+        here = Domain(
+            domain.low_m, domain.high_m, keep_points[s], domain.keep_out_m, domain.piece_start,
+            domain.piece_sides, domain.zone_kind, domain.zone_start, domain.zone_edges, domain.zone_range_m,
         )  # fmt: skip
         p, u, z = positions[s].copy(), axes[s].copy(), multipliers[s].copy()
         value = log_values[s]
@@ -193,7 +195,7 @@ def solve_and_prove_many(
             codes[s] = UNPLACED
             continue
         if target >= 0.0:
-            bound = min(bounds[s], reach(family, here[0], here[1], here[3]))
+            bound = min(bounds[s], reach(family, here.low_m, here.high_m, here.keep_out_m))
             if bound <= math.exp(value) * (1.0 + target):
                 codes[s] = PROVED
             else:

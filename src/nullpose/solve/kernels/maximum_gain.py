@@ -70,21 +70,21 @@ def quietest_on_circle(numerators, worst, level, denominator, normal, axis):
 @heap_kernel
 def maximum_gain_value(family, p, axis):
     """Fill the maximum-gain axis at a position; return the smallest log ratio (shared denominator)."""
-    ratios = family[1].shape[0]
+    ratios = family.numerator_isotropic.shape[0]
     numerators = np.empty((ratios, 6))
-    denominators = np.empty((family[5].shape[0], 6))
+    denominators = np.empty((family.denominator_isotropic.shape[0], 6))
     fill_forms(family, p, numerators, denominators)
     level = best_axis_of_forms(numerators, axis)
     worst = -1
     for k in range(ratios):
-        r = family[0][family[3][k]] - p
-        reach = family[2][k] / (r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+        r = family.points_m[family.numerator_point[k]] - p
+        reach = family.numerator_weight[k] / (r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
         if level >= reach * (1.0 - _TIE):
             worst = k
     if worst >= 0:
-        r = family[0][family[3][worst]] - p
+        r = family.points_m[family.numerator_point[worst]] - p
         r /= math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
         quietest_on_circle(numerators, worst, level, denominators[0], r, axis)
-    logs = np.empty(family[5].shape[0])
+    logs = np.empty(family.denominator_isotropic.shape[0])
     f = np.empty(ratios)
     return min_log_ratio(family, p, axis, logs, f)

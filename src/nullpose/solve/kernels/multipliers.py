@@ -70,12 +70,12 @@ def cell_start(axis_field, basis, back, row, start):
         start[m] = 1.0 / 3.0 if m < 3 else 0.0
     face = int(row[FACE])
     level_axes = is_level(axis_field)
-    if face < 0 and (axis_field[0] < 2 or level_axes):
+    if face < 0 and (axis_field.kind < 2 or level_axes):
         return True
     for m in range(6):
         start[m] = 0.0
     u = scratch(3)
-    least, greatest = axis_field[1][0], axis_field[1][1]
+    least, greatest = axis_field.offset[0], axis_field.offset[1]
     least, greatest = least - half_width(axis_field), greatest + half_width(axis_field)
     least, greatest = max(0.0, least), min(1.0, greatest)
     count = 0
@@ -99,7 +99,7 @@ def cell_start(axis_field, basis, back, row, start):
             add_start(basis, back, u, start)
         start[2] += 0.1
         count = 3
-    elif axis_field[0] >= 2:
+    elif axis_field.kind >= 2:
         for swap in range(2 if face == 2 else 1):
             count += add_band_axes(basis, back, row, least, greatest, swap, start)
     else:
@@ -116,7 +116,7 @@ def cell_start(axis_field, basis, back, row, start):
     trace = start[0] + start[1] + start[2]
     for m in range(6):
         start[m] /= trace
-    return axis_field[0] < 2 or positive_definite(start)
+    return axis_field.kind < 2 or positive_definite(start)
 
 
 @inner_kernel
@@ -247,7 +247,7 @@ def interior_multipliers(
     family, axis_field, basis, row, whitening, constraints, sides, coarseness, weights, v
 ):
     """Fill the dual's multipliers and the axis that its matrix suggests; return the primal value."""
-    ratios, level = family[1].shape[0], row[LEVEL]
+    ratios, level = family.numerator_isotropic.shape[0], row[LEVEL]
     matrix, start = scratch(6), scratch(6)
     if not cell_start(axis_field, basis, whitening[2], row, start):
         return math.inf
@@ -275,7 +275,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
     multipliers were found. Where the last is false, the first is only what the multipliers found come to,
     well below the level, and there is no axis.
     """
-    level, ratios = row[LEVEL], family[1].shape[0]
+    level, ratios = row[LEVEL], family.numerator_isotropic.shape[0]
     weights, every = room[:2]
     mean, back, v = scratch(6), scratch(3, 3), scratch(3)
     constraints, places, start = scratch(4, 6), scratch_int(4), scratch(4)
@@ -302,7 +302,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
         return primal / level, 0.0, False
     axis_of(basis, back, v, axis)
     square = 1.0
-    if axis_field[0] >= 2:
+    if axis_field.kind >= 2:
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
         square = v[0] ** 2 + v[1] ** 2 + v[2] ** 2

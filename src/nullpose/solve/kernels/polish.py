@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from nullpose.family.records import Axes
 from nullpose.solve.kernels.barrier import (
     barrier_value,
     bent_step,
@@ -50,7 +51,7 @@ _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 @inner_heap_kernel
 def enter(domain, axis_field, p, u, free, used):
     """Move a pose strictly inside its faces and its band; fill which coordinates and slacks are in play."""
-    low, high = domain[0], domain[1]
+    low, high = domain.low_m, domain.high_m
     for i in range(3):
         width = high[i] - low[i]
         free[i] = width > 1e-9
@@ -64,15 +65,15 @@ def enter(domain, axis_field, p, u, free, used):
     band = used.shape[0] - 2
     for c in range(6, band):
         used[c] = True
-    least, greatest = axis_field[1][0], axis_field[1][1]
-    is_band = axis_field[0] == 2
+    least, greatest = axis_field.offset[0], axis_field.offset[1]
+    is_band = axis_field.kind == 2
     used[band] = is_band and least > 0.0
     used[band + 1] = is_band and greatest < 1.0
     if is_band:
         margin = min(1e-3, 1e-2 * (greatest - least))
-        inside = (axis_field[0], axis_field[1].copy(), axis_field[2])
-        inside[1][0] += margin if used[band] else 0.0
-        inside[1][1] -= margin if used[band + 1] else 0.0
+        inside = Axes(axis_field.kind, axis_field.offset.copy(), axis_field.matrix)
+        inside.offset[0] += margin if used[band] else 0.0
+        inside.offset[1] -= margin if used[band + 1] else 0.0
         clamp_axis(inside, u)
 
 
@@ -100,7 +101,7 @@ def begin(family, domain, axis_field, p, u, work, best_p, best_u):
         if turn == 1:
             enter(domain, axis_field, p, u, free, used)
             choose_sides(domain, p, chosen)
-        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+        axis_at(axis_field.kind, axis_field.offset, axis_field.matrix, p, u)
         value = value_in_domain(family, domain, axis_field, chosen, p, u, slacks, logs, f)
         if turn == 0 or value > best:
             best = value
@@ -112,7 +113,7 @@ def begin(family, domain, axis_field, p, u, work, best_p, best_u):
 @inner_kernel
 def linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h):
     """Fill the slopes of ratios and constraints in the search variables; add the constraints' curvature."""
-    keep_points = domain[2]
+    keep_points = domain.keep_out_points_m
     after = 6 + keep_points.shape[0]
     for k in range(grads.shape[0]):
         for m in range(n):
@@ -131,7 +132,7 @@ def linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slope
                     h[m, j] += 2.0 * zs[6 + q] * jacobian[i, m] * jacobian[i, j]
             rows[6 + q, m] = s
         for c in range(chosen.shape[0]):
-            side = domain[5][chosen[c]]
+            side = domain.piece_sides[chosen[c]]
             s = 0.0
             for i in range(3 if side[0] == 0.0 else 2):
                 s += (side[1 + i] if side[0] == 0.0 else 2.0 * (p[i] - side[1 + i])) * jacobian[i, m]
@@ -139,9 +140,9 @@ def linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slope
                     for j in range(n):
                         h[m, j] += 2.0 * zs[after + c] * jacobian[i, m] * jacobian[i, j]
             rows[after + c, m] = s
-    if axis_field[0] == 2:
-        bend_band(axis_field[1], u, jacobian, n, zs, rows, h)
-    elif axis_field[0] == 3:  # the cone bends away from the step by u_z e3, in units of the axis's variable
+    if axis_field.kind == 2:
+        bend_band(axis_field.offset, u, jacobian, n, zs, rows, h)
+    elif axis_field.kind == 3:  # the cone bends away from the step by u_z e3, in units of the axis's variable
         for k in range(grads.shape[0]):
             h[n - 1, n - 1] += z[k] * grads[k, 5] * u[2]
 
@@ -190,7 +191,7 @@ def line_search(family, domain, axis_field, here, there, model, way):
     p, u, f, t, slacks = here
     new_p, new_u, new_f, new_slacks, logs = there
     jacobian, slopes, rows, used, chosen, z, factor, n, mu = model
-    balls = 6 + domain[2].shape[0]
+    balls = 6 + domain.keep_out_points_m.shape[0]
     step, slope, scale = way
     floor = barrier_value(f, t, slacks, used, mu)
     bent = scratch(6)
@@ -225,8 +226,12 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         max_steps: limit on interior-point steps.
         multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
     """
-    ratios, groups, sides = family[1].shape[0], family[5].shape[0], slack_count(domain)
-    chosen = np.empty(domain[4].shape[0] - 1, np.int64)
+    ratios, groups, sides = (
+        family.numerator_isotropic.shape[0],
+        family.denominator_isotropic.shape[0],
+        slack_count(domain),
+    )
+    chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
     f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
     best_p, best_u = scratch(3), scratch(3)
@@ -257,7 +262,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     while steps < max_steps:
         steps += 1
         length = nearest_node(family, p)
-        n = chart(axis_field[0], axis_field[2], turning(family, p, u), u, free, length, jacobian)
+        n = chart(axis_field.kind, axis_field.matrix, turning(family, p, u), u, free, length, jacobian)
         derivatives(family, p, u, z, f, grads, hess, parts)
         reduce_hessian(hess, jacobian, n, h)
         linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h)
@@ -267,7 +272,9 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             mu = max(_MU_END, min(0.1 * mu, mu**1.5))
             t = best_level(f, mu)
         slope = newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, factor, step)
-        dual_scale, largest = longest_scale(rows, slacks, used, step, n, 6 + domain[2].shape[0])
+        dual_scale, largest = longest_scale(
+            rows, slacks, used, step, n, 6 + domain.keep_out_points_m.shape[0]
+        )
         if math.isnan(slope):
             break
         here, way = (p, u, f, t, slacks), (step, slope, dual_scale)

@@ -36,7 +36,8 @@ _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of thr
 @kernel
 def cut_box(family, low, high, level, box_low, box_high):
     """Fill the smallest box that holds every position whose smallest log ratio can reach ``level``."""
-    points, n0, nw, npt, den, d0 = family[:6]
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     for i in range(3):
         box_low[i], box_high[i] = low[i], high[i]
     for k in range(nw.shape[0]):
@@ -51,7 +52,7 @@ def cut_box(family, low, high, level, box_low, box_high):
 @inner_heap_kernel
 def step_outside(p, domain, step, chosen):
     """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
-    low, high, start, sides = domain[0], domain[1], domain[4], domain[5]
+    low, high, start, sides = domain.low_m, domain.high_m, domain.piece_start, domain.piece_sides
     clear = True
     choose_sides(domain, p, chosen)
     for c in range(start.shape[0] - 1):
@@ -91,7 +92,7 @@ def step_outside(p, domain, step, chosen):
 def push_out(p, domain):
     """Move a position into the box and out of keep-out balls and forbidden pieces; return whether it is."""
     start = p.copy()
-    chosen = np.empty(domain[4].shape[0] - 1, np.int64)
+    chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     for attempt in range(len(_FINER)):
         copy_into(start, p)
         if push_by(p, domain, _FINER[attempt], _TURNS[attempt], chosen):
@@ -102,7 +103,8 @@ def push_out(p, domain):
 @inner_kernel
 def push_by(p, domain, share, turns, chosen):
     """Do what ``push_out`` does, by a share of the usual steps; return whether it came to an end."""
-    low, high, keep_points, keep_radius = domain[:4]
+    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
+    keep_radius = domain.keep_out_m
     for i in range(3):
         p[i] = min(max(p[i], low[i]), high[i])
     margin = (1.0 + share * _SPARE) * keep_radius
@@ -134,7 +136,7 @@ def likely_axis(family, p, axis):
     The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
     start. With several denominators, that of the ratios' excess over a level, taken three times.
     """
-    ratios, groups = family[1].shape[0], family[5].shape[0]
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
     back, forms, mean, plain = scratch(3, 3), np.empty((ratios, 6)), zeroed(6), scratch(6)
@@ -155,7 +157,7 @@ def likely_axis(family, p, axis):
         level = math.exp(best) if best > -20.0 else level
         for k in range(ratios):
             for m in range(6):
-                plain[m] = numerators[k, m] + level * (mean[m] - denominators[family[4][k], m])
+                plain[m] = numerators[k, m] + level * (mean[m] - denominators[family.denominator_of[k], m])
             congruence(plain, back, forms[k])
         axis_of_forms(forms, back, level, trial)
         value = min_log_ratio(family, p, trial, logs, f)
@@ -186,8 +188,8 @@ def axis_of_forms(forms, back, level, axis):
 @inner_kernel
 def start_axis(family, axis_field, p, u, logs, f):
     """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
-    if axis_field[0] == 1:
-        axis_at(axis_field[0], axis_field[1], axis_field[2], p, u)
+    if axis_field.kind == 1:
+        axis_at(axis_field.kind, axis_field.offset, axis_field.matrix, p, u)
     else:
         likely_axis(family, p, u)
         clamp_axis(axis_field, u)
@@ -238,9 +240,9 @@ def search(
         best_u: output, (3,).
         best_z: output, (ratios,): the ratios' multipliers at that pose.
     """
-    low, high, keep_radius = domain[0], domain[1], domain[3]
-    f = np.empty(family[1].shape[0])
-    logs = np.empty(family[5].shape[0])
+    low, high, keep_radius = domain.low_m, domain.high_m, domain.keep_out_m
+    f = np.empty(family.numerator_isotropic.shape[0])
+    logs = np.empty(family.denominator_isotropic.shape[0])
     z = np.empty(f.shape[0])
     p, u = scratch(3), scratch(3)
     best = -math.inf
@@ -255,7 +257,7 @@ def search(
     for turn in range(rounds + 1):  # the first turn is the landmarks'
         judged = landmarks.shape[0] if turn == 0 else coarse
         cut_box(family, low, high, best - 1e-12, box_low, box_high)
-        surround(family[0], high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
+        surround(family.points_m, high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
         for c in range(judged):
             if turn == 0:
                 for i in range(3):

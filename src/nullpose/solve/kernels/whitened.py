@@ -20,9 +20,9 @@ _STEEP = 1e-3  # and as a share of its distance from level and upright, if that 
 @inner_kernel
 def half_width(axis_field):
     """Return half the width that a cone is given; zero for a band."""
-    if axis_field[0] != 3:
+    if axis_field.kind != 3:
         return 0.0
-    c = axis_field[1][0]
+    c = axis_field.offset[0]
     return min(_THIN, _STEEP * min(c, 1.0 - c))
 
 
@@ -36,7 +36,8 @@ def add_plain_form(points, turn, j, basis, centre, weight, isotropic, out):
 @inner_kernel
 def fill_denominators(family, basis, centre, denominators, mean):
     """Fill every denominator at the centre, in the frame, and their mean."""
-    points, d0, dstart, dpt, dw, turn = family[0], family[5], family[6], family[7], family[8], family[9]
+    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
+    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
     groups = d0.shape[0]
     denominators[:, :] = 0.0
     mean[:] = 0.0
@@ -56,7 +57,7 @@ def whiten(family, basis, row, denominator, denominators, mean, back):
     A ratio's form is then that of ``N_k + t (W - D_k)``, which exceeds the level t exactly where the ratio
     does.
     """
-    if family[5].shape[0] == 1:
+    if family.denominator_isotropic.shape[0] == 1:
         for m in range(6):
             mean[m] = -denominator[m] / row[LEVEL]
     else:
@@ -68,12 +69,19 @@ def whiten(family, basis, row, denominator, denominators, mean, back):
 def ratio_form(family, level_axes, basis, row, whitening, k, out):
     """Fill the whitened form of one ratio at the centre."""
     denominators, mean, back = whitening
-    den, level, raw = family[4], row[LEVEL], scratch(6)
-    several = family[5].shape[0] > 1
+    den, level, raw = family.denominator_of, row[LEVEL], scratch(6)
+    several = family.denominator_isotropic.shape[0] > 1
     for m in range(6):
         raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
     add_plain_form(
-        family[0], family[9], family[3][k], basis, row[CENTRE:HALF], family[2][k], family[1][k], raw
+        family.points_m,
+        family.turn,
+        family.numerator_point[k],
+        basis,
+        row[CENTRE:HALF],
+        family.numerator_weight[k],
+        family.numerator_isotropic[k],
+        raw,
     )
     congruence(raw, back, out)
     if level_axes:  # no weight on the vertical: whitening leaves its direction alone
@@ -101,10 +109,10 @@ def constraint_forms(axis_field, basis, row, back, forms, places):
                 forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
             places[sides] = SIDE + side
             sides += 1
-    if axis_field[0] >= 2 and not level_axes:
+    if axis_field.kind >= 2 and not level_axes:
         thin = half_width(axis_field)
         for end in range(2):
-            c = axis_field[1][end] + (thin if end == 1 else -thin)
+            c = axis_field.offset[end] + (thin if end == 1 else -thin)
             if 0.0 < c < 1.0:
                 for m in range(6):
                     raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
@@ -122,7 +130,10 @@ def fill_values(family, centre, level, axis, size, values):
 
     Returns the smallest.
     """
-    points, n0, nw, npt, den, d0, dstart, dpt, dw, turn = family
+    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
+    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
+    turn = family.turn
     square = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2
     for k in range(nw.shape[0]):
         values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)

@@ -41,8 +41,13 @@ def in_polygon(edges, first, last, x, y):
 @kernel
 def in_zone(domain, z, p):
     """Return whether a zone forbids a position."""
-    kind, first, last, edges = domain[6][z], domain[7][z], domain[7][z + 1], domain[8]
-    low, high = domain[9][z]
+    kind, first, last, edges = (
+        domain.zone_kind[z],
+        domain.zone_start[z],
+        domain.zone_start[z + 1],
+        domain.zone_edges,
+    )
+    low, high = domain.zone_range_m[z]
     if not low < p[2] < high:
         return False
     if kind == _CYLINDER:
@@ -90,7 +95,12 @@ def fill_side(edge, allowed_right, out):
 @inner_kernel
 def polygon_alternatives(domain, z, row, sides, counts):
     """Fill the alternatives of a polygon seen from above; return how many, or one of the words."""
-    kind, first, last, edges = domain[6][z], domain[7][z], domain[7][z + 1], domain[8]
+    kind, first, last, edges = (
+        domain.zone_kind[z],
+        domain.zone_start[z],
+        domain.zone_start[z + 1],
+        domain.zone_edges,
+    )
     fence = kind == _FENCE
     met = 0
     one = two = first
@@ -134,12 +144,13 @@ def zone_alternatives(domain, z, row, sides, counts):
         sides: output, (MOST_ALTERNATIVES, 2, 5): constraints.
         counts: output, (MOST_ALTERNATIVES,): how many each alternative has.
     """
-    low, high = domain[9][z]
+    low, high = domain.zone_range_m[z]
     bottom, top = row[CENTRE + 2] - row[HALF + 2], row[CENTRE + 2] + row[HALF + 2]
     if bottom >= high or top <= low:
         return OUTSIDE
-    if domain[6][z] == _CYLINDER:
-        x, y, radius = domain[8][domain[7][z], 0], domain[8][domain[7][z], 1], domain[8][domain[7][z], 2]
+    if domain.zone_kind[z] == _CYLINDER:
+        cylinder = domain.zone_edges[domain.zone_start[z]]
+        x, y, radius = cylinder[0], cylinder[1], cylinder[2]
         far = math.hypot(abs(row[CENTRE] - x) + row[HALF], abs(row[CENTRE + 1] - y) + row[HALF + 1])
         near_x = max(0.0, abs(row[CENTRE] - x) - row[HALF])
         near_y = max(0.0, abs(row[CENTRE + 1] - y) - row[HALF + 1])
