@@ -32,16 +32,15 @@ def main(arguments: list[str] | None = None) -> int:
     with TemporaryDirectory() as folder:
         kinds = targets(Path(folder))
         start_s = min(_start_s(kinds[0]) for _ in range(3))
+        numbers = range(options.first, options.first + options.files)
         outcomes = [
             check_file(
                 kinds[number % len(kinds)],
                 number,
-                fresh=number // len(kinds) % options.fresh == 0,
-                start_s=start_s if number // len(kinds) % options.fresh == 0 else 0.0,
+                fresh=number % options.fresh == 0,
+                start_s=start_s if number % options.fresh == 0 else 0.0,
             )
-            for number in track(
-                range(options.first, options.first + options.files), description="fuzz", console=console
-            )
+            for number in track(numbers, description="fuzz", console=console)
         ]
     print(table(outcomes))
     for outcome in outcomes:

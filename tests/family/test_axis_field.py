@@ -15,8 +15,8 @@ from nullpose.physics import maximum_gain_axis, zero_interference_axis
 
 def axis_at(field: AxisField, position_m: np.ndarray) -> np.ndarray:
     """Returns the unit axis that an affine field gives at a position."""
-    kind, offset = field.arrays.points_m, field.arrays.numerator_isotropic
-    matrix = field.arrays.numerator_weight
+    kind, offset = field.arrays.kind, field.arrays.offset
+    matrix = field.arrays.matrix
     assert kind == 1
     axis = offset + matrix @ position_m
     return axis / np.linalg.norm(axis)
@@ -47,7 +47,7 @@ def test_a_free_field_is_zero() -> None:
     np.testing.assert_array_equal(matrix, np.zeros((3, 3)))
     vertical = AxisField.affine([0, 0, 1], np.zeros((3, 3)))
     assert not vertical.is_free
-    assert vertical.arrays[0] == 1
+    assert vertical.arrays.kind == 1
 
 
 def test_a_field_is_frozen() -> None:

@@ -17,7 +17,7 @@ def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
     """Kind 2 is a band, 3 a cone; all axes are kind 0 and the vertical one is an affine field."""
     least, greatest = sorted((one, other))
     field = AxisField.within(least, greatest)
-    kind, ends = field.arrays.points_m, field.arrays.numerator_isotropic
+    kind, ends = field.arrays.kind, field.arrays.offset
     if (least, greatest) == (0.0, 1.0):
         assert kind == 0
     elif least == 1.0:
@@ -29,13 +29,13 @@ def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
         assert field.is_free
     ends[:] = 9.0  # a copy: the field itself does not change
     assert field.band == ((least, greatest) if field.is_free else (0.0, 1.0))
-    assert not np.any(field.arrays[1] == 9.0)
+    assert not np.any(field.arrays.offset == 9.0)
 
 
 def test_bands_at_their_ends() -> None:
     """The whole sphere is the free field, level axes are a cone, the upright one is the vertical field."""
-    assert AxisField.within(0.0, 1.0).arrays[0] == AxisField.free().arrays[0]
-    assert AxisField.within(0.0, 0.0).arrays[0] == 3
+    assert AxisField.within(0.0, 1.0).arrays.kind == AxisField.free().arrays.kind
+    assert AxisField.within(0.0, 0.0).arrays.kind == 3
     for ours, theirs in zip(AxisField.within(1.0, 1.0).arrays, AxisField.vertical().arrays, strict=True):
         np.testing.assert_array_equal(ours, theirs)
 

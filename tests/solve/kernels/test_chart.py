@@ -25,7 +25,7 @@ def stepped(
     field: AxisField, rate: float, p: np.ndarray, u: np.ndarray, step: np.ndarray, free: tuple[bool, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns the pose that a step leads to, and the chart's Jacobian (6, n)."""
-    kind, matrix = field.arrays.points_m, field.arrays.numerator_weight
+    kind, matrix = field.arrays.kind, field.arrays.matrix
     jacobian = np.empty((6, 5))
     n = chart(kind, matrix, rate, u, np.array(free), 3.0, jacobian)
     new_p, new_u = np.empty(3), np.empty(3)

@@ -18,7 +18,7 @@ PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 def link(field: AxisField, p: np.ndarray) -> float:
     """Return ``sin^2(gamma) / |r|^2`` at a position, from the definition."""
-    offset, matrix = field.arrays.numerator_isotropic, field.arrays.numerator_weight
+    offset, matrix = field.arrays.offset, field.arrays.matrix
     axis, r = offset + matrix @ p, POINT[0] - p
     sine = np.linalg.norm(np.cross(axis, r)) / (np.linalg.norm(axis) * np.linalg.norm(r))
     return float(sine**2 / (r @ r))

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nullpose.family.airspace import airspace_zones
+from nullpose.family.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import depth_m
 from nullpose.solve.kernels.jit import kernel
@@ -31,7 +32,7 @@ def alternatives_of(domain, z, row, sides, counts):
     return zone_alternatives(domain, z, row, sides, counts)
 
 
-def domain_of(airspace: Airspace) -> tuple:
+def domain_of(airspace: Airspace) -> Domain:
     """Returns the airspace's zones in a box without bounds, as the kernels take them."""
     zones = airspace_zones(airspace)
     arrays = [getattr(zones, name) for name in zones.__slots__]
@@ -40,7 +41,7 @@ def domain_of(airspace: Airspace) -> tuple:
     box = np.array([-np.inf, -np.inf, 8.0]), np.array([np.inf, np.inf, 40.0]), np.zeros((0, 3))
     for array in box:
         array.flags.writeable = False
-    return (*box, 1.0, *arrays)
+    return Domain(*box, 1.0, *arrays)
 
 
 def row_of(centre: np.ndarray, half: np.ndarray) -> np.ndarray:

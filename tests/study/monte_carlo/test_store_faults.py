@@ -221,7 +221,7 @@ def test_a_line_that_is_none_is_passed_over(study: Path, line: Any) -> None:
     before, path = study_status(study), study / "parts.jsonl"
     if isinstance(line, dict):
         line = json.dumps(json.loads(path.read_text().splitlines()[0]) | line)
-    path.write_text(f"{line}\n" + path.read_text(), encoding="utf-8")
+    path.write_text(f"{path.read_text()}{line}\n", encoding="utf-8")
     assert study_status(study) == before
 
 
