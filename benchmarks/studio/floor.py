@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.studio.drag import Marks
-from nullpose.studio.server import open_server
+from nullpose.studio.opening import open_server
 
 __all__ = ["empty_page"]
 

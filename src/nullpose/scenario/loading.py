@@ -23,6 +23,7 @@ _TOML_PLACE = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\
 _KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")
 _MOST_PARTS = 64
 _LONGEST_WORD = 10_000
+_MOST_KEYS = 200_000  # 10,000 nodes have 120,000 at most
 _NO_WORD = re.compile(  # comments, and texts, which may be a part of a key; an open one goes on to its end
     r"""\"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\[^\n])*"?|'[^'\n]*'?|\#[^\n]*""",
     re.DOTALL,
@@ -224,6 +225,8 @@ def _other_files(path: Path, kind: _Kind, base: Path) -> str:
 
 
 def _tables(text: str) -> dict[str, Any]:
+    if text.count("=") > _MOST_KEYS:  # each takes the reader some 5 microseconds
+        raise _UnusableFileError(f"it has more than {_MOST_KEYS} keys, the most that is read")
     # Python's reader takes memory by the square of a key's parts, and much for a long number.
     if any(_is_monstrous(line) for line in text.split("\n")) and any(
         _is_monstrous(word) for word in _WORD.findall(_NO_WORD.sub("text", text))

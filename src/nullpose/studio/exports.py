@@ -75,14 +75,14 @@ def scene_html(
         UsageError: the present scene is not solved yet.
     """
     from nullpose.studio.drone import Carpet, Drone
-    from nullpose.studio.page import drone_text
+    from nullpose.studio.opening import LOOPBACK, open_server
     from nullpose.studio.panel import BEST_MAP, NO_MAP
+    from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
-    from nullpose.studio.server import open_server
 
     view = session.view
     answers = [_current(session, slot) for slot in range(len(view.cases))]
-    server, _ = open_server("127.0.0.1", 0)
+    server, _ = open_server(LOOPBACK, 0)
     try:
         server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
         Ground(server.scene, None).draw(view, freed=False)

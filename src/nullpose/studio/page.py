@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.studio.camera import camera_m, near_m
 from nullpose.studio.case import case_named
 from nullpose.studio.drone import LINK_RANGE_DB, Carpet, Drone
 from nullpose.studio.events import Event, FieldMap
@@ -19,7 +20,7 @@ from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.map_kernel import MapKernel
 from nullpose.studio.panel import BEST_MAP, FOOTPRINT, NO_CASE, NO_MAP, Panel
 from nullpose.studio.plot import power_plot_svg, scale_svg
-from nullpose.studio.readout import failure_html, readout_html
+from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.session import Session
 from nullpose.studio.view import POWER_DB, PointKey
@@ -27,37 +28,13 @@ from nullpose.studio.view import POWER_DB, PointKey
 if TYPE_CHECKING:
     from viser import ClientHandle
 
-__all__ = ["Page", "camera_m", "near_m"]
+__all__ = ["Page"]
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
 
 _log = logging.getLogger("nullpose.studio")
-
-
-def camera_m(scenario: Scenario) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return where the camera stands at first, and what it looks at, each (3,) in metres.
-
-    Args:
-        scenario: the scene.
-    """
-    size_m = scene_size_m(scenario)
-    points = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)])
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    middle[2] = max(0.08 * size_m, 0.5 * float(scenario.airspace.lower_m[2]))
-    return middle + size_m * np.array([0.82, -0.52, 0.56]), middle
-
-
-def near_m(scenario: Scenario) -> float:
-    """Return from how far off the camera sees anything, metres.
-
-    Args:
-        scenario: the scene.
-    """
-    # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
-    # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
-    return 0.02 * scene_size_m(scenario)
 
 
 class Page:
@@ -232,10 +209,9 @@ class Page:
             if case is None or answer is None or len(answer.links) != len(view.scenario.nodes):
                 drone.hide()
                 continue
-            drone.show(answer, self._drone_text(slot), self._link_range_db, pattern=self.panel.pattern.value)
-
-    def _drone_text(self, slot: int) -> str:
-        return drone_text(self.session, slot)
+            drone.show(
+                answer, drone_text(self.session, slot), self._link_range_db, pattern=self.panel.pattern.value
+            )
 
     def _show_map(self) -> None:
         fields, wanted = self.session.field_map, self.panel.map.value
@@ -273,24 +249,6 @@ class Page:
         panel.show_power(view.power_db, POWER_DB)
         panel.undo.disabled = not session.can_undo
         panel.redo.disabled = not session.can_redo
-
-
-def drone_text(session: Session, slot: int) -> str:
-    """Return a drone's label: its letter where two are compared, its value and how well it is known.
-
-    Args:
-        session: whose.
-        slot: 0 for the chosen case, 1 for the compared one.
-    """
-    view = session.view
-    case = view.cases[slot]
-    answer = session.answer(case)
-    letter = f"{'AB'[slot]}: " if view.compared is not None else ""
-    status = session.status(case)
-    if answer is None or not session.is_current(answer):
-        return f"{letter}{status}"
-    value = f"{answer.shown_value:.2f} {answer.quantity.unit}".replace("-", "\N{MINUS SIGN}")
-    return f"{letter}{value}, {status}"
 
 
 def _by_hand(action: Any) -> Any:

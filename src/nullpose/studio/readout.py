@@ -12,7 +12,7 @@ from nullpose.studio.answer import Answer, Stage
 from nullpose.studio.colours import SLOTS, css
 from nullpose.studio.session import Session
 
-__all__ = ["about_html", "failure_html", "readout_html", "status_tone"]
+__all__ = ["about_html", "drone_text", "failure_html", "readout_html", "status_tone"]
 
 _TONES = {"waiting": "#8a5a00", "found": "#005a8c", "proved": "#00684a", "failed": "#a02000"}
 _MARKS = {"waiting": "&#8987;", "found": "&#9679;", "proved": "&#10003;", "failed": "&#10007;"}
@@ -168,3 +168,21 @@ def _signed(number: float, digits: int = 2) -> str:
     if float(text) == 0.0:
         text = text.lstrip("-")
     return text.replace("-", "&minus;").replace("inf", "&infin;")
+
+
+def drone_text(session: Session, slot: int) -> str:
+    """Return a drone's label: its letter where two are compared, its value and how well it is known.
+
+    Args:
+        session: whose.
+        slot: 0 for the chosen case, 1 for the compared one.
+    """
+    view = session.view
+    case = view.cases[slot]
+    answer = session.answer(case)
+    letter = f"{'AB'[slot]}: " if view.compared is not None else ""
+    status = session.status(case)
+    if answer is None or not session.is_current(answer):
+        return f"{letter}{status}"
+    value = f"{answer.shown_value:.2f} {answer.quantity.unit}".replace("-", "\N{MINUS SIGN}")
+    return f"{letter}{value}, {status}"

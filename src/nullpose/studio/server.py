@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import socket
 import threading
 import warnings
 from collections.abc import Iterator
@@ -11,108 +10,27 @@ from contextlib import contextmanager, redirect_stdout, suppress
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
-from nullpose.errors import UsageError
 from nullpose.scenario import Scenario
-from nullpose.studio.guard import Guard
+from nullpose.studio.camera import camera_m, near_m
 from nullpose.studio.map_kernel import MapKernel
+from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
 if TYPE_CHECKING:
-    from viser import ClientHandle, SceneApi, ViserServer
+    from viser import ClientHandle, ViserServer
 
     from nullpose.studio.page import Page
 
-__all__ = ["LOOPBACK", "MOST_PAGES", "Studio", "open_server", "require_viser", "studio"]
-
-LOOPBACK = "127.0.0.1"
-"""The address that only programs on this machine reach."""
+__all__ = ["MOST_PAGES", "Studio", "studio"]
 
 MOST_PAGES = 8
 """How many pages a studio serves at a time; each has a thread that solves."""
 
 _RELOAD_S = 2.0  # a page that is loaded again comes before its old self is gone
 
-_INSTALL = 'the studio needs viser, which is not installed; run: pip install "nullpose[studio]"'
 
 _FULL = f"{MOST_PAGES} pages are open, and a studio serves no more. Close one, and load this one again."
 
 _log = logging.getLogger("nullpose.studio")
-
-
-def require_viser() -> None:
-    """Do nothing if viser can be imported.
-
-    Raises:
-        UsageError: it cannot, with what to do about it.
-    """
-    try:
-        import viser  # noqa: F401
-    except ImportError as error:
-        raise UsageError(_INSTALL) from error
-
-
-def open_server(host: str, port: int) -> tuple[ViserServer, str]:
-    """Return a server without a page, and its address with the token that every request to it needs.
-
-    Args:
-        host: address to listen at.
-        port: where to listen; 0 for any that is free.
-
-    Raises:
-        UsageError: the port is in use, the address is none of this machine's, or viser cannot be guarded.
-    """
-    guard = Guard(host, _require_free(host, port))
-    import viser
-
-    with guard.before_viser(), redirect_stdout(StringIO()):  # to announce it is for the command line
-        server = viser.ViserServer(host=host, port=port, label="nullpose studio", verbose=False)
-    if not guard.stands:
-        server.stop()
-        raise UsageError(
-            f"viser {viser.__version__} opens its server in a way that nullpose cannot guard; any web page "
-            'could use the studio; run: pip install "viser>=1.1,<2"'
-        )
-    if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
-        server.stop()
-        raise UsageError(_port_in_use(port))
-    server.request_share_url = lambda verbose=True: None  # a page could ask for a tunnel from the internet
-    _light(server.scene)
-    return server, guard.address(server.get_port())
-
-
-def _light(scene: SceneApi) -> None:
-    # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture
-    scene.configure_default_lights(cast_shadow=False)
-    scene.configure_environment_map(hdri=None)
-    scene.add_light_ambient("/light", intensity=1.6)
-
-
-def _port_in_use(port: int) -> str:
-    return f"--port: {port} is in use by another program; choose another, as in --port {port + 1}"
-
-
-def _require_free(host: str, port: int) -> str:
-    """Return the address that a host stands for, at which a port is free."""
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(
-            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-        )[0]
-    except OSError as error:
-        raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
-    with socket.socket(family, kind, protocol) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(address)
-        except PermissionError as error:
-            raise UsageError(f"--port: {port} needs special rights; choose one above 1023") from error
-        except OSError as error:
-            if error.errno in _NO_SUCH_ADDRESS:
-                message = f"--host: given {host}; allowed: a name or address of this machine"
-                raise UsageError(message) from error
-            raise UsageError(_port_in_use(port)) from error
-    return str(address[0])
-
-
-_NO_SUCH_ADDRESS = {99, 49, 10049}  # EADDRNOTAVAIL on Linux, macOS, Windows
 
 
 class Studio:
@@ -125,8 +43,6 @@ class Studio:
     """
 
     def __init__(self, server: ViserServer, address: str, scenario: Scenario) -> None:
-        from nullpose.studio.page import camera_m, near_m
-
         self.address = address
         self._server, self._scenario = server, scenario
         self._lock, self._room = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from nullpose.errors import UsageError
-from nullpose.studio.server import LOOPBACK, open_server, require_viser
+from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
 
 def test_without_the_extra_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,98 @@
+"""Opening the server behind the pages, guarded, at an address of this machine."""
+
+from __future__ import annotations
+
+import socket
+from contextlib import redirect_stdout
+from io import StringIO
+from typing import TYPE_CHECKING
+
+from nullpose.errors import UsageError
+from nullpose.studio.guard import Guard
+
+if TYPE_CHECKING:
+    from viser import SceneApi, ViserServer
+
+__all__ = ["LOOPBACK", "open_server", "require_viser"]
+
+LOOPBACK = "127.0.0.1"
+"""The address that only programs on this machine reach."""
+
+_INSTALL = 'the studio needs viser, which is not installed; run: pip install "nullpose[studio]"'
+
+
+def require_viser() -> None:
+    """Do nothing if viser can be imported.
+
+    Raises:
+        UsageError: it cannot, with what to do about it.
+    """
+    try:
+        import viser  # noqa: F401
+    except ImportError as error:
+        raise UsageError(_INSTALL) from error
+
+
+def open_server(host: str, port: int) -> tuple[ViserServer, str]:
+    """Return a server without a page, and its address with the token that every request to it needs.
+
+    Args:
+        host: address to listen at.
+        port: where to listen; 0 for any that is free.
+
+    Raises:
+        UsageError: the port is in use, the address is none of this machine's, or viser cannot be guarded.
+    """
+    guard = Guard(host, _require_free(host, port))
+    import viser
+
+    with guard.before_viser(), redirect_stdout(StringIO()):  # to announce it is for the command line
+        server = viser.ViserServer(host=host, port=port, label="nullpose studio", verbose=False)
+    if not guard.stands:
+        server.stop()
+        raise UsageError(
+            f"viser {viser.__version__} opens its server in a way that nullpose cannot guard; any web page "
+            'could use the studio; run: pip install "viser>=1.1,<2"'
+        )
+    if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
+        server.stop()
+        raise UsageError(_port_in_use(port))
+    server.request_share_url = lambda verbose=True: None  # a page could ask for a tunnel from the internet
+    _light(server.scene)
+    return server, guard.address(server.get_port())
+
+
+def _light(scene: SceneApi) -> None:
+    # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture
+    scene.configure_default_lights(cast_shadow=False)
+    scene.configure_environment_map(hdri=None)
+    scene.add_light_ambient("/light", intensity=1.6)
+
+
+def _port_in_use(port: int) -> str:
+    return f"--port: {port} is in use by another program; choose another, as in --port {port + 1}"
+
+
+def _require_free(host: str, port: int) -> str:
+    """Return the address that a host stands for, at which a port is free."""
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except OSError as error:
+        raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
+    with socket.socket(family, kind, protocol) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(address)
+        except PermissionError as error:
+            raise UsageError(f"--port: {port} needs special rights; choose one above 1023") from error
+        except OSError as error:
+            if error.errno in _NO_SUCH_ADDRESS:
+                message = f"--host: given {host}; allowed: a name or address of this machine"
+                raise UsageError(message) from error
+            raise UsageError(_port_in_use(port)) from error
+    return str(address[0])
+
+
+_NO_SUCH_ADDRESS = {99, 49, 10049}  # EADDRNOTAVAIL on Linux, macOS, Windows
