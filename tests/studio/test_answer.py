@@ -15,7 +15,7 @@ def test_words_follow_what_is_proved(paper: Scenario) -> None:
     assert status_words(3, None) == "solving"
     assert status_words(4, proved) == "solving"
     assert status_words(3, searched) == "best so far"
-    assert status_words(3, proved) == "certified to 1e-6"
+    assert status_words(3, proved) == "certified to 1e-6, verifiable"
     assert cut.stage is Stage.NOT_CERTIFIED
     assert status_words(3, cut).startswith("best so far, proved to ")
     assert cut.note.startswith("The proof stopped")
