@@ -36,6 +36,7 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
         "scheme",
         "status",
         "reason",
+        "rigour",
         "objective",
         "pose",
         "links",
