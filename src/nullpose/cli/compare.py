@@ -21,7 +21,8 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

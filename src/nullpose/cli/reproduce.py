@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from nullpose.cli.options import JsonOutput, OutFolder, Seed
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.progress import Ticker
 
 __all__ = ["reproduce"]
 

@@ -10,8 +10,8 @@ import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.figure import write_figure
-from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.progress import GapBar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,7 +11,6 @@ import typer
 from nullpose.cli.array import refuse_with_array, solve_with_array
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.figure import prepare_outputs, write_figure
-from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
     AllowOutside,
     CombiningName,
@@ -24,7 +23,8 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.progress import GapBar, Ticker
 from nullpose.cli.robust import refuse_with_robust, solve_robustly
 from nullpose.schemes import Scheme
 

@@ -17,7 +17,8 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, show, show_json
+from nullpose.cli.progress import Ticker
 from nullpose.schemes import Scheme
 
 __all__ = ["sweep"]

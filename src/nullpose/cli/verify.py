@@ -9,7 +9,8 @@ import typer
 
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
-from nullpose.cli.output import Ticker, show, show_json
+from nullpose.cli.output import show, show_json
+from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
     from nullpose.certificate import Certificate, Verdict
