@@ -69,11 +69,10 @@ def _gain_words(summary: Summary, point: int, case: ReportCase) -> str:
     """Return the two gains of a case, and what part they are of the omnidirectional vehicle's."""
     row, told = summary.row(point, case), []
     for name, words in _GAINS:
-        value, *ends = three_of(row, name)
-        sure = f" ({percent(CONFIDENCE)} confidence: {span(*ends, summary.quantity)})"
-        told.append(
-            f"{with_unit(value, summary.quantity)} {words}{'' if all(map(math.isnan, ends)) else sure}"
-        )
+        value, low, high = three_of(row, name)
+        sure = f" ({percent(CONFIDENCE)} confidence: {span(low, high, summary.quantity)})"
+        unknown = math.isnan(low) and math.isnan(high)
+        told.append(f"{with_unit(value, summary.quantity)} {words}{'' if unknown else sure}")
     words = f"{case.phrase} gains {' and '.join(told)}"
     shares = _shares(row)
     if any(map(math.isnan, shares)) or case.place == case.whole:

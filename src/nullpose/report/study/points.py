@@ -107,8 +107,8 @@ def _node_power_w(spec: StudySpec) -> float:
     if any(path.startswith("nodes") for path in spec.swept):
         return 0.0
     if spec.nodes is not None:
-        watts, dbm = (each and each.fixed for each in (spec.nodes.power_w, spec.nodes.power_dbm))
-        return power_w(watts, dbm) or 0.0
+        watts, dbm = spec.nodes.power_w, spec.nodes.power_dbm
+        return power_w(None if watts is None else watts.fixed, None if dbm is None else dbm.fixed) or 0.0
     scenes = spec.scene.scenarios or (spec.scene,)
     powers = {node.transmit_power_w for scene in scenes for node in scene.nodes}
     return powers.pop() if len(powers) == 1 else 0.0

@@ -194,7 +194,7 @@ def draw_effort(summary: Summary) -> Figure | None:
 
     def solves(label: str, case: ReportCase) -> FloatArray:
         numbers = columns[label][:, :, case.place].astype(float)
-        return np.maximum(numbers[~np.isnan(numbers)], _LEAST)
+        return np.asarray(np.maximum(numbers[~np.isnan(numbers)], _LEAST))
 
     def draw(axes: Axes, place: int) -> None:
         for case in summary.cases:
