@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.study.cases import ReportCase, report_cases
 from nullpose.report.study.points import SweptPoints

@@ -77,8 +77,8 @@ def draw_shares(summary: Summary) -> Figure | None:
             return
         axes.barh(place, share, height=0.6, color=look.colour, alpha=0.75, zorder=2.0)
         axes.plot(ends, [place, place], color=INK, linewidth=1.1, marker="|", markersize=5.0, zorder=3.0)
-        beside: dict[str, Any] = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.5}
-        axes.annotate(percent(share), (max(ends[1], share), place), **beside)
+        beside: dict[str, Any] = {"xytext": (4, 0), "textcoords": "offset points"}
+        axes.annotate(percent(share), (max(ends[1], share), place), va="center", fontsize=7.5, **beside)
         axes.set_xlim(0.0, 1.18)
         axes.set_xticks(*QUARTERS)
 
