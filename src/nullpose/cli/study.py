@@ -21,7 +21,7 @@ __all__ = ["StudyFolder", "study"]
 study = typer.Typer(
     name="study",
     no_args_is_help=True,
-    help="Many random scenes, each solved in several cases, on this machine or a cluster.",
+    help="Many random scenes, each solved in several cases.",
 )
 
 StudyFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)]
@@ -58,7 +58,10 @@ def run(
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve the scenes of a study that its folder does not hold yet; ended in any way, it goes on."""
+    """Solve the scenes of a study that its folder does not hold yet.
+
+    It runs on this machine or a cluster. Ended in any way, the same command goes on.
+    """
     from nullpose.study.monte_carlo.extra import require_extra
 
     require_extra()
@@ -112,7 +115,7 @@ def show(
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Print a scene of a study as a scenario file, for solve or the studio."""
+    """Print a scene of a study as a scenario file."""
     from nullpose.errors import UsageError
     from nullpose.study.monte_carlo import draw_scene, scene_at, study_spec
 

@@ -34,7 +34,10 @@ def verify(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a certificate in outward-rounded arithmetic, by code that imports nothing from the solver."""
+    """Check a certificate.
+
+    In outward-rounded arithmetic, by code that imports nothing from the solver.
+    """
     from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
     from nullpose.scenario import load
