@@ -49,9 +49,9 @@ def inner_heap_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    if config.DISABLE_JIT:
+    if getattr(config, "DISABLE_JIT", False):
         return function
-    dispatcher = LinkedDispatcher(function, targetoptions={"nopython": True, "boundscheck": None, **options})
+    dispatcher = LinkedDispatcher(function, {"nopython": True, "boundscheck": None, **options})
     with contextlib.suppress(RuntimeError):  # numba's word for "no locator available"
         dispatcher.enable_caching()
         _drop_outdated(dispatcher.stats.cache_path)

@@ -1,8 +1,9 @@
 """Kernels that are optimised once, with all that they call, and not again in each of their callers.
 
-As numba has it, every function is optimised and turned into machine code by itself, and again in whatever calls it,
-so that what lies ten calls deep is done ten times. Here a kernel is compiled as a *whole* where Python calls it, and
-as a *part* where kernels do: a part is lowered and no more, and is optimised within the whole.
+As numba has it, every function is optimised and turned into machine code by itself, and again in whatever
+calls it, so that what lies ten calls deep is done ten times. Here a kernel is compiled as a *whole* where
+Python calls it, and as a *part* where kernels do: a part is lowered and no more, and is optimised within the
+whole.
 """
 
 from __future__ import annotations
@@ -27,6 +28,9 @@ class _Whole(JITCodeLibrary):
 
 class _Part(_Whole):
     """Code of one kernel, to be linked into others."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
 
     def finalize(self) -> None:
         self._finalized = True
@@ -59,12 +63,10 @@ class _PartCompiler(_Compiler):
 class LinkedDispatcher(CPUDispatcher):
     """A kernel: a whole where Python calls it, a part where a kernel does."""
 
-    def __init__(
-        self, py_func: Any, locals: Any = None, targetoptions: Any = None, pipeline_class: Any = _Compiler
-    ) -> None:
-        super().__init__(py_func, locals, targetoptions, pipeline_class)
-        options = targetoptions | {"no_cpython_wrapper": True}
-        self._part = CPUDispatcher(py_func, locals, options, _PartCompiler)
+    def __init__(self, function: Any, options: dict[str, Any]) -> None:
+        super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
+        part = options | {"no_cpython_wrapper": True}
+        self._part = CPUDispatcher(function, targetoptions=part, pipeline_class=_PartCompiler)
 
     @property
     def _numba_type_(self) -> Any:
