@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Unpack
@@ -129,15 +130,12 @@ def solve_many(
         vehicles = [[scenario.airframe] if airframes is None else list(airframes) for scenario in block]
         outcomes = [_by_vehicle(*each, asked) for each in zip(block, vehicles, strict=True)]
         for column in range(results.value.shape[1]):
-            for airframe in {each[column] for each in vehicles}:
-                rows = [row for row, each in enumerate(vehicles) if each[column] == airframe]
-                _fill(
-                    results,
-                    first,
-                    column,
-                    airframe,
-                    [(row, block[row], outcomes[row][column]) for row in rows],
-                )
+            alike = defaultdict(list)  # what is evaluated together has so many nodes and jammers
+            for row, scenario in enumerate(block):
+                kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
+                alike[kind].append((first + row, scenario, outcomes[row][column]))
+            for (airframe, *_), answers in alike.items():
+                _fill(results, column, airframe, answers)
         if on_progress is not None:
             on_progress(first + len(block), len(scenarios))
     return results
@@ -192,14 +190,13 @@ def _upright(axis: FloatArray) -> float:
 
 def _fill(
     results: ManySolutions,
-    first: int,
     column: int,
     airframe: Airframe | None,
     answers: list[tuple[int, Scenario, Outcome | None]],
 ) -> None:
     """Put one airframe's answers into the results, their values evaluated at the poses."""
-    results.reason[[first + row for row, _, outcome in answers if outcome is None], column] = NOWHERE
-    placed = [(first + row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
+    results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
+    placed = [(row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
     if not placed:
         return
     some = np.array([row for row, _, _ in placed])
