@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.solve.kernels.jit import inner_kernel
@@ -35,6 +36,7 @@ _TRIES = 40
 _SMALL = 1e-13
 _NO_OFFSET = (0.0, 0.0, 0.0)
 
+FloatArray = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 
@@ -44,8 +46,8 @@ class Ratio(NamedTuple):
     isotropic: float  # a
     weight: float  # c
     node: Vector
-    shares: NDArray  # (n,) b_j
-    centres: NDArray  # (n, 3) of the sets
+    shares: FloatArray  # (n,) b_j
+    centres: FloatArray  # (n, 3) of the sets
     sets: Sets
 
 

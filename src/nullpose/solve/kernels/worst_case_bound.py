@@ -13,11 +13,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
 from nullpose.solve.kernels.worst_case import (
+    FloatArray,
     Vector,
     descend,
     into_ball,
@@ -50,11 +50,11 @@ class Cell(NamedTuple):
 class Corners(NamedTuple):
     """What holds at the corners of a cell: ``m`` of the axis, ``e`` of the offset."""
 
-    values: NDArray  # (m, e) F, from below
-    sizes: NDArray  # (m, e) the sizes of its terms
-    cone: NDArray  # (m,) G, negative outside the cone
-    ball: NDArray  # (e,) H, negative outside the ball of offsets
-    across: NDArray  # (n,) W_j, the largest |y x v_j|
+    values: FloatArray  # (m, e) F, from below
+    sizes: FloatArray  # (m, e) the sizes of its terms
+    cone: FloatArray  # (m,) G, negative outside the cone
+    ball: FloatArray  # (e,) H, negative outside the ball of offsets
+    across: FloatArray  # (n,) W_j, the largest |y x v_j|
 
 
 @inner_kernel
@@ -155,9 +155,10 @@ def curvatures(ratio, weight, level, cell, across):
     """Return lemma 4's A, B and C; infinite unless the cell keeps clear of all sets."""
     lean, swing, length = norm(cell.x_half), norm(cell.d_half), norm(farthest(cell.x, cell.x_half))
     kappa = 1.0 / (norm(minus(ratio.node, cell.d)) - swing) if weight > 0.0 else 0.0
-    a = 2.0 * max(0.0, ratio.isotropic - level + weight * kappa**2)
-    b = 4.0 * weight * length * kappa**3
-    c = 6.0 * weight * length**2 * kappa**4
+    square = kappa * kappa
+    a = 2.0 * max(0.0, ratio.isotropic - level + weight * square)
+    b = 4.0 * weight * length * kappa * square
+    c = 6.0 * weight * (length * square) ** 2
     for j in range(ratio.shares.shape[0]):
         near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
         if not near > 0.0:

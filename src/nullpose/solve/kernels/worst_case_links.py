@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
@@ -40,13 +41,18 @@ _QUICK = 12
 _CLIMB = 6
 _ORIGIN = (0.0, 0.0, 0.0)
 
+FloatArray = NDArray[np.float64]
+
 
 class Sets(NamedTuple):
-    """The sets that points are known up to, about a centre each: balls and ellipsoids."""
+    """The sets that points are known up to, about a centre each: balls and ellipsoids.
 
-    radii: NDArray  # (n,) of a ball; negative for an ellipsoid
-    axes: NDArray  # (n, 3, 3) an ellipsoid's axes, as rows
-    semi: NDArray  # (n, 3) and its half lengths
+    Where all are balls, the axes are None, and what ellipsoids need is not even compiled.
+    """
+
+    radii: FloatArray  # (n,) of a ball; negative for an ellipsoid
+    axes: FloatArray | None  # (n, 3, 3) an ellipsoid's axes, as rows
+    semi: FloatArray | None  # (n, 3) and its half lengths
 
 
 class Touching(NamedTuple):
@@ -231,21 +237,37 @@ def least_distance(q, semi):
     size = (q[0] / semi[0], q[1] / semi[1], q[2] / semi[2])
     normal = norm((size[0] / semi[0], size[1] / semi[1], size[2] / semi[2]))
     # the tangent plane across the line to the centre, as the ellipsoid's form sees it
-    return 0.999 * max(norm(q) - max(semi[0], semi[1], semi[2]), norm(size) * (norm(size) - 1.0) / normal)
+    return 0.999 * max(
+        norm(q) - max(semi[0], max(semi[1], semi[2])), norm(size) * (norm(size) - 1.0) / normal
+    )
+
+
+@inner_kernel
+def clearance_of(radius, axes, semi, j, q):
+    """Return what ``clearance`` does; compiled without the branch where there are no axes."""
+    if axes is not None:  # noqa: SIM102
+        if radius < 0.0:
+            return least_distance(components(rows(axes[j]), q), row(semi, j))
+    return norm(q) - radius
+
+
+@inner_kernel
+def strongest_of(radius, axes, semi, j, y, q, tolerance):
+    """Return what ``strongest_link`` does; compiled without the branch where there are no axes."""
+    if axes is not None:  # noqa: SIM102
+        if radius < 0.0:
+            return strongest_in_ellipsoid(y, q, rows(axes[j]), row(semi, j), tolerance)
+    attained, place = strongest_in_ball(y, q, radius)
+    return attained, attained + ROUND * norm(q) / (dot(q, q) - radius * radius), place
 
 
 @kernel
 def clearance(sets, j, q):
     """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
-    if sets.radii[j] < 0.0:
-        return least_distance(components(rows(sets.axes[j]), q), row(sets.semi, j))
-    return norm(q) - sets.radii[j]
+    return clearance_of(sets.radii[j], sets.axes, sets.semi, j, q)
 
 
 @kernel
 def strongest_link(sets, j, y, q, tolerance):
     """Return (attained, upper bound, place) of the largest root link of set j about q, y a unit vector."""
-    if sets.radii[j] < 0.0:
-        return strongest_in_ellipsoid(y, q, rows(sets.axes[j]), row(sets.semi, j), tolerance)
-    attained, place = strongest_in_ball(y, q, sets.radii[j])
-    return attained, attained + ROUND * norm(q) / (dot(q, q) - sets.radii[j] ** 2), place
+    return strongest_of(sets.radii[j], sets.axes, sets.semi, j, y, q, tolerance)

@@ -99,7 +99,9 @@ class Inner:
             node=tuple(node_m.tolist()),
             shares=family.denominator_weight[entries] / noise,
             centres=family.points_m[points] - p,
-            sets=Sets(self.radii[points], self.axes[points], self.semi[points]),
+            sets=Sets(self.radii[points], self.axes[points], self.semi[points])
+            if np.any(self.radii < 0.0)
+            else Sets(self.radii[points], None, None),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
