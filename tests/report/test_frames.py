@@ -7,7 +7,8 @@ import pytest
 
 from nullpose import Pose, Solution, solve
 from nullpose.physics import Geodetic, pose_frames
-from nullpose.report.frames import frame_rows, place_words
+from nullpose.report.results import frame_rows
+from nullpose.report.words import place_words
 from nullpose.scenario import Origin, Scenario
 
 
@@ -21,7 +22,7 @@ def solution(paper: Scenario) -> Solution:
 
 def test_the_lines_of_a_round_pose(solution: Solution) -> None:
     """Straight above the origin, pitched by a quarter turn: every number can be told by heart."""
-    assert frame_rows(solution) == [
+    assert frame_rows(solution.scenario, solution.pose) == [
         ("on the Earth", "lat 0.00000000 deg, lon 0.00000000 deg, alt 20.000 m over the WGS-84 ellipsoid"),
         ("NED, body FRD", "north 0.0000 m, east 0.0000 m, down -20.0000 m"),
         ("", "roll 0.000 deg, pitch -90.000 deg, yaw 90.000 deg"),
@@ -35,13 +36,13 @@ def test_the_lines_tell_the_frames(solution: Solution) -> None:
     moved = replace(solution, pose=Pose((123.4, -56.7, 20.0), 0.1, 0.2))
     place = pose_frames(moved.scenario, moved.pose).geodetic
     assert place is not None
-    assert frame_rows(moved)[0][1] == place_words(place)
-    assert "north -56.7000 m, east 123.4000 m" in frame_rows(moved)[1][1]
+    assert frame_rows(moved.scenario, moved.pose)[0][1] == place_words(place)
+    assert "north -56.7000 m, east 123.4000 m" in frame_rows(moved.scenario, moved.pose)[1][1]
 
 
 def test_nothing_without_an_origin(solution: Solution, paper: Scenario) -> None:
     """A scenario that lies nowhere on the Earth has no such lines."""
-    assert frame_rows(replace(solution, scenario=paper)) == []
+    assert frame_rows(paper, solution.pose) == []
 
 
 def test_no_zero_has_a_sign() -> None:

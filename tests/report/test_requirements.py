@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nullpose import Scenario, load, solve
-from nullpose.report.requirements import requirement_words
+from nullpose.report.words import requirement_words
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -32,7 +32,7 @@ def test_missed_requirements_are_named(scenario: Scenario) -> None:
     words = requirement_words(solution)
     assert words.startswith("missed: node ")
     assert words.count(f"{-solution.objective.value_db:.2f} dB below what it requires") == 2
-    assert words.endswith("proved: no pose meets every requirement")
+    assert words.endswith("proved: no pose of this case meets every requirement")
     assert "proved" not in requirement_words(solve(more, certify=False))
     assert requirement_words(solve(more, "vertical")).endswith("no pose of this case meets every requirement")
 
@@ -59,4 +59,4 @@ def test_a_single_requirement(paper: Scenario) -> None:
     data = paper.to_dict()
     data["nodes"][0]["min_sinr_db"] = -3.0
     words = requirement_words(solve(Scenario.from_dict(data), certify=False))
-    assert words.startswith("the requirement is met; node S1: ")
+    assert words.startswith("every requirement is met; node S1: ")

@@ -66,7 +66,7 @@ def solve_with_array(
     if json_output:
         show_json(solution.to_dict())
         return
-    from nullpose.report.array import array_view
+    from nullpose.report.results import array_view
 
     show(array_view(solution))
 

@@ -17,14 +17,12 @@ def check(
     json_output: JsonOutput = False,
 ) -> None:
     """Check a scenario file and show what it amounts to, without solving it."""
-    from nullpose.report.summary import summarise
+    from nullpose.report.scenario import scenario_view, summarise
     from nullpose.scenario import apply_overrides, load
 
-    summary = summarise(apply_overrides(load(file, allow_outside=allow_outside), overrides or []))
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
     if json_output:
-        show_json(summary.to_dict())
+        show_json(summarise(scenario))
         return
-    from nullpose.report.scenario_tables import scenario_view
-
-    show(scenario_view(summary))
+    show(scenario_view(scenario))
     typer.echo(f"{file}: no faults")

@@ -97,7 +97,7 @@ def compare(
         if json_output:
             show_json(comparison.to_dict())
         else:
-            from nullpose.report.comparison_tables import comparison_view
+            from nullpose.report.comparison import comparison_view
 
             show(comparison_view(comparison))
         interrupted = any(solution.interrupted for solution in comparison.solutions)

@@ -89,7 +89,7 @@ def solve_robustly(
     if json_output:
         show_json(solution.to_dict())
     else:
-        from nullpose.report.robust import robust_view
+        from nullpose.report.results import robust_view
 
         show(robust_view(solution))
     if solution.interrupted:

@@ -126,7 +126,7 @@ def solve(
         return
     from nullpose.certificate import write_certificate
     from nullpose.errors import SolveError, UsageError
-    from nullpose.report.export import require_origin, write_geojson
+    from nullpose.report.geojson import require_origin, write_geojson
     from nullpose.solve import Rigour, certificate_of, default_gap_of, require_certificate, verified
     from nullpose.solve import solve as solve_scenario
 
@@ -165,7 +165,7 @@ def solve(
     if json_output:
         show_json(solution.to_dict())
     else:
-        from nullpose.report.tables import solution_view
+        from nullpose.report.results import solution_view
 
         show(solution_view(solution))
     if rejected:

@@ -15,7 +15,7 @@ from nullpose.files import write_text
 from nullpose.physics import pose_frames
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.plain import json_text
-from nullpose.report.tables import binding_nodes
+from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.scenario.no_fly import NoFlyZone

@@ -5,35 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from nullpose.files import check_outputs, write_text
-from nullpose.report.certainty import certainty_lines
-from nullpose.report.claims import (
-    CLAIM_COUNT,
-    Claim,
-    JammingStudy,
-    check_claims,
-    claims_json,
-    claims_markdown,
-)
-from nullpose.report.figures import draw_figure2, draw_poses
-from nullpose.report.figures.style import write_figure
-from nullpose.report.paper import (
+from nullpose.paper.claim import Claim
+from nullpose.paper.claims import CLAIMS
+from nullpose.paper.figure2 import draw_figure2
+from nullpose.paper.pages import claims_json, claims_markdown
+from nullpose.paper.scene import (
     JAMMER_POWER,
     JAMMING_LEVELS,
     POSE_LEVELS,
     PRINTED_LEVELS,
     paper_scenario,
 )
+from nullpose.paper.study import JammingStudy
+from nullpose.report.figures import draw_poses
+from nullpose.report.figures.style import write_figure
 from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme, solve
 from nullpose.study import SweepTable, sweep
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-__all__ = ["Reproduction", "reproduce", "reproduction_view"]
+__all__ = ["Reproduction", "reproduce"]
 
 _FILES = ("figure2.png", "figure2.svg", "figure2.csv", "poses.png", "poses.svg", "claims.md", "claims.json")
 _CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
@@ -57,9 +49,8 @@ class Reproduction:
 
     def to_dict(self) -> dict[str, object]:
         """Return the claims and the files as plain data."""
-        return {
-            **claims_json(self.claims, self.table, self.provenance),
-            "files": [str(path) for path in self.files],
+        return claims_json(self.claims, self.table, self.provenance) | {
+            "files": [str(path) for path in self.files]
         }
 
 
@@ -86,27 +77,30 @@ def reproduce(
         OutputError: the folder or a file cannot be written; the folder is tried before any work.
     """
     check_outputs({}, {name: folder / name for name in _FILES})
-    scenario = paper_scenario()
     four_cases = len(levels) * len(PAPER_SCHEMES)
     solves = four_cases + len(printed_levels)
-    total = solves + CLAIM_COUNT * _CLAIM_STEPS
 
-    def tick_from(offset: int, step: int = 1) -> Callable[[int, int], None]:
-        return lambda done, _: on_progress(offset + done * step, total) if on_progress is not None else None
+    def told(done: int) -> None:
+        if on_progress is not None:
+            on_progress(done, solves + len(CLAIMS) * _CLAIM_STEPS)
 
-    table = sweep(scenario, JAMMER_POWER, levels, seed=seed, on_progress=tick_from(0)).joined(
+    scenario = paper_scenario()
+    table = sweep(scenario, JAMMER_POWER, levels, seed=seed, on_progress=lambda done, _: told(done)).joined(
         sweep(
             scenario,
             JAMMER_POWER,
             printed_levels,
             schemes=[Scheme.MAXIMUM_GAIN_PRINTED],
             seed=seed,
-            on_progress=tick_from(four_cases),
+            on_progress=lambda done, _: told(four_cases + done),
         )
     )
     study = JammingStudy(scenario, table, seed)
-    claims = check_claims(study, tick_from(solves, _CLAIM_STEPS))
-    poses = [study.at(Scheme.OPTIMUM.value, level) for level in POSE_LEVELS]
+    claims: list[Claim] = []
+    for claim in CLAIMS:
+        claims.append(claim.checked(study))
+        told(solves + len(claims) * _CLAIM_STEPS)
+    poses = [study.at(Scheme.OPTIMUM, level) for level in POSE_LEVELS]
     provenance = dict(solve(scenario, Scheme.ZERO_INTERFERENCE, seed=seed).provenance)
     files = (
         *write_figure(draw_figure2(table), folder, "figure2"),
@@ -115,26 +109,4 @@ def reproduce(
         write_text(folder / "claims.md", claims_markdown(claims, table)),
         write_text(folder / "claims.json", json_text(claims_json(claims, table, provenance)) + "\n"),
     )
-    return Reproduction(table=table, claims=claims, files=files, provenance=provenance)
-
-
-def reproduction_view(reproduction: Reproduction) -> RenderableType:
-    """Return the verdicts as a table, and the list of files.
-
-    Args:
-        reproduction: what was found and written.
-    """
-    from rich import box
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    view = Table(title="The paper's claims", box=box.SIMPLE_HEAD, pad_edge=False, show_lines=True)
-    view.title_justify, view.title_style = "left", "bold"
-    view.add_column("verdict")
-    view.add_column("claim and finding")
-    for claim in reproduction.claims:
-        body = Text.assemble((claim.claim, "bold"), "\n", claim.finding)
-        view.add_row(Text(claim.verdict.value, "green" if claim.verdict == "holds" else "red"), body)
-    proved = [f"Figure 2: {line[0].lower()}{line[1:]}." for line in certainty_lines(reproduction.table)]
-    return Group(view, Text("\n".join([*proved, *(f"Wrote {path}" for path in reproduction.files)])))
+    return Reproduction(table=table, claims=tuple(claims), files=files, provenance=provenance)

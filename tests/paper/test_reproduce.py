@@ -6,7 +6,8 @@ import json
 
 from rich.console import Console
 
-from nullpose.report.reproduce import Reproduction, reproduction_view
+from nullpose.paper.pages import claims_view
+from nullpose.paper.reproduce import Reproduction
 
 KEYS = [
     "id",
@@ -75,10 +76,10 @@ def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
 def test_view(reproduction: Reproduction) -> None:
     """The verdicts and the files are printed."""
     console = Console(width=200, file=io.StringIO())
-    console.print(reproduction_view(reproduction))
+    console.print(claims_view(reproduction.claims, reproduction.table, reproduction.files))
     text = console.file.getvalue()
     assert text.count("holds ") == 7
     assert text.count("fails ") == 1
-    assert "vertical: certified to 1e-6 (relative)" in text
+    assert "Vertical: certified to 1e-6 (relative)" in text
     assert "as printed: best found by searching, nothing is proved" in text
     assert all(str(path) in text for path in reproduction.files)

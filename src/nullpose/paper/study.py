@@ -4,22 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
-from nullpose.report.paper import JAMMER_POWER
+from nullpose.paper.scene import JAMMER_POWER
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.schemes import Scheme
 from nullpose.study import SweepRow, SweepTable, sweep
 
-__all__ = ["JammingStudy", "bound_db", "lead_range_db"]
+__all__ = ["JammingStudy", "Lead", "bound_db", "lead_of"]
 
 _BISECTIONS = 12  # of a twelfth of a decade: relative precision 5e-5
-_EQUIDISTANT = "maximum-gain halfway between the nodes"
+_EQUIDISTANT = "halfway between the nodes"
+
+
+class Lead(NamedTuple):
+    """How far one case is ahead of another, dB: as found, and between which numbers it truly is, proved."""
+
+    least_db: float
+    found_db: float
+    most_db: float
 
 
 class JammingStudy:
     """A scenario with one jammer, seen at any jamming level; no level is solved twice.
 
-    It notes which rows are looked at, so that a claim can say what it rests on.
+    It notes in ``used`` which rows are looked at, so that a claim can say what it rests on.
 
     Args:
         scenario: the paper's scenario.
@@ -31,22 +39,9 @@ class JammingStudy:
         self.scenario = scenario
         self.table = table
         self.seed = seed
+        self.levels = table.values
+        self.used: dict[tuple[str, float], SweepRow] = {}
         self._rows = {(row.scheme, row.value): row for row in table.rows}
-        self._used: dict[tuple[str, float], SweepRow] = {}
-
-    @property
-    def levels(self) -> tuple[float, ...]:
-        """The swept values of P_M/P, ascending."""
-        return self.table.values
-
-    def forget_uses(self) -> None:
-        """Begin to note anew which rows are looked at."""
-        self._used = {}
-
-    @property
-    def used(self) -> tuple[SweepRow, ...]:
-        """The rows looked at since the last :meth:`forget_uses`, each once."""
-        return tuple(self._used.values())
 
     def at(self, scheme: str, level: float) -> SweepRow:
         """Return the pose of a scheme at a jamming level, solved now if it has not been yet.
@@ -65,45 +60,36 @@ class JammingStudy:
         """
         return tuple(self.at(scheme, row.value) for row in self.table.of(scheme))
 
-    def equidistant_at(self, level: float) -> SweepRow:
-        """Return the best maximum-gain pose among those equally far from both nodes.
+    def equidistant_at(self, scheme: str, level: float) -> SweepRow:
+        """Return a scheme's best pose among those equally far from both nodes.
 
         The paper's nodes lie north of one another, so that these are the positions of one northing: an
-        airspace as thin as that is solved, with a proof, like any other.
+        airspace as thin as that is solved like any other.
 
         Args:
+            scheme: the scheme's name.
             level: P_M/P, a power ratio.
         """
         north_m = float(self.scenario.node_positions_m[:, 1].mean())
         plane = apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
-        return self._row((_EQUIDISTANT, float(level)), Scheme.MAXIMUM_GAIN, plane)
+        return self._row((f"{scheme} {_EQUIDISTANT}", float(level)), scheme, plane)
 
     def _row(self, key: tuple[str, float], scheme: str, scenario: Scenario) -> SweepRow:
         if key not in self._rows:
             solved = sweep(scenario, JAMMER_POWER, [key[1]], schemes=[scheme], seed=self.seed)
             self._rows[key] = solved.rows[0]
-        self._used[key] = self._rows[key]
+        self.used[key] = self._rows[key]
         return self._rows[key]
 
-    def lead_db(self, scheme: str, other: str, level: float) -> float:
-        """Return how far one scheme's smallest SINR is above another's, dB.
+    def lead(self, scheme: str, other: str, level: float) -> Lead:
+        """Return how far one scheme's smallest SINR is above another's.
 
         Args:
             scheme: the scheme's name.
             other: the one it is compared with.
             level: P_M/P, a power ratio.
         """
-        return self.at(scheme, level).min_sinr_db - self.at(other, level).min_sinr_db
-
-    def lead_range_db(self, scheme: str, other: str, level: float) -> tuple[float, float]:
-        """Return between which numbers the lead of one scheme's true optimum over another's is proved, dB.
-
-        Args:
-            scheme: the scheme's name.
-            other: the one it is compared with.
-            level: P_M/P, a power ratio.
-        """
-        return lead_range_db(self.at(scheme, level), self.at(other, level))
+        return lead_of(self.at(scheme, level), self.at(other, level))
 
     def holds_up_to(self, condition: Callable[[float], bool]) -> float | None:
         """Return the largest level up to which a condition holds, nothing if it fails at the first.
@@ -134,25 +120,24 @@ def bound_db(row: SweepRow) -> float:
     return math.inf if row.upper_bound_db is None else row.upper_bound_db
 
 
-def lead_range_db(row: SweepRow, other: SweepRow) -> tuple[float, float]:
-    """Return between which numbers the lead of one row's true optimum over another's is proved, dB.
+def lead_of(row: SweepRow, other: SweepRow) -> Lead:
+    """Return how far one row's smallest SINR is above another's.
 
     Args:
         row: of a sweep.
         other: the one it is compared with.
     """
-    return row.min_sinr_db - bound_db(other), bound_db(row) - other.min_sinr_db
+    found_db = row.min_sinr_db - other.min_sinr_db
+    return Lead(row.min_sinr_db - bound_db(other), found_db, bound_db(row) - other.min_sinr_db)
 
 
 def _last_holding(condition: Callable[[float], bool], levels: Sequence[float]) -> float | None:
     """Return the last level, bisected, up to which a condition was seen to hold from the first of some on."""
-    holding = levels[0]
-    if not condition(holding):
-        return None
-    for failing in levels[1:]:
-        if not condition(failing):
-            return _bisected(condition, holding, failing)
-        holding = failing
+    holding = None
+    for level in levels:
+        if not condition(level):
+            return None if holding is None else _bisected(condition, holding, level)
+        holding = level
     return holding
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from nullpose import Scenario
-from nullpose.report.paper import (
+from nullpose.paper.scene import (
     JAMMING_LEVELS,
     POSE_LEVELS,
     PRINTED_LEVELS,
