@@ -72,7 +72,7 @@ def test_a_case_that_does_not_apply_says_why(run: Run, tmp_path: Path, paper: st
         ("zero-interference", ["reason", "scheme", "status"])
     ]
     assert "jammer" in absent[0]["reason"]
-    assert "Zero interference does not apply" in run("compare", calm).stdout
+    assert "Zero interference: not applicable" in run("compare", calm).stdout
 
 
 def test_ten_nodes_and_two_jammers(run: Run, paper: str) -> None:

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from nullpose import Scenario, load
-from nullpose.paper.reproduce import Reproduction, reproduce
+from nullpose.paper.pages import Reproduction
+from nullpose.paper.reproduce import reproduce
 
 
 @pytest.fixture(scope="session")

@@ -10,8 +10,7 @@ import pytest
 from nullpose import Scenario
 from nullpose.paper.claim import Claim
 from nullpose.paper.claims import CLAIMS
-from nullpose.paper.pages import claims_markdown
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.pages import Reproduction, claims_markdown
 from nullpose.paper.scene import with_jamming
 from nullpose.paper.study import JammingStudy
 from nullpose.physics import maximum_gain_sinr, min_sinr, to_db
@@ -168,7 +167,7 @@ def test_thresholds_are_bisected(reproduction: Reproduction, paper: Scenario) ->
 
 def test_page_has_a_section_for_each_claim(reproduction: Reproduction) -> None:
     """The page names every claim and verdict, and holds no number that is not finite."""
-    page = claims_markdown(reproduction.claims, reproduction.table)
+    page = claims_markdown(reproduction)
     for claim in reproduction.claims:
         assert f"## {claim.claim}" in page
         assert f"`{claim.id}`" in page

@@ -13,7 +13,7 @@ from matplotlib.image import imread
 
 from nullpose import Scenario
 from nullpose.paper.figure2 import draw_figure2
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.pages import Reproduction
 from nullpose.report.figures import draw_poses, draw_sweep
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.solve import Objective

@@ -6,8 +6,7 @@ import json
 
 from rich.console import Console
 
-from nullpose.paper.pages import claims_view
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.pages import Reproduction, reproduction_view
 
 KEYS = [
     "id",
@@ -76,7 +75,7 @@ def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
 def test_view(reproduction: Reproduction) -> None:
     """The verdicts and the files are printed."""
     console = Console(width=200, file=io.StringIO())
-    console.print(claims_view(reproduction.claims, reproduction.table, reproduction.files))
+    console.print(reproduction_view(reproduction))
     text = console.file.getvalue()
     assert text.count("holds ") == 7
     assert text.count("fails ") == 1

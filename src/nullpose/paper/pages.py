@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nullpose.paper.claim import Claim
@@ -12,11 +14,9 @@ from nullpose.report.document import document, markdown_table, table
 from nullpose.study import SweepTable
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rich.console import RenderableType
 
-__all__ = ["claims_json", "claims_markdown", "claims_view"]
+__all__ = ["Reproduction", "claims_markdown", "reproduction_view"]
 
 _BEYOND = (
     "A bound is on a value at one power: where the best pose lies, a level found by bisection, and powers "
@@ -29,37 +29,53 @@ scenario of section 4. P_M/P is the jamming-to-transmission power ratio; values 
 the nodes."""
 
 
-def claims_json(
-    claims: Sequence[Claim], sweep: SweepTable, provenance: Mapping[str, object]
-) -> dict[str, object]:
-    """Return the claims as plain data.
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """What a reproduction found and wrote.
 
     Args:
-        claims: what was checked.
-        sweep: the data of Figure 2.
-        provenance: what produced the data.
+        table: the data of Figure 2.
+        claims: the paper's claims with their verdicts.
+        provenance: what produced them: versions and seed.
+        files: what was written.
     """
-    return {
-        "scenario": "Bonilla Licea et al., ICASSP 2024, section 4",
-        "levels_are": "P_M/P, the jamming-to-transmission power ratio",
-        "note": " ".join(_sentences(sweep)),
-        "figure2": {scheme: Certainty.of(sweep.of(scheme)).to_dict() for scheme in sweep.schemes},
-        "claims": [claim.to_dict() for claim in claims],
-        "provenance": dict(provenance),
-    }
+
+    table: SweepTable
+    claims: tuple[Claim, ...]
+    provenance: Mapping[str, object]
+    files: tuple[Path, ...] = ()
+
+    def claims_dict(self) -> dict[str, object]:
+        """Return the claims as plain data."""
+        return {
+            "scenario": "Bonilla Licea et al., ICASSP 2024, section 4",
+            "levels_are": "P_M/P, the jamming-to-transmission power ratio",
+            "note": " ".join(_sentences(self.table)),
+            "figure2": {name: Certainty.of(self.table.of(name)).to_dict() for name in self.table.schemes},
+            "claims": [claim.to_dict() for claim in self.claims],
+            "provenance": dict(self.provenance),
+        }
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the claims and the files as plain data."""
+        return self.claims_dict() | {"files": [str(path) for path in self.files]}
 
 
-def claims_markdown(claims: Sequence[Claim], sweep: SweepTable) -> str:
+def claims_markdown(reproduction: Reproduction) -> str:
     """Return a page with a table of verdicts, and a section on each claim.
 
     Args:
-        claims: what was checked.
-        sweep: the data of Figure 2.
+        reproduction: what was found.
     """
+    claims = reproduction.claims
     verdicts = [
         {"claim": each.claim, "verdict": f"**{each.verdict}**", "where": _where(each)} for each in claims
     ]
-    blocks = [_HEAD, "\n".join(f"- {line}" for line in _sentences(sweep)), markdown_table(verdicts)]
+    blocks = [
+        _HEAD,
+        "\n".join(f"- {line}" for line in _sentences(reproduction.table)),
+        markdown_table(verdicts),
+    ]
     for claim in claims:
         certainty = "nothing" if claim.certainty is None else claim.certainty.words()
         single = {name: value for name, value in claim.evidence.items() if name != "levels"}
@@ -81,19 +97,17 @@ def claims_markdown(claims: Sequence[Claim], sweep: SweepTable) -> str:
     return "\n\n".join(filter(None, blocks)) + "\n"
 
 
-def claims_view(claims: Sequence[Claim], sweep: SweepTable, files: Sequence[Path]) -> RenderableType:
+def reproduction_view(reproduction: Reproduction) -> RenderableType:
     """Return the verdicts as a table, what is proved of Figure 2, and the list of files.
 
     Args:
-        claims: what was checked.
-        sweep: the data of Figure 2.
-        files: what was written.
+        reproduction: what was found and written.
     """
     rows: list[dict[str, str]] = []
-    for claim in claims:
+    for claim in reproduction.claims:
         rows += [{"verdict": claim.verdict, "claim and finding": f"{claim.claim}\n{claim.finding}"}, {}]
-    lines = [f"Figure 2: {line}" for line in _sentences(sweep)]
-    lines += [f"Wrote {path}" for path in files]
+    lines = [f"Figure 2: {line}" for line in _sentences(reproduction.table)]
+    lines += [f"Wrote {path}" for path in reproduction.files]
     return document(table("The paper's claims", rows[:-1], left=["claim and finding"]), "\n".join(lines))
 
 

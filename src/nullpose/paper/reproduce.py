@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 from nullpose.files import check_outputs, write_text
 from nullpose.paper.claim import Claim
 from nullpose.paper.claims import CLAIMS
 from nullpose.paper.figure2 import draw_figure2
-from nullpose.paper.pages import claims_json, claims_markdown
+from nullpose.paper.pages import Reproduction, claims_markdown
 from nullpose.paper.scene import (
     JAMMER_POWER,
     JAMMING_LEVELS,
@@ -23,35 +23,12 @@ from nullpose.report.figures import draw_poses
 from nullpose.report.figures.style import write_figure
 from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme, solve
-from nullpose.study import SweepTable, sweep
+from nullpose.study import sweep
 
-__all__ = ["Reproduction", "reproduce"]
+__all__ = ["reproduce"]
 
 _FILES = ("figure2.png", "figure2.svg", "figure2.csv", "poses.png", "poses.svg", "claims.md", "claims.json")
 _CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
-
-
-@dataclass(frozen=True, slots=True)
-class Reproduction:
-    """What a reproduction found and wrote.
-
-    Args:
-        table: the data of Figure 2.
-        claims: the paper's claims with their verdicts.
-        files: what was written.
-        provenance: versions and seed.
-    """
-
-    table: SweepTable
-    claims: tuple[Claim, ...]
-    files: tuple[Path, ...]
-    provenance: dict[str, object]
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the claims and the files as plain data."""
-        return claims_json(self.claims, self.table, self.provenance) | {
-            "files": [str(path) for path in self.files]
-        }
 
 
 def reproduce(
@@ -102,11 +79,12 @@ def reproduce(
         told(solves + len(claims) * _CLAIM_STEPS)
     poses = [study.at(Scheme.OPTIMUM, level) for level in POSE_LEVELS]
     provenance = dict(solve(scenario, Scheme.ZERO_INTERFERENCE, seed=seed).provenance)
+    found = Reproduction(table, tuple(claims), provenance)
     files = (
         *write_figure(draw_figure2(table), folder, "figure2"),
         table.write_csv(folder / "figure2.csv"),
         *write_figure(draw_poses(scenario, poses), folder, "poses"),
-        write_text(folder / "claims.md", claims_markdown(claims, table)),
-        write_text(folder / "claims.json", json_text(claims_json(claims, table, provenance)) + "\n"),
+        write_text(folder / "claims.md", claims_markdown(found)),
+        write_text(folder / "claims.json", json_text(found.claims_dict()) + "\n"),
     )
-    return Reproduction(table=table, claims=tuple(claims), files=files, provenance=provenance)
+    return replace(found, files=files)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import document, grouped, head, table
 from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
@@ -73,7 +73,7 @@ def _guaranteed_cells(
 ) -> dict[str, str]:
     """Return what a dipole guarantees under the file's errors."""
     of, best = result.guaranteed, comparison.omnidirectional.guaranteed
-    known = [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
+    known: list[float | None] = [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
     known.append(None if best is None else best.robust_pose)
     nominal, robust, bound, most = (math.nan if value is None else quantity.in_unit(value) for value in known)
     numbers = {"pose above": nominal, "robust pose": robust, "at most": bound, "difference": robust - most}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import beside, document, grouped, head, table
 from nullpose.report.geometry import null_angle_rad, tilt_rad
@@ -37,6 +37,11 @@ class Comparison:
     scenario: Scenario
     solutions: tuple[Solution, ...]
     left_out: tuple[tuple[Scheme, str], ...]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended a proof."""
+        return any(solution.interrupted for solution in self.solutions)
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""

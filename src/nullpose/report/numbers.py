@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 
 if TYPE_CHECKING:
     from nullpose.solve import Objective

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from nullpose.objectives import Quantity
 from nullpose.physics import (
     FramePose,
     Pose,
@@ -14,7 +15,6 @@ from nullpose.physics import (
     received_power_w,
     to_db,
 )
-from nullpose.physics.quantity import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.document import beside, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nullpose.objectives import Quantity
 from nullpose.physics import to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.document import document, head, pairs, rows, table
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
