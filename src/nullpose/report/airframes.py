@@ -73,7 +73,9 @@ def _guaranteed_cells(
 ) -> dict[str, str]:
     """Return what a dipole guarantees under the file's errors."""
     of, best = result.guaranteed, comparison.omnidirectional.guaranteed
-    known: list[float | None] = [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
+    known: list[float | None] = (
+        [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
+    )
     known.append(None if best is None else best.robust_pose)
     nominal, robust, bound, most = (math.nan if value is None else quantity.in_unit(value) for value in known)
     numbers = {"pose above": nominal, "robust pose": robust, "at most": bound, "difference": robust - most}

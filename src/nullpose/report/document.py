@@ -88,9 +88,10 @@ def markdown_table(rows: Sequence[Row]) -> str:
     """Return rows as a table in Markdown, its texts as they are.
 
     Args:
-        rows: cells by heading; at least one.
+        rows: cells by heading, the first of which names the row; at least one.
     """
-    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(row.values()) for row in rows)]
+    rule = ["---", *("---:" for _ in list(rows[0])[1:])]
+    lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
