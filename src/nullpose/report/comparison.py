@@ -16,7 +16,7 @@ from nullpose.report.results import azimuth_text, binding_nodes, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme
-from nullpose.solve import Solution, compare
+from nullpose.solve import Result, compare
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -35,7 +35,7 @@ class Comparison:
     """
 
     scenario: Scenario
-    solutions: tuple[Solution, ...]
+    solutions: tuple[Result, ...]
     left_out: tuple[tuple[Scheme, str], ...]
 
     @property
@@ -82,7 +82,7 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     best = max((quantity.in_unit(each.objective.value) for each in solutions), default=math.nan)
     rows: list[Mapping[str, str]] = []
     for cells in (_value_cells, _pose_cells, _link_cells):
-        rows += [*beside({each.scheme.label: cells(each, best) for each in solutions}), {}]
+        rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
     others = ""
     if scenario.array is not None:
         others = "These cases have one dipole. For the file's array: solve, or compare --airframes"
@@ -98,7 +98,7 @@ def comparison_view(comparison: Comparison) -> RenderableType:
 def _lines(comparison: Comparison) -> list[str]:
     """Return what is said of the cases: notes, requirements, what does not apply, how sure each is."""
     solutions = comparison.solutions
-    labelled = [(each.scheme.label, each) for each in solutions]
+    labelled = [(each.label, each) for each in solutions]
     absent = [(scheme.label, f"not applicable: {reason}") for scheme, reason in comparison.left_out]
     starts = sum(each.stats.starts for each in solutions)
     boxes = sum(each.stats.boxes for each in solutions)
@@ -114,7 +114,7 @@ def _lines(comparison: Comparison) -> list[str]:
     ]
 
 
-def _value_cells(solution: Solution, best: float) -> dict[str, str]:
+def _value_cells(solution: Result, best: float) -> dict[str, str]:
     objective, quantity = solution.objective, solution.objective.quantity
     value, smallest = quantity.in_unit(objective.value), f"smallest {quantity.short}"
     return {
@@ -125,7 +125,7 @@ def _value_cells(solution: Solution, best: float) -> dict[str, str]:
     }
 
 
-def _pose_cells(solution: Solution, _: float) -> dict[str, str]:
+def _pose_cells(solution: Result, _: float) -> dict[str, str]:
     """Return place and attitude, and how far the null is off what it is for."""
     scenario, pose = solution.scenario, solution.pose
     points: list[Jammer | Eavesdropper] = [*scenario.eavesdroppers]
@@ -146,7 +146,7 @@ def _pose_cells(solution: Solution, _: float) -> dict[str, str]:
     }
 
 
-def _link_cells(solution: Solution, _: float) -> dict[str, str]:
+def _link_cells(solution: Result, _: float) -> dict[str, str]:
     """Return each node's SINR, margin or rate, and its ratio; a mark where the node binds."""
     quantity, links, binding = solution.objective.quantity, solution.links, binding_nodes(solution)
     cells = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}

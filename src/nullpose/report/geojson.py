@@ -19,7 +19,7 @@ from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.scenario.no_fly import NoFlyZone
-from nullpose.solve import Solution
+from nullpose.solve import Result
 
 __all__ = ["require_origin", "solution_geojson", "write_geojson"]
 
@@ -46,7 +46,7 @@ def require_origin(scenario: Scenario) -> Origin:
     return scenario.origin
 
 
-def solution_geojson(solution: Solution) -> dict[str, object]:
+def solution_geojson(solution: Result) -> dict[str, object]:
     """Return a solution as a GeoJSON FeatureCollection, ready for JSON.
 
     Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid;
@@ -62,7 +62,7 @@ def solution_geojson(solution: Solution) -> dict[str, object]:
     return {"type": "FeatureCollection", "features": _features(solution)}
 
 
-def write_geojson(solution: Solution, path: Path) -> Path:
+def write_geojson(solution: Result, path: Path) -> Path:
     """Return the path of a GeoJSON file after writing a solution to it, one feature a line.
 
     Args:
@@ -77,12 +77,12 @@ def write_geojson(solution: Solution, path: Path) -> Path:
     return write_text(path, f'{{"type": "FeatureCollection", "features": [\n{lines}\n]}}\n')
 
 
-def _features(solution: Solution) -> list[_Feature]:
+def _features(solution: Result) -> list[_Feature]:
     origin = require_origin(solution.scenario)
     return [*_points(solution, origin), *_outlines(solution.scenario, origin)]
 
 
-def _points(solution: Solution, origin: Origin) -> Iterator[_Feature]:
+def _points(solution: Result, origin: Origin) -> Iterator[_Feature]:
     scenario = solution.scenario
     yield _point(origin, solution.pose.position_m, **_pose_properties(solution))
     links = {link.node: link for link in solution.links}
@@ -99,7 +99,7 @@ def _points(solution: Solution, origin: Origin) -> Iterator[_Feature]:
         yield _point(origin, each.position_m, kind="eavesdropper", name=each.name, uncertainty_m=reach_m)
 
 
-def _pose_properties(solution: Solution) -> dict[str, object]:
+def _pose_properties(solution: Result) -> dict[str, object]:
     objective, pose = solution.objective, solution.pose
     frames = pose_frames(solution.scenario, pose)
     angles = {
@@ -109,7 +109,7 @@ def _pose_properties(solution: Solution) -> dict[str, object]:
     }
     return {
         "kind": "pose",
-        "name": solution.scheme.label,
+        "name": solution.label,
         "status": solution.status.value,
         "rigour": solution.rigour.value,
         "objective": objective.name,

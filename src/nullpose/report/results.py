@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from nullpose.objectives import Quantity
 from nullpose.physics import (
     FramePose,
     Pose,
@@ -21,8 +20,8 @@ from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, ti
 from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Array, Scenario
-from nullpose.solve import ArraySolution, Objective, Solution
-from nullpose.solve.robust import GuardedPose, RobustSolution
+from nullpose.solve import Objective, Result
+from nullpose.solve.robust import GuardedPose
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -45,7 +44,7 @@ _UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth w
 _NULLED_DB = -150.0  # what is below it is rounding of the angle
 
 
-def binding_nodes(solution: Solution | ArraySolution) -> frozenset[str]:
+def binding_nodes(solution: Result) -> frozenset[str]:
     """Return the names of the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``.
 
     Args:
@@ -75,10 +74,9 @@ def azimuth_text(pose: Pose) -> str:
     return "-" if tilt_rad(pose) < _UPRIGHT_RAD else degrees_text(azimuth_rad(pose))
 
 
-def _head(
-    result: Solution | ArraySolution | RobustSolution, objective: Objective, label: str, *more: str
-) -> RenderableType:
+def _head(result: Result, label: str, *more: str) -> RenderableType:
     """Return what stands above any result: value, bound, how sure it is, the work behind it, and more."""
+    objective = result.objective
     stats = result.stats
     lines = (
         bound_words(objective),
@@ -91,7 +89,7 @@ def _head(
     return head(result.scenario.name, label, value, lines)
 
 
-def solution_view(solution: Solution) -> RenderableType:
+def solution_view(solution: Result) -> RenderableType:
     """Return one solution as tables: value, pose, links, jammers and eavesdroppers.
 
     Args:
@@ -110,7 +108,7 @@ def solution_view(solution: Solution) -> RenderableType:
         own.insert(0, ("airframe", airframe_words(scenario.airframe, pose.tilt_rad)))
     note = "Jamming does not depend on the pose; it is counted in the noise of the nodes."
     return document(
-        _head(solution, objective, solution.scheme.label, requirement_words(solution), solution.note),
+        _head(solution, solution.label, requirement_words(solution), solution.note),
         pairs("", _pose_rows(scenario, pose, own)),
         _links_table(solution, {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}),
         None if rate else _jammers_table(scenario, pose),
@@ -119,7 +117,7 @@ def solution_view(solution: Solution) -> RenderableType:
     )
 
 
-def array_view(solution: ArraySolution) -> RenderableType:
+def array_view(solution: Result) -> RenderableType:
     """Return where an array hovers, its attitude, what nodes get, and the phases of a shared beam.
 
     Args:
@@ -137,29 +135,21 @@ def array_view(solution: ArraySolution) -> RenderableType:
             for i, phase_rad in enumerate(phases_rad - phases_rad[0], start=1)
         ]
     return document(
-        _head(solution, solution.objective, begun(solution.label), requirement_words(solution), agreeing),
+        _head(solution, begun(solution.label), requirement_words(solution), agreeing),
         pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(array))])),
         _links_table(solution, {}),
         table("Phase shifters", phases),
     )
 
 
-def robust_view(solution: RobustSolution) -> RenderableType:
+def robust_view(solution: Result) -> RenderableType:
     """Return a robust solution as tables: the guarantee, its bound, and both poses side by side.
 
     Args:
         solution: what was found.
     """
     robust, nominal = solution.robust, solution.nominal
-    quantity = Quantity.of(solution.scenario)
-    objective = Objective(
-        name=quantity.name,
-        value=robust.guaranteed,
-        value_db=float(to_db(robust.guaranteed)),
-        upper_bound=solution.upper_bound,
-        relative_gap=solution.relative_gap,
-        rigour=solution.rigour,
-    )
+    objective, quantity = solution.objective, solution.objective.quantity
     cells = {"robust pose": robust, "best pose as stated": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
     more = f"The robust pose guarantees {gain:.4g} {quantity.unit} more than the best as stated."
@@ -168,7 +158,7 @@ def robust_view(solution: RobustSolution) -> RenderableType:
     unbounded = "no bound on what another pose could guarantee" if solution.upper_bound is None else ""
     errors = f"{count_of(solution.cases, 'error case')}; errors: {error_words(solution.scenario)}"
     return document(
-        _head(solution, objective, "Robust, guaranteed", unbounded, errors),
+        _head(solution, "Robust, guaranteed", unbounded, errors),
         table(
             "",
             beside({name: _guarded_cells(objective, one) for name, one in cells.items()}),
@@ -229,9 +219,7 @@ def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str]]:
     ]
 
 
-def _links_table(
-    solution: Solution | ArraySolution, more: Mapping[str, Sequence[str]]
-) -> RenderableType | None:
+def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> RenderableType | None:
     """Return a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
     scenario, quantity, links = solution.scenario, solution.objective.quantity, solution.links
     binding = binding_nodes(solution)

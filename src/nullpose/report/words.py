@@ -7,7 +7,7 @@ import math
 from nullpose.physics import Geodetic
 from nullpose.report.numbers import count_of
 from nullpose.scenario import Airframe, Array, Eavesdropper, Jammer, Origin, Scenario
-from nullpose.solve import ArraySolution, Solution
+from nullpose.solve import Result
 
 __all__ = ["airframe_words", "array_words", "error_words", "place_words", "reach_words", "requirement_words"]
 
@@ -77,7 +77,7 @@ def error_words(scenario: Scenario) -> str:
     return ", ".join(words for words, size in errors.items() if size)
 
 
-def requirement_words(solution: Solution | ArraySolution) -> str:
+def requirement_words(solution: Result) -> str:
     """Return whether the requirements are met and by how much, or which are missed; empty if there are none.
 
     That no pose meets them is said where the bound proves it.
