@@ -48,7 +48,7 @@ def test_visible_bounds_are_drawn(paper: Scenario) -> None:
     assert all(row.relative_gap > 0.1 for row in far.rows)
     figure = draw_sweep(far)
     _, marks = figure.axes[0].lines
-    assert list(marks.get_ydata()) == [row.upper_bound_db for row in far.rows]
+    assert list(marks.get_ydata()) == pytest.approx([row.upper_bound_db for row in far.rows])
     assert figure.axes[0].get_ylim()[1] > max(row.upper_bound_db for row in far.rows)
     assert "Bands reach" in figure.get_supxlabel()
     (legend,) = figure.legends
