@@ -6,14 +6,13 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from nullpose.scenario.choice import Choice
+from nullpose.scenario.rules import Count
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Count, Wavelengths
+from nullpose.scenario.units import Wavelengths
 
 __all__ = ["Array"]
 
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
-_Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
 
 
 class Array(Section):
@@ -28,7 +27,7 @@ class Array(Section):
     header: ClassVar[str] = "a table headed [array]"
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
-    layout: _Layout = Field(
+    layout: Literal["linear", "circular"] = Field(
         description="How they stand: linear (on a level line) or circular (on a level circle).",
         examples=["linear"],
     )
