@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from nullpose.certificate.certificate import OFF_BAND, Certificate, Leaves, Tree
 from nullpose.errors import CertificateError, ScenarioError
 from nullpose.files import parse_json, read_bytes, replacing
+from nullpose.objectives import USUAL
 from nullpose.scenario import Scenario
 from nullpose.scenario.wording import printable
 
@@ -152,7 +153,7 @@ def _version(certificate: Certificate) -> int:
     """Return the version of the format that a certificate needs."""
     scenario, leaves = certificate.scenario, [tree.leaves for tree in certificate.trees]
     needs_second = (
-        scenario.objective != "min-sinr"
+        scenario.objective != USUAL
         or scenario.has_margins
         or scenario.airframe is not None
         or scenario.airspace.geofence_m is not None
