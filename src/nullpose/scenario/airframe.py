@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from nullpose.scenario.rules import Choice
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import MountDegrees, TiltDegrees
 from nullpose.scenario.ways import Ways, exactly_one
@@ -15,6 +16,9 @@ __all__ = ["Airframe"]
 
 PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexarotor": 30.0}
 """Largest tilt of each airframe that has a name [deg]."""
+
+
+_Preset = Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))]
 
 
 class Airframe(Section):
@@ -35,7 +39,7 @@ class Airframe(Section):
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
-    preset: Literal["omnidirectional", "level", "fixed-tilt-hexarotor"] | None = Field(
+    preset: _Preset | None = Field(
         default=None,
         description="An airframe by name: omnidirectional (tilts by up to 180 degrees), level (0 degrees) or "
         "fixed-tilt-hexarotor (30 degrees). Either this or tilt_max_deg.",

@@ -6,13 +6,16 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from nullpose.scenario.rules import Count
+from nullpose.scenario.rules import Choice, Count
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Wavelengths
 
 __all__ = ["Array"]
 
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
+
+
+_Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
 
 
 class Array(Section):
@@ -27,7 +30,7 @@ class Array(Section):
     header: ClassVar[str] = "a table headed [array]"
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
-    layout: Literal["linear", "circular"] = Field(
+    layout: _Layout = Field(
         description="How they stand: linear (on a level line) or circular (on a level circle).",
         examples=["linear"],
     )

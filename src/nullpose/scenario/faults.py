@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.wording import described, nearest, printable
+from nullpose.scenario.wording import described, printable
 
 __all__ = ["Place", "collected", "path_of", "rejection", "reworded", "scenario_error"]
 
@@ -29,9 +29,7 @@ def rejection(message: str) -> PydanticCustomError:
 
 def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationError:
     """Returns pydantic's exception that carries all the faults together."""
-    details = [
-        InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults
-    ]
+    details = [InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults]
     return ValidationError.from_exception_data(title, details)
 
 
@@ -53,11 +51,6 @@ def reworded(
             case "missing":
                 expected = fields[str(place[-1])].description or ""
                 message = f"missing; it must be given: {expected.rstrip('.')}"
-            case "literal_error" | "enum":
-                allowed = entry["ctx"]["expected"].replace("'", '"')
-                guess = nearest(given, re.findall('"(.*?)"', allowed)) if isinstance(given, str) else ""
-                hint = f'; did you mean "{guess}"?' if guess else ""
-                message = f"got {described(given)}, must be {allowed}{hint}"
             case kind if kind == _KIND:
                 message = entry["msg"]
             case _:

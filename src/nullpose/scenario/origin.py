@@ -26,6 +26,7 @@ __all__ = [
     "Latitude",
     "Longitude",
     "Origin",
+    "is_placed",
     "located",
     "origin_faults",
 ]
@@ -90,21 +91,25 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
         data: the raw scenario.
     """
     members = {key: value for key in POINT_LISTS if isinstance(value := data.get(key), list | tuple)}
-    found = {
-        (key, index): place
-        for key, points in members.items()
-        for index, point in enumerate(points)
-        if isinstance(point, Mapping) and point.get("position_m") is None and (place := _place(point))
-    }
-    origin = _place(data.get("origin"))
-    positions_m = np.zeros((len(found), 3))
-    if origin and found:
-        positions_m = enu_from_geodetic([place.geodetic for place in found.values()], origin.geodetic)
-        positions_m[np.linalg.norm(positions_m, axis=1) > FARTHEST_M] = 0.0
     filled = {key: list(points) for key, points in members.items()}
-    for (key, index), position_m in zip(found, positions_m.tolist(), strict=True):
-        filled[key][index] = {**filled[key][index], "position_m": position_m}
+    origin = _place(data.get("origin"))
+    missing = [
+        (points, index, _place(point) if origin else None)
+        for points in filled.values()
+        for index, point in enumerate(points)
+        if isinstance(point, Mapping) and point.get("position_m") is None and _is_geodetic(point)
+    ]
+    known = [place.geodetic for _, _, place in missing if place]
+    enu_m = iter(enu_from_geodetic(known, origin.geodetic) if origin and known else ())
+    for points, index, place in missing:
+        position_m = next(enu_m) if place else np.zeros(3)
+        is_near = np.linalg.norm(position_m) <= FARTHEST_M
+        points[index] = {**points[index], "position_m": position_m.tolist() if is_near else [0.0] * 3}
     return {**data, **filled}
+
+
+def _is_geodetic(point: Mapping[str, object]) -> bool:
+    return any(point.get(key) is not None for key in GEODETIC_KEYS)
 
 
 def _place(stated: object) -> Origin | None:
@@ -157,21 +162,22 @@ def _mixed(
 
     A point that has both, as in files that are written from scenarios, goes with either.
     """
-    ways = {}
-    for key, index in points:
-        raw = stated[key][index]
+    ways: dict[str, Place] = {}
+    for place in points:
+        raw = stated[str(place[0])][place[1]]
         in_metres = not isinstance(raw, Mapping) or raw.get("position_m") is not None
-        if in_metres != ((key, index) in earthly):
-            ways[key, index] = "position_m" if in_metres else _WORDS
-    first = next(iter(ways), ())
-    other = next((place for place, way in ways.items() if way != ways[first]), None)
-    if other is not None:
-        yield (
-            other,
-            f"stated by {ways[other]}, but {path_of(first)} by {ways[first]}; "
-            "state all points of a file in one of the two ways",
-        )
+        if in_metres != (place in earthly):
+            ways.setdefault("position_m" if in_metres else _WORDS, place)
+    if len(ways) == 2:
+        (first_way, first), (way, place) = ways.items()
+        message = f"stated by {way}, but {path_of(first)} by {first_way}; state all in one way"
+        yield place, message
 
 
-def _geodetic(point: GroundPoint) -> tuple[float | None, float | None, float | None]:
+def is_placed(point: GroundPoint) -> bool:
+    """Returns whether a point of a scenario that may be at fault has a position, and no half of another."""
+    return point.position_m is not None and _geodetic(point).count(None) in (0, 3)
+
+
+def _geodetic(point: GroundPoint) -> tuple[Any, Any, Any]:
     return (point.lat_deg, point.lon_deg, point.alt_m)

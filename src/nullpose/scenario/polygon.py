@@ -148,8 +148,8 @@ class _Outline(ListOf):
             first, second = met
             raise rejection(
                 f"the edge from vertex [{first}] to [{(first + 1) % count}] meets the one from [{second}] to "
-                f"[{(second + 1) % count}], so the border crosses or touches itself; list every vertex once, in "
-                "order around the area (the last is joined to the first)"
+                f"[{(second + 1) % count}], so the border crosses or touches itself; list every vertex "
+                "once, in order around the area (the last is joined to the first)"
             )
         return value
 

@@ -10,9 +10,9 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from nullpose.scenario.faults import rejection
-from nullpose.scenario.wording import described, plain
+from nullpose.scenario.wording import described, nearest, plain
 
-__all__ = ["Ascending", "Count", "ListOf", "Members", "Quantity", "Rule"]
+__all__ = ["Ascending", "Choice", "Count", "ListOf", "Members", "Quantity", "Rule"]
 
 
 class Rule:
@@ -70,7 +70,7 @@ class Quantity(Rule):
         """Returns the number, or raises the fault that says what is wrong with it."""
         value = plain(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            remedy = "; a number stands without quotes" if isinstance(value, str) else ""
+            remedy = "; write it without quotes" if isinstance(value, str) else ""
             raise rejection(f"got {described(value)}, must be a number: {self.allowed}{remedy}")
         if not self.low <= value <= self.high:  # also refuses NaN
             raise rejection(f"got {described(value)}, must be {self.allowed} ({self.hint})")
@@ -90,6 +90,32 @@ class Count(Quantity):
         if not number.is_integer():
             raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
         return int(number)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice(Rule):
+    """One of some words, as the metadata of an annotated text.
+
+    Args:
+        noun: what is chosen, as in ``an objective``.
+        words: the words to choose from.
+    """
+
+    noun: str
+    words: tuple[str, ...]
+
+    def read(self, value: object) -> str:
+        """Returns the word, or raises the fault that names the words and the one nearest."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        guess = nearest(value, self.words) if isinstance(value, str) else ""
+        hint = f'; did you mean "{guess}"?' if guess else ""
+        allowed = " or ".join(f'"{word}"' for word in self.words)
+        raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{hint}")
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Returns the JSON Schema: a text with its allowed values."""
+        return {"type": "string", "enum": list(self.words)}
 
 
 @dataclass(frozen=True, slots=True)

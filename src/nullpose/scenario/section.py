@@ -111,7 +111,9 @@ class Section(BaseModel):
             judged = handler(completed)
         except ValidationError as error:
             otherwise = {key for ways in cls.ways if ways.begun(given) for key in chain(*ways.groups)}
-            faults += reworded(error, cls.model_fields, meant | otherwise if faults else ())
+            faults += reworded(
+                error, cls.model_fields, meant | otherwise if faults or error.error_count() > 1 else ()
+            )
             if cls.judged_in_part:
                 judged = cls._sound_part(completed)
         if judged is not None:
@@ -126,8 +128,7 @@ class Section(BaseModel):
 
     @classmethod
     def _key_faults(cls, strange: Sequence[str], given: Collection[str]) -> Iterator[tuple[Place, str]]:
-        """Yields what is wrong with the keys of a table, whatever their values: those it does not know, or else
-        those that do not go together."""
+        """Yields the keys that the table does not know, or else those that do not go together."""
         for key in strange[:_MOST_UNKNOWN]:
             # A key that is still to be given is the likelier meaning of a misspelt one.
             yield (key,), unknown("key", key, cls.model_fields, cls._absent(given))
@@ -137,14 +138,14 @@ class Section(BaseModel):
             yield from (((), message) for ways in cls.ways for message in ways.faults(given))
 
     @classmethod
-    def _sound_part(cls, data: object) -> Self | None:
+    def _sound_part(cls, data: object) -> Any:
         """Returns a table without the values that are at fault, which are None in it."""
-        if isinstance(data, cls) or not isinstance(data, Mapping):
+        if not isinstance(data, Mapping):
             return data if isinstance(data, cls) else None
         sound: dict[str, Any] = {}
         for key, field in cls.model_fields.items():
             value, inner = data.get(key), inner_section(field)
-            sound[key] = None if key in data else field.get_default()
+            sound[key] = None if key in data or field.is_required() else field.get_default()
             if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
                 sound[key] = tuple(inner._sound_part(member) for member in value)
             elif key in data:

@@ -47,6 +47,11 @@ class Ways:
                     others = [way for way in ways if way != " and ".join(group)]
                     yield f"{words} given without {' and '.join(missing)}; add it, or {', or '.join(others)}"
 
+    def others(self, key: str) -> Iterator[str]:
+        """Yields the keys that a key takes the place of: those of the other one of two ways."""
+        if len(self.groups) == 2 and self.begun([key]):
+            yield from (other for group in self.groups if key not in group for other in group)
+
     def schema(self) -> dict[str, Any]:
         """Returns the same as a rule of JSON Schema."""
         groups = [{"required": list(group)} for group in self.groups]
