@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from itertools import chain
@@ -15,7 +15,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
-from nullpose.scenario.wording import listed, plain, unknown
+from nullpose.scenario.wording import listed, nearest, plain
 
 __all__ = ["Override", "apply_overrides", "parse_override"]
 
@@ -130,7 +130,8 @@ def _assign(kind: type[Section], table: dict[str, Any], steps: Place, value: obj
     """Sets the value at the place in a raw table that the steps lead to; drops what it takes the place of."""
     key, rest = steps[0], steps[1:]
     if not isinstance(key, str) or key not in kind.model_fields:
-        raise ScenarioError([Fault(path, unknown("key", str(key), kind.model_fields))])
+        message = f"there is no such key; the keys here are {listed(kind.model_fields)}"
+        raise _leads_nowhere(path, key, list(kind.model_fields), message)
     inner = inner_section(kind.model_fields[key])
     # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
     begun = inner is not None and inner.letter is None and rest
@@ -162,13 +163,21 @@ def _assign_member(
     index = names.index(str(step)) if step in names else step
     if not isinstance(index, int) or index >= len(members):
         have = listed([f"[{index}] {name}".strip() for index, name in enumerate(names)])
-        raise ScenarioError([Fault(path, f"{key} has no member {path_of((step,))}, it has {have}")])
+        message = f"{key} has no member {path_of((step,))}, it has {have}"
+        raise _leads_nowhere(path, step, names, message)
     if not rest:
         members[index] = value
     elif inner is not None and isinstance(members[index], dict):
         _assign(inner, members[index], rest, value, path)
     else:
         _assign_member(None, f"{key}[{index}]", members[index], rest, value, path)
+
+
+def _leads_nowhere(path: str, step: str | int, known: Sequence[str], message: str) -> ScenarioError:
+    """Returns the fault that a path ends at a step, with the path that may be meant."""
+    guess = path_of((nearest(str(step), known) or known[0],))
+    meant = f"; did you mean {path.replace(str(step), guess, 1)}?" if isinstance(step, str) and guess else ""
+    return ScenarioError([Fault(path, f"{message}{meant}")])
 
 
 def _unlocate(data: Mapping[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,9 @@ from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described, nearest, plain
 
 __all__ = ["Ascending", "Choice", "Count", "ListOf", "Members", "Quantity", "Rule"]
+
+
+_NUMBER = re.compile(r"[-+.\deE]*\d[-+.\deE]*")
 
 
 class Rule:
@@ -70,7 +74,8 @@ class Quantity(Rule):
         """Returns the number, or raises the fault that says what is wrong with it."""
         value = plain(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            remedy = "; write it without quotes" if isinstance(value, str) else ""
+            is_quoted = isinstance(value, str) and _NUMBER.fullmatch(value)
+            remedy = "; write it without quotes" if is_quoted else ""
             raise rejection(f"got {described(value)}, must be a number: {self.allowed}{remedy}")
         if not self.low <= value <= self.high:  # also refuses NaN
             raise rejection(f"got {described(value)}, must be {self.allowed} ({self.hint})")

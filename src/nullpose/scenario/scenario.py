@@ -57,7 +57,6 @@ class Scenario(Section):
     header: ClassVar[str] = "a table with the keys of a scenario file"
     unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers"})
     ways: ClassVar[tuple[Ways, ...]] = (Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),)
-    judged_in_part: ClassVar[bool] = True
 
     name: Title = Field(
         default="",

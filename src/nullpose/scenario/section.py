@@ -37,8 +37,6 @@ class Section(BaseModel):
     """Keys that belong together."""
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
-    judged_in_part: ClassVar[bool] = False
-    """Whether what is sound in a faulty table is judged together all the same."""
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -81,7 +79,7 @@ class Section(BaseModel):
         return data
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of a table, each of which is sound by itself.
+        """Returns the faults between several values of a table; those with a fault of their own are None.
 
         Args:
             stated: the raw table, as it was before anything was filled in.
@@ -106,7 +104,6 @@ class Section(BaseModel):
         meant = {nearest(key, cls._absent(given)) for key in strange[:_MOST_UNKNOWN]}
         faults = [*cls._key_faults(strange, given)]
         completed = cls.completed(stated)
-        judged: Self | None = None
         try:
             judged = handler(completed)
         except ValidationError as error:
@@ -114,11 +111,9 @@ class Section(BaseModel):
             faults += reworded(
                 error, cls.model_fields, meant | otherwise if faults or error.error_count() > 1 else ()
             )
-            if cls.judged_in_part:
-                judged = cls._sound_part(completed)
-        if judged is not None:
-            faults += _news(judged.faults(stated), [place for place, _ in faults], meant)
-        if faults or judged is None:
+            judged = cls._sound_part(completed)
+        faults += _news(judged.faults(stated), [place for place, _ in faults], meant)
+        if faults:
             raise collected(cls.__name__, faults)
         return judged
 

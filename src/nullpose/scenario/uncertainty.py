@@ -84,7 +84,8 @@ class Uncertain(Section):
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the fault that an attitude is given of what is no ellipsoid."""
-        if self.uncertainty_attitude_deg is not None and not isinstance(self.uncertainty_m, tuple):
+        is_sound = self.uncertainty_m is not None or stated.get("uncertainty_m") is None
+        if is_sound and self.uncertainty_attitude_deg and not isinstance(self.uncertainty_m, tuple):
             message = (
                 "given without three semi-axes to rotate; write uncertainty_m = [a, b, c], or remove "
                 "uncertainty_attitude_deg"

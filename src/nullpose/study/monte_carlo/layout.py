@@ -142,6 +142,8 @@ class Points(Section):
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between the layout and the keys that place its points."""
+        if self.layout is None:
+            return
         needed = _NEEDED[self.layout]
         in_a_region = self.layout in _NEEDED_REGION
         may = {*needed} | ({*_REGIONS[0], *_REGIONS[1]} if in_a_region else set())

@@ -51,7 +51,6 @@ class StudySpec(Section):
     """
 
     header: ClassVar[str] = "a table with the keys of a study's spec"
-    judged_in_part: ClassVar[bool] = True
 
     name: Title = Field(default="", description="Title of the study.", examples=["Do we need to tilt?"])
     seed: _Seed = Field(
