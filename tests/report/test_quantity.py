@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from nullpose import Link, Scenario, load
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.quantity import bound_text, bound_words, value_words
 from nullpose.solve import Objective
 

@@ -20,7 +20,7 @@ from nullpose.certificate.pose_value import (
     smallest_ratio,
 )
 from nullpose.family import AxisField, Family
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.scenario import Airframe, Scenario
 
 __all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]

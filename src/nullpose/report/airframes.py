@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import document, head, table
 from nullpose.report.numbers import begun, fixed, share_text, short

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.comparison import Comparison
 from nullpose.report.document import beside, document, head, table

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 
 __all__ = [
     "MINUS",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.document import beside, document, head, table
 from nullpose.report.numbers import count_words, degrees_text, fixed
 from nullpose.report.tables import azimuth_text, work_words

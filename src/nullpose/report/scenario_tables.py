@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nullpose.objectives import Quantity
 from nullpose.physics import to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.report.airframe import airframe_words, array_words, reach_words
 from nullpose.report.document import document, head, pairs, table
 from nullpose.report.frames import place_words

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from nullpose.certificate import claimed_axes
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
+from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
 from nullpose.scenario import Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
@@ -84,7 +85,7 @@ def solve(
         time_limit_s=time_limit_s,
         node_limit=node_limit,
         threads=threads,
-        of_rate=scenario.objective == "secrecy-rate",
+        of_rate=Quantity.of(scenario).is_rate,
     )
     effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
     began = time.perf_counter()

@@ -6,15 +6,13 @@ import math
 from dataclasses import dataclass
 
 from nullpose.errors import UsageError
+from nullpose.objectives import LEAST_RATE_BPS_HZ
 from nullpose.scenario import Scenario
 
-__all__ = ["LEAST_RATE_BPS_HZ", "NODE_LIMIT", "TIME_LIMIT_S", "Limits", "default_gap", "default_gap_of"]
+__all__ = ["NODE_LIMIT", "TIME_LIMIT_S", "Limits", "default_gap", "default_gap_of"]
 
 TIME_LIMIT_S = 60.0
 NODE_LIMIT = 10**9
-
-LEAST_RATE_BPS_HZ = 1e-3
-"""The relative gap of a smaller rate is that of this one, bits/s/Hz."""
 
 
 def default_gap(n_nodes: int) -> float:

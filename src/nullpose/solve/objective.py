@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Link, to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.rigour import Rigour, bound_above
 
 __all__ = ["Objective", "objective_of"]
@@ -20,8 +19,7 @@ class Objective:
     """The number that was maximised, evaluated at the reported pose, and what is proved about it.
 
     Args:
-        name: ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2); ``"min_margin"``, the smallest
-            SINR over its node's weight or requirement; or ``"min_secrecy_rate"``.
+        name: that of its quantity, as in ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
         value: that number: a power ratio, or bits/s/Hz for a rate.
         value_db: the same in dB; not a number for a rate.
         upper_bound: no pose exceeds this; None if nothing is proved.
@@ -70,7 +68,7 @@ def objective_of(scenario: Scenario, links: tuple[Link, ...], ratio_bound: float
     if ratio_bound is not None:
         ratio = 2.0**value if quantity.is_rate else value
         bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
-        gap = (bound - value) / (max(value, LEAST_RATE_BPS_HZ) if quantity.is_rate else value)
+        gap = quantity.gap(value, bound)
     return Objective(
         name=quantity.name,
         value=value,

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 from nullpose.errors import SolveError
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve import (
     NODE_LIMIT,

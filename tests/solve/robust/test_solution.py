@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.solve.robust import RobustSolution
 
 

@@ -7,8 +7,8 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
 from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.scene import (
     ALONE,

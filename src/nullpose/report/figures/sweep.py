@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, GREY, Curve, house_style

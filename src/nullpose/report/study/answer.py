@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.numbers import begun, count_of, listed, number, percent, span, with_unit
 from nullpose.report.study.cases import ReportCase, whole_of
 from nullpose.report.study.statistics import CONFIDENCE

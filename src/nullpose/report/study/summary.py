@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.study.cases import ReportCase, nominal_of, reference_of, report_cases, whole_of
 from nullpose.report.study.points import SweptPoints

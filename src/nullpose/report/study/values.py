@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.objectives import Quantity
 from nullpose.physics import to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.study.monte_carlo import StudyTable
 

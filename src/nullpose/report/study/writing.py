@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
 from nullpose.report.study.answer import answer_of
 from nullpose.report.study.html import report_page

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve.limits import LEAST_RATE_BPS_HZ
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.guarantee import Guarantee
@@ -127,10 +126,7 @@ class RobustSolution:
         """
         if self.upper_bound is None:
             return None
-        guaranteed = self.robust.guaranteed
-        if Quantity.of(self.scenario).is_rate:
-            return (self.upper_bound - guaranteed) / max(guaranteed, LEAST_RATE_BPS_HZ)
-        return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
+        return Quantity.of(self.scenario).gap(self.robust.guaranteed, self.upper_bound)
 
     @property
     def rigour(self) -> Rigour:

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable
 
 from nullpose.family import AxisField
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
 from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits

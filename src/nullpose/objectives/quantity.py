@@ -5,12 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
-from nullpose.physics.decibel import to_db
-from nullpose.physics.evaluate import Link
-from nullpose.scenario import Scenario
+__all__ = ["LEAST_RATE_BPS_HZ", "Quantity", "Scenario"]
 
-__all__ = ["Quantity"]
+Scenario: TypeAlias = Any
+"""A :class:`nullpose.scenario.Scenario`, whose module imports this room."""
+
+Link: TypeAlias = Any
+"""A :class:`nullpose.physics.Link`, likewise."""
+
+LEAST_RATE_BPS_HZ = 1e-3
+"""The relative gap of a smaller rate is that of this one, bits/s/Hz."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,12 +24,13 @@ class Quantity:
     """What a node has that is made as large as it can be.
 
     Args:
-        name: as in results: ``"min_sinr"``, ``"min_margin"`` or ``"min_secrecy_rate"``.
-        noun: its name: SINR, margin or secrecy rate.
+        name: as in results: ``min_`` and the noun, as in ``"min_sinr"``.
+        noun: its name, as in SINR, margin or secrecy rate.
         one: the same with its article.
         short: the same for narrow columns.
         unit: dB, or bits/s/Hz.
         ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
+        field: the field of a link that holds it.
     """
 
     name: str
@@ -32,6 +39,7 @@ class Quantity:
     short: str
     unit: str
     ratio: str
+    field: str
 
     @classmethod
     def named(cls, name: str) -> Quantity:
@@ -40,7 +48,9 @@ class Quantity:
         Args:
             name: as in results.
         """
-        return _QUANTITIES[name]
+        from nullpose.objectives import RECORDS
+
+        return next(one for record in RECORDS.values() for one in record.quantities if one.name == name)
 
     @classmethod
     def of(cls, scenario: Scenario) -> Quantity:
@@ -49,9 +59,8 @@ class Quantity:
         Args:
             scenario: any.
         """
-        if scenario.objective == "secrecy-rate":
-            return cls.named("min_secrecy_rate")
-        return cls.named("min_margin" if scenario.has_margins else "min_sinr")
+        quantity: Quantity = scenario.objective_record.quantity(scenario)
+        return quantity
 
     @property
     def is_rate(self) -> bool:
@@ -69,7 +78,9 @@ class Quantity:
         Args:
             value: a power ratio, or bits/s/Hz.
         """
-        return value if self.is_rate else float(to_db(value))
+        if self.is_rate:
+            return value
+        return 10.0 * math.log10(value) if value > 0.0 else -math.inf
 
     def at(self, link: Link) -> float:
         """Return a node's number: a power ratio, or bits/s/Hz.
@@ -77,9 +88,8 @@ class Quantity:
         Args:
             link: the node's link.
         """
-        if self.is_rate:
-            return link.secrecy_rate_bps_hz or 0.0
-        return link.sinr if link.margin is None else link.margin
+        value = getattr(link, self.field)
+        return float(link.sinr if value is None else value)  # a link of eq. 3.5 has its ratio alone
 
     def least(self, links: Iterable[Link]) -> float:
         """Return the smallest number over the nodes: the objective.
@@ -93,16 +103,19 @@ class Quantity:
         """Return the number of a smallest ratio: itself, or ``log2`` of it for a rate, at least 0.
 
         Args:
-            ratio: the smallest ratio of a family.
+            ratio: the smallest ratio of a problem.
         """
         return math.log2(max(1.0, ratio)) if self.is_rate else ratio
 
+    def gap(self, value: float, bound: float) -> float:
+        """Return ``(bound - value) / value``, a rate below ``LEAST_RATE_BPS_HZ`` counting as so much.
 
-_QUANTITIES = {
-    quantity.name: quantity
-    for quantity in (
-        Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR"),
-        Quantity("min_margin", "margin", "a margin", "margin", "dB", "SINR"),
-        Quantity("min_secrecy_rate", "secrecy rate", "a secrecy rate", "rate", "bits/s/Hz", "SNR"),
-    )
-}
+        Infinite for a ratio of zero.
+
+        Args:
+            value: a power ratio, or bits/s/Hz.
+            bound: no pose exceeds it.
+        """
+        if self.is_rate:
+            return (bound - value) / max(value, LEAST_RATE_BPS_HZ)
+        return (bound - value) / value if value > 0.0 else math.inf
