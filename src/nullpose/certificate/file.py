@@ -154,20 +154,21 @@ def parse_certificate(text: str) -> Certificate:
         ScenarioError: the scenario inside is faulty.
     """
     try:
-        data = parse_json(text, parse_constant=_no_number, parse_float=_finite)
+        data = parse_json(text, parse_constant=_finite, parse_float=_finite)
     except ScenarioError as error:
         raise CertificateError(f"is no certificate: {error}") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
     if type(data.get("version")) is not int or data["version"] != VERSION:
         raise CertificateError(f"version: must be {VERSION}; solve again with --certificate to have one")
-    data = _read(data, "", _LAYOUT)
-    if scenario_digest(data["scenario"]) != data["scenario_sha256"]:
+    scenario = _table(data.get("scenario", _MISSING), "scenario")
+    if scenario_digest(scenario) != data.get("scenario_sha256"):
         raise CertificateError(
             "scenario_sha256: the scenario is not the one that the certificate was made for"
         )
+    data = _read(data, "", _LAYOUT)
     return Certificate(
-        scenario=Scenario.from_dict(data["scenario"], "scenario"),
+        scenario=Scenario.from_dict(scenario, "scenario"),
         trees=tuple(
             Tree(axis=tree["axis"], root_m=tree["root_m"], leaves=Leaves(**tree["leaves"]))
             for tree in data["trees"]
@@ -177,14 +178,10 @@ def parse_certificate(text: str) -> Certificate:
     )
 
 
-def _no_number(name: str) -> None:
-    raise ValueError(f"{name} is no number")
-
-
 def _finite(digits: str) -> float:
     number = float(digits)
     if not math.isfinite(number):
-        raise ValueError(f"{digits} is too large")
+        raise ValueError(f"{digits} is no number, or too large")
     return number
 
 
@@ -192,12 +189,20 @@ Reader: TypeAlias = Callable[[Any, str], Any]
 """Returns what a plain value stands for, given its path for the message if it is wrong."""
 
 
+_MISSING = object()
+
+
+def _refusal(value: Any, path: str, words: str) -> CertificateError:
+    what = "is missing" if value is _MISSING else "is wrong"
+    return CertificateError(f"{path}: {what}; must be {words}")
+
+
 def _of(*kinds: type, words: str) -> Reader:
     """Return the reader of values that are as they should be if they are of some kind."""
 
     def read(value: Any, path: str) -> Any:
         if not isinstance(value, kinds):
-            raise CertificateError(f"{path}: is wrong; must be {words}")
+            raise _refusal(value, path, words)
         return value
 
     return read
@@ -217,8 +222,8 @@ def _numbers(value: Any, path: str, shape: tuple[int, ...] = (), kind: type = fl
             array = np.array(flat, dtype=np.int64 if kind is int else float)
             if np.all(np.isfinite(array)):
                 return array.reshape(shape) if shape else array.item()
-    sizes = "".join(f"a list of {'any number of' if n < 0 else n}, each " for n in shape)
-    raise CertificateError(f"{path}: must be {sizes}a {'whole' if kind is int else 'finite'} number")
+    sizes = "".join("a list, each " if n < 0 else f"a list of {n}, each " for n in shape)
+    raise _refusal(value, path, f"{sizes}a {'whole' if kind is int else 'finite'} number")
 
 
 def _mixes(value: Any, path: str) -> tuple[dict[int, float], ...]:
@@ -229,7 +234,7 @@ def _mix(value: Any, path: str) -> dict[int, float]:
     weights = _numbers(value, path, (-1, 2))[:, 1].tolist()
     ratios = [ratio for ratio, _ in value]
     if any(type(ratio) is not int or ratio < 0 for ratio in ratios) or len(set(ratios)) < len(ratios):
-        raise CertificateError(f"{path}: must be a list of [ratio, weight] with different ratios")
+        raise _refusal(value, path, "a list of [ratio, weight] with different ratios")
     return dict(zip(ratios, weights, strict=True))
 
 
@@ -256,14 +261,11 @@ def _read(value: Any, path: str, layout: Mapping[str, Reader]) -> dict[str, Any]
             raise CertificateError(
                 f"{place}{printable(key)}: unknown key; the keys here are {', '.join(layout)}"
             )
-    for key in layout:
-        if key not in value:
-            raise CertificateError(f"{place}{key}: is missing")
-    return {key: read(value[key], place + key) for key, read in layout.items()}
+    return {key: read(value.get(key, _MISSING), place + key) for key, read in layout.items()}
 
 
 _text, _any = _of(str, words="a text"), _of(object, words="anything")
-_POSE = {
+_POSE: dict[str, Reader] = {
     "position_m": partial(_numbers, shape=(3,)),
     "roll_rad": _numbers,
     "pitch_rad": _numbers,

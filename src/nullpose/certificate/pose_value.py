@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import factorial, isqrt
+from math import isqrt
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -71,7 +71,7 @@ def band_excess(band: tuple[float, float], axis: Exact) -> Fraction:
         band: least and greatest ``u_z^2`` of a unit axis.
         axis: of any length but zero.
     """
-    upright2 = Fraction(axis[2] ** 2, axis @ axis)
+    upright2 = axis[2] ** 2 / (axis @ axis)
     (cosine, sine), least, most = (
         (square_root(x), square_root(1 - x)) for x in (upright2, Fraction(band[0]), Fraction(band[1]))
     )
@@ -86,8 +86,11 @@ def square_root(x: Fraction) -> Fraction:
 
 def sine_cosine(x: Fraction) -> tuple[Fraction, Fraction]:
     """Return sine and cosine of an angle within four, to thirty digits."""
-    terms = [x**n * (-1) ** (n // 2) / factorial(n) for n in range(2 * _TERMS)]
-    return rounded(sum(terms[1::2], Fraction(0))), rounded(sum(terms[0::2], Fraction(0)))
+    powers, short = [Fraction(1)], rounded(x)
+    for n in range(1, 2 * _TERMS):
+        powers.append(rounded(powers[-1] * short / n))
+    signed = [power * (-1) ** (n // 2) for n, power in enumerate(powers)]
+    return sum(signed[1::2], Fraction(0)), sum(signed[0::2], Fraction(0))
 
 
 def rounded(x: Fraction) -> Fraction:
@@ -104,7 +107,7 @@ def sine2(x: Exact, y: Exact) -> Fraction:
 def link(point: Exact, position: Exact, axis: Exact) -> Fraction:
     """Return ``sin^2(gamma) / |r|^2`` of a link (paper eqs. 1.2 to 1.4), exactly."""
     r = point - position
-    return sine2(r, axis) / (r @ r)
+    return sine2(r, axis) / Fraction(r @ r)
 
 
 def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:

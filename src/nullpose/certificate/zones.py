@@ -49,9 +49,9 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
     hull, rows = boxes.hull, np.arange(len(boxes))
     floor, ceiling = family.zone_range_m[zone].T
     found = []
-    for mask, height, sign in ((hull.high[2] >= ceiling, ceiling, 1.0), (hull.low[2] <= floor, floor, -1.0)):
+    for mask, height, way in ((hull.high[2] >= ceiling, ceiling, 1.0), (hull.low[2] <= floor, floor, -1.0)):
         corner = np.outer(height[mask], [0.0, 0.0, 1.0])
-        up = Interval(np.tile([[0.0], [0.0], [sign]], len(corner)))
+        up = Interval(np.tile([[0.0], [0.0], [way]], len(corner)))
         away = (Interval(boxes.centre[mask]) - corner).T
         found.append(Alternative(rows[mask], (Constraint.beyond(away, up),)))
     is_cylinder = family.zone_kind[zone] == _CYLINDER
