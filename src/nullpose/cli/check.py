@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import typer
 
-from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile
-from nullpose.cli.output import show, show_json
+from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile, read_scenario
+from nullpose.cli.output import tell
 
 __all__ = ["check"]
 
@@ -16,15 +16,10 @@ def check(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a scenario file and show what it amounts to, without solving it."""
-    from nullpose.report.summary import summarise
-    from nullpose.scenario import apply_overrides, load
-
-    summary = summarise(apply_overrides(load(file, allow_outside=allow_outside), overrides or []))
-    if json_output:
-        show_json(summary.to_dict())
-        return
+    """Check a scenario file and show what it amounts to, unsolved."""
     from nullpose.report.scenario_tables import scenario_view
+    from nullpose.report.summary import summarise
 
-    show(scenario_view(summary))
-    typer.echo(f"{file}: no faults")
+    tell(summarise(read_scenario(file, overrides, allow_outside)), scenario_view, json_output)
+    if not json_output:
+        typer.echo(f"{file}: no faults")

@@ -9,7 +9,8 @@ import typer
 
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
-from nullpose.cli.output import Ticker, show, show_json
+from nullpose.cli.output import show, show_json
+from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
     from nullpose.certificate import Certificate, Verdict
@@ -33,7 +34,10 @@ def verify(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a certificate in outward-rounded arithmetic, by code that imports nothing from the solver."""
+    """Check a certificate.
+
+    In outward-rounded arithmetic, by code that imports nothing from the solver.
+    """
     from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
     from nullpose.scenario import load

@@ -25,6 +25,11 @@ class Comparison:
     solutions: tuple[Solution, ...]
     left_out: tuple[tuple[Scheme, str], ...]
 
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended a proof."""
+        return any(solution.interrupted for solution in self.solutions)
+
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""
         cases: list[dict[str, object]] = []

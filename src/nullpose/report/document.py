@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["beside", "document", "head", "pairs", "table"]
+__all__ = ["beside", "document", "head", "markdown_table", "pairs", "table"]
 
 
 def document(*parts: RenderableType | None) -> RenderableType:
@@ -80,6 +80,17 @@ def table(
         else:
             view.add_section()
     return view
+
+
+def markdown_table(rows: Sequence[Mapping[str, str]]) -> str:
+    """Return rows as a table in Markdown, its texts as they are.
+
+    Args:
+        rows: cells by heading, the first of which names the row; at least one.
+    """
+    rule = ["---", *("---:" for _ in list(rows[0])[1:])]
+    lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def beside(columns: Mapping[str, Mapping[str, str]]) -> list[Mapping[str, str]]:
