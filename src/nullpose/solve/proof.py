@@ -25,6 +25,7 @@ FloatArray = NDArray[np.float64]
 _DIRECT_NODES = 20_000  # of a try with axes split early; most problems of the paper's size need a few hundred
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
+_KEPT = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.25  # each stage's gap, as a share of the one before
 _NEARLY = 2.0  # a stage that ends so near to the target goes all the way
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
@@ -138,7 +139,9 @@ class _Run:
         if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
             tries.insert(0, (self.kernel.LATE, min(_LATE_NODES, _LATE_NODES_EACH * ratios)))
         for self.axes_above, nodes in tries:
-            done, reason = self.stage(self.target, root, min(nodes, self.node_limit - self.nodes))
+            done, reason = self.stage(
+                self.target, root, min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
+            )
             if not reason or time.perf_counter() > self.deadline or self.nodes >= self.node_limit:
                 break
         return done, reason
@@ -254,7 +257,7 @@ def prove(
         done, reason = run.directly(root)
         if not reason:
             leaves = run.shown(done, leaves)
-        elif time.perf_counter() < run.deadline:
+        elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
             threads = limits.threads or processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
@@ -262,7 +265,7 @@ def prove(
                 if len(start) > _MOST_REFINED:
                     reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
                     break
-                done, reason = run.stage(gap, start, max(1, run.node_limit - run.nodes), threads)
+                done, reason = run.stage(gap, start, run.node_limit - run.nodes, threads)
                 if reason:
                     break
                 leaves, start = run.shown(done, leaves), done
