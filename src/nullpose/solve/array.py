@@ -75,8 +75,12 @@ class ArrayDetails:
         """The phases of the weights, shape as ``weights``, radians."""
         return np.asarray(np.angle(self.weights))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the array as plain data for JSON; a weight is [real part, imaginary part]."""
+    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+        """Return the array as plain data for JSON; a weight is [real part, imaginary part].
+
+        Args:
+            objective: not needed here.
+        """
         weights = np.stack([self.weights.real, self.weights.imag], axis=-1).tolist()
         names = ("elements", "layout", "spacing_wavelengths", "combining")
         stated = {name: getattr(self, name) for name in names}

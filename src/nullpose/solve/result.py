@@ -201,22 +201,21 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON; a number that JSON cannot hold becomes None."""
         stats = {key: value for key, value in asdict(self.stats).items() if value is not None}
+        objective = self.objective.to_dict()
         return {
             "scenario": self.scenario.to_dict(),
             "scheme": str(self.scheme),
             "status": self.status.value,
             "reason": self.reason,
             "rigour": self.rigour.value,
-            "objective": self.objective.to_dict(),
-            "upper_bound": self.objective.upper_bound,
-            "relative_gap": _finite(self.objective.relative_gap),
+            "objective": objective,
             "pose": self.pose.to_dict() | {"frames": pose_frames(self.scenario, self.pose).to_dict()},
             "links": [link.to_dict() for link in self.links],
             "binding_node": self.binding_node,
             "stats": stats,
             "provenance": dict(self.provenance),
             "note": self.note,
-            **({} if self.details is None else self.details.to_dict()),
+            **({} if self.details is None else self.details.to_dict(objective)),
         }
 
 

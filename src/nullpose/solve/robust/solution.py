@@ -100,12 +100,18 @@ class RobustDetails:
         guaranteed = self.nominal.guaranteed
         return self.robust.guaranteed / guaranteed if guaranteed > 0.0 else math.inf
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return both poses as plain data for JSON, over the keys of a result."""
+    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+        """Return both poses as plain data for JSON, over the keys of a result.
+
+        Args:
+            objective: what is guaranteed and the bound on it, as plain data.
+        """
         return {
             "objective": self.robust.scenario.objective,
             "robust": self.robust.to_dict(),
             "nominal": self.nominal.to_dict(),
+            "upper_bound": objective["upper_bound"],
+            "relative_gap": objective["relative_gap"],
             "error_cases": self.cases,
         }
 
