@@ -173,11 +173,12 @@ def _run(
     steps: int = _CLIMB_STEPS,
     pose: tuple[FloatArray, FloatArray] | None = None,
 ) -> Incumbent:
+    from nullpose.solve.kernels.linked import entry_of
     from nullpose.solve.kernels.multistart import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     multipliers = np.empty(len(family.numerator_point))
-    log_value, starts, evaluations = search_and_climb(
+    log_value, starts, evaluations = entry_of(search_and_climb)(
         family.arrays,
         family.domain,
         axis_field.arrays,

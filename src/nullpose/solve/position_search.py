@@ -41,31 +41,20 @@ def search_positions(
     Raises:
         SolveError: the objective is minus infinity at every position tried.
     """
+    from nullpose.solve.kernels.domain import contains
     from nullpose.solve.kernels.search import cut_box, push_out
-    from nullpose.solve.kernels.zones import in_zone
 
     starts = [place for place in landmarks(family) if push_out(place, family.domain)]
     if not starts:  # what is allowed may be of no width
         family = loosened(family, BORDER_M)
         starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    domain = family.domain
-    low, high, keep_points, keep_radius = (
-        domain.low_m,
-        domain.high_m,
-        domain.keep_out_points_m,
-        domain.keep_out_m,
-    )
+    low, high = family.low_m, family.high_m
     evaluations = 0
-
-    def inside(position: FloatArray) -> bool:
-        clear = np.sum((keep_points - position) ** 2, axis=1) >= keep_radius**2
-        in_box = bool(np.all(position >= low) and np.all(position <= high) and np.all(clear))
-        return in_box and not any(in_zone(family.domain, z, position) for z in range(len(family.zone_kind)))
 
     def cost(position: FloatArray) -> float:
         nonlocal evaluations
         evaluations += 1
-        return -objective(position) if inside(position) else math.inf
+        return -objective(position) if contains(family.domain, position) else math.inf
 
     if not starts:
         raise SolveError(NO_POSITION)

@@ -62,12 +62,24 @@ def _is_compiled(kernel: Any) -> bool:
 def compile_proof() -> None:
     """Compile the branch and bound by giving it no box to work off."""
     from nullpose.solve.kernels import branch, node
+    from nullpose.solve.kernels.records import Goal
 
     family, field = _smallest_family(), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     with _collecting_no_garbage():
         branch.branch(
-            family.arrays, family.domain, field.arrays, 1.0, 1.0, row, 1.0, rows, 0, rows, 0, 1, none, none
+            family.arrays,
+            family.domain,
+            field.arrays,
+            1.0,
+            Goal(1.0, row, 1.0),
+            rows,
+            0,
+            rows,
+            0,
+            1,
+            none,
+            none,
         )
 
 

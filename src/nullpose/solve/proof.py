@@ -85,9 +85,10 @@ class _Run:
         bound: float,
     ) -> None:
         from nullpose.solve.kernels import branch, node
+        from nullpose.solve.kernels.linked import entry_of
 
         self.family, self.axis_field = family, axis_field
-        self.kernel, self.node = branch, node
+        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
         self.deadline = time.perf_counter() + limits.time_limit_s - used.seconds
         self.node_limit = max(1, limits.node_limit - used.nodes)
@@ -112,6 +113,7 @@ class _Run:
 
     def root(self) -> FloatArray:
         """Return the box outside which no pose reaches the incumbent, as a first stack."""
+        from nullpose.solve.kernels.linked import entry_of
         from nullpose.solve.kernels.search import cut_box
 
         low, high = np.empty(3), np.empty(3)
@@ -120,7 +122,7 @@ class _Run:
             level = min(level + math.log1p(self.target), math.log(self.proved))  # the bound that is stated
         # a hair wider than the cut, which is rounded
         level -= 1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
-        cut_box(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
+        entry_of(cut_box)(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
         high = np.maximum(low, high)  # empty where two ratios are out of reach of each other: any place does
         row = self.favourite.copy()
         row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
@@ -169,16 +171,16 @@ class _Run:
                     return none, f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
 
     def _task(self, gap: float, until: int) -> Task:
+        from nullpose.solve.kernels.records import Goal
+
         arguments = (
             self.family.arrays,
             self.family.domain,
             self.axis_field.arrays,
             self.value * (1.0 + gap),
-            self.value * (1.0 + self.doubt),
-            self.favourite,
-            self.axes_above,
+            Goal(self.value * (1.0 + self.doubt), self.favourite, self.axes_above),
         )
-        return Task(self.kernel, arguments, max(1, min(self.chunk, until - self.nodes)))
+        return Task(self.branch, self.kernel.BETTER, arguments, max(1, min(self.chunk, until - self.nodes)))
 
     def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
         from nullpose.solve.kernels.links import min_log_ratio

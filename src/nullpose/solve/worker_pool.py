@@ -35,12 +35,14 @@ class Task:
     """What every worker does: the arguments of the kernel that come before its own stack.
 
     Args:
-        kernel: the branch kernel.
-        arguments: family, domain, axis field, level, value to beat, favourite row.
+        branch: the kernel.
+        better: its code of a pose that beats the incumbent.
+        arguments: family, domain, axis field, level, goal.
         budget: nodes to work off before it reports.
     """
 
-    kernel: Any
+    branch: Any
+    better: int
     arguments: tuple[Any, ...]
     budget: int
 
@@ -93,7 +95,7 @@ class _Worker:
                 self.blocks.append(self.leaves)
                 self.leaves = np.empty((min(_BLOCK, 2 * self.filled), self.leaves.shape[1]))
                 self.filled = 0
-            code, self.top, self.filled, done, _ = task.kernel.branch(
+            code, self.top, self.filled, done, _ = task.branch(
                 *task.arguments,
                 self.stack,
                 self.top,
@@ -104,7 +106,7 @@ class _Worker:
                 self.axis,
             )
             total += done
-            self.better = code == task.kernel.BETTER
+            self.better = code == task.better
         return total
 
 

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from nullpose.family import AxisField, Family
 from nullpose.family.airspace import airspace_zones
 from nullpose.scenario import Airspace
-from nullpose.solve.kernels.branch import EARLY, examine, make_room
+from nullpose.solve.kernels.branch import EARLY, examine, workspace_of
 from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.node import (
     AFFINE,
@@ -35,6 +35,7 @@ from nullpose.solve.kernels.node import (
     SIDE,
     WEIGHT,
 )
+from nullpose.solve.kernels.records import Goal
 
 EXCLUDED = 0
 JUST_BELOW = 1.0 - 1e-9
@@ -43,8 +44,8 @@ JUST_BELOW = 1.0 - 1e-9
 @heap_kernel
 def examined(family, domain, axis_field, favourite, row, axis):
     """Returns what becomes of a node: the kernel itself has no Python name."""
-    plan = (np.inf, favourite, EARLY)
-    return examine(family, domain, axis_field, plan, row, make_room(family), axis)[0]
+    goal = Goal(np.inf, favourite, EARLY)
+    return examine(family, domain, axis_field, goal, row, workspace_of(family), axis)[0]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,13 +1,8 @@
 import numpy as np
 import pytest
 
-from nullpose.solve.kernels.expansion import (
-    TOWARDS_POINT,
-    WORLD,
-    expand_point,
-    min_distance,
-    set_frame,
-)
+from nullpose.solve.kernels.expansion import expand_point, frame_at, min_distance
+from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD
 
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
 UNTURNED = np.zeros((0, 3, 3))
@@ -51,15 +46,13 @@ def test_expansion_encloses_the_forms(kind: int, anchor: int) -> None:
         centre = rng.uniform([-30.0, -30.0, 10.0], [50.0, 50.0, 25.0])
         half = rng.uniform(0.05, 1.5, size=3)
         basis = np.empty((3, 3))
-        rho, rho_min = set_frame(POINTS, kind, anchor, centre, half, basis)
+        turning = frame_at(POINTS, kind, anchor, centre, half, basis)
         assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-12)
         p = centre + rng.uniform(-1.0, 1.0, size=3) * half
         frame = carried_frame(kind, anchor, centre, basis, p)
         for j in range(len(POINTS)):
             form, slopes = np.empty(6), np.empty((3, 6))
-            up, down = expand_point(
-                POINTS, UNTURNED, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes
-            )
+            up, down = expand_point(POINTS, UNTURNED, j, turning, centre, half, form, slopes)
             exact = frame.T @ link_matrix(POINTS[j] - p) @ frame
             linear = matrix_of(form + (p - centre) @ slopes)
             error = np.linalg.eigvalsh(exact - linear)

@@ -14,10 +14,11 @@ import numpy as np
 from nullpose.family.records import Axes
 from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solve.kernels.denominators import expand_denominator
+from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach
-from nullpose.solve.kernels.expansion import TOWARDS_POINT, WORLD, min_distance, set_frame
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
+from nullpose.solve.kernels.expansion import frame_at, min_distance
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
@@ -41,10 +42,11 @@ from nullpose.solve.kernels.node import (
     split_axis,
     split_position,
 )
+from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, zeroed
-from nullpose.solve.kernels.zones import in_zone
+from nullpose.solve.kernels.symmetric import copy_into
 
-__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch", "may_have_gaps"]
+__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch"]
 
 DONE = 0
 LIMIT = 1
@@ -70,15 +72,15 @@ _BEATS = 1e-9
 @inner_kernel
 def strongest_point(family, centre):
     """Return the denominators' point that is received most strongly at the centre, or -1."""
-    points, dpt, dw = family.points_m, family.denominator_point, family.denominator_weight
     strongest = 0.0
     anchor = -1
-    for e in range(dw.shape[0]):
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
         d = 0.0
         for i in range(3):
-            d += (points[dpt[e], i] - centre[i]) ** 2
-        if dw[e] > strongest * d:
-            strongest, anchor = dw[e] / d, dpt[e]
+            d += (family.points_m[j, i] - centre[i]) ** 2
+        if weight > strongest * d:
+            strongest, anchor = weight / d, j
     return anchor
 
 
@@ -89,9 +91,7 @@ def best_frame(family, axis_field, row):
     A frame that turns spares us the remainder of the point that it turns towards, and makes all others
     larger: worth it where one interferer outweighs the rest.
     """
-    points, nw, npt = family.points_m, family.numerator_weight, family.numerator_point
-    dpt, dw = family.denominator_point, family.denominator_weight
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
     anchor = strongest_point(family, centre)
     if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
@@ -99,42 +99,23 @@ def best_frame(family, axis_field, row):
     still = turning = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
-        a = min_distance(points, npt[k], centre, half)
-        scale = row[WEIGHT + s] * nw[k] / (a * a * a * a)
+        a = min_distance(points, family.numerator_point[k], centre, half)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (a * a * a * a)
         still += 6.0 * scale
         turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
-    for e in range(dw.shape[0]):
-        a = min_distance(points, dpt[e], centre, half)
-        scale = row[LEVEL] * dw[e] / (a * a * a * a)
+    for e in range(family.denominator_weight.shape[0]):
+        a = min_distance(points, family.denominator_point[e], centre, half)
+        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
         still += 4.0 * scale
-        if dpt[e] != anchor:
+        if family.denominator_point[e] != anchor:
             turning += scale * (4.0 + a / rho * (12.0 + 6.31 * a / rho))
     return (TOWARDS_POINT if turning < still else WORLD), anchor
 
 
 @inner_kernel
-def is_pose(domain, centre):
-    """Return whether a box's centre is a position of the domain."""
-    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
-    keep_radius = domain.keep_out_m
-    inside = True
-    for i in range(3):
-        inside = inside and low[i] <= centre[i] <= high[i]
-    for q in range(keep_points.shape[0]):
-        d = 0.0
-        for i in range(3):
-            d += (keep_points[q, i] - centre[i]) ** 2
-        inside = inside and d >= keep_radius * keep_radius
-    for z in range(domain.zone_kind.shape[0]):
-        inside = inside and not in_zone(domain, z, centre)
-    return inside
-
-
-@inner_kernel
-def examine(family, domain, axis_field, plan, row, room, axis):
+def examine(family, domain, axis_field, goal, row, workspace, axis):
     """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
-    ``plan`` holds the value to beat, the favourite row and what the dual must exceed for axes to be split.
     Fills the node's kind, its multipliers, and an axis if it beats the best.
     """
     side = longest_side(row)
@@ -152,16 +133,16 @@ def examine(family, domain, axis_field, plan, row, room, axis):
     if axis_field.kind == 1:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
-            return examine_affine(family, domain, axis_field, plan, row, room, axis)
+            return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
     if axis_field.kind >= 2 and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
         return _EXCLUDED, side, 0
-    verdict, sought = examine_free(family, domain, axis_field, plan, row, nearest, room, axis)
+    verdict, sought = examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis)
     return verdict, side, sought
 
 
 @inner_kernel
-def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
+def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
     """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
@@ -170,39 +151,39 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
     kind, anchor = best_frame(family, axis_field, row)
-    rho, rho_min = set_frame(family.points_m, kind, anchor, centre, half, basis)
-    view = (kind, anchor, basis, rho, rho_min)
+    frame = frame_at(family.points_m, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
     if family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)
-        rests = expand_denominator(family, first, row[LEVEL], view, centre, half, denominator, slopes)
+        rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, domain, axis_field, view, row, below):
+    if excludes(family, domain, axis_field, frame, row, below):
         return _EXCLUDED, 0
     if row[FACE] < 0.0:
-        for m in range(BAND, BALL):
-            row[m] = plan[1][m]
-        if excludes(family, domain, axis_field, view, row, below):
+        copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
+        if excludes(family, domain, axis_field, frame, row, below):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached, followed = free_multipliers(
-        family, axis_field, basis, row, denominator, coarseness, room, axis
+        family, axis_field, basis, row, denominator, coarseness, workspace, axis
     )
-    if is_free and followed and is_pose(domain, centre):
+    if is_free and followed and contains(domain, centre):
         value = reached * row[LEVEL]
         if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
-            value = math.exp(min_log_ratio(family, centre, axis, room[5], room[1]))
-        if value > plan[0] * (1.0 + _BEATS):
+            value = math.exp(
+                min_log_ratio(family, centre, axis, workspace.log_denominators, workspace.values)
+            )
+        if value > goal.best * (1.0 + _BEATS):
             return _BETTER, 1
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
-    if primal < 1.0 and excludes(family, domain, axis_field, view, row, below):
+    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
-    split_axes = followed and primal - reached > coarseness and primal > plan[2]
+    split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or radius == 0.0  # one position has no halves
     return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
@@ -211,33 +192,31 @@ def examine_free(family, domain, axis_field, plan, row, nearest, room, axis):
 @inner_kernel
 def lone_ratio(family, row, below):
     """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den = family.numerator_point, family.denominator_of
-    for k in range(nw.shape[0]):
-        a = min_distance(points, npt[k], row[CENTRE:HALF], row[HALF:LEVEL])
-        if n0[k] + nw[k] / (a * a) < -below[den[k], 17] * (1.0 - 1e-13):
+    for k in range(family.numerator_weight.shape[0]):
+        a = min_distance(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
+        most = family.numerator_isotropic[k] + family.numerator_weight[k] / (a * a)
+        if most < -below[family.denominator_of[k], 17] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True
     return False
 
 
 @inner_kernel
-def examine_affine(family, domain, axis_field, plan, row, room, axis):
+def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half = row[HALF:LEVEL]
-    jet, below, total = scratch(JET), room[3], scratch(JET)
+    jet, below, total = scratch(JET), workspace.jets, scratch(JET)
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
     if lone_ratio(family, row, below):
         return _EXCLUDED, 0, 0
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
-    for m in range(COUNT, BALL):
-        row[m] = plan[1][m]
+    copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
         return _EXCLUDED, 0, 0
-    reached = curved_multipliers(family, axis_field, row, below, jet, room)
-    if reached * row[LEVEL] > plan[0] * (1.0 + _BEATS) and is_pose(domain, row[CENTRE:HALF]):
+    reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
+    if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
         for m in range(3):
             axis[m] = axis_field.offset[m]
             for i in range(3):
@@ -249,101 +228,60 @@ def examine_affine(family, domain, axis_field, plan, row, room, axis):
 
 
 @inner_heap_kernel
-def make_room(family):
-    """Return scratch space for a family: of its ratios, and of its denominators."""
+def workspace_of(family):
+    """Return scratch space for a family."""
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
-    return (
-        np.empty(ratios + 4),
-        np.empty(ratios),
-        np.empty((ratios, 3)),
-        np.empty((groups, JET)),
-        np.empty((groups, 6)),
-        np.empty(groups),
-    )
-
-
-@kernel
-def may_have_gaps(family, axis_field):
-    """Return whether to reckon with duality gaps: two ratios have none, or hardly any within a band."""
-    return axis_field.kind != 1 and family.numerator_isotropic.shape[0] > 2
+    return Workspace(
+        np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
+        np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
+    )  # fmt: skip
 
 
 @heap_kernel
 def branch(
-    family,
-    domain,
-    axis_field,
-    level,
-    best,
-    favourite,
-    axes_above,
-    stack,
-    top,
-    leaves,
-    filled,
-    most,
-    better_p,
-    better_u,
-):
+    family, domain, axis_field, level, goal, stack, top, leaves, filled, most, better_p, better_u
+):  # fmt: skip
     """Work off the stack at one level until it is empty or a limit is met.
 
     Args:
-        family: arrays of the family.
-        domain: box, keep-out balls, forbidden pieces and zones.
-        axis_field: kind, offset and matrix, as ``AxisField.arrays`` has them.
+        family: the ratios.
+        domain: the positions.
+        axis_field: the axes.
         level: the ratio to exclude.
-        best: the incumbent's smallest ratio; a centre that beats it ends the call.
-        favourite: (COLUMNS,) a row whose multipliers are tried on every box: those at the incumbent.
-        axes_above: axes are split only where the dual's value, relative to the level, is above this: EARLY
-            or LATE.
-        stack: (s, COLUMNS) nodes still to do.
+        goal: what the run is after.
+        stack: (s, COLUMNS) boxes still to do.
         top: how many there are.
-        leaves: (l, COLUMNS) output, excluded nodes.
+        leaves: (l, COLUMNS) output, excluded boxes.
         filled: how many leaves there are already.
-        most: nodes to work off at most.
+        most: boxes to work off at most.
         better_p: output, (3,): position of a pose that beats the incumbent.
         better_u: output, (3,): its axis.
 
     Returns:
-        (code, top, filled, nodes worked off, nodes in which new multipliers were sought).
+        (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
     """
-    plan = (best, favourite, axes_above)
-    return work_off(
-        family, domain, axis_field, level, plan, stack, top, leaves, filled, most, better_p, better_u,
-        make_room(family),
-    )  # fmt: skip
-
-
-@inner_kernel
-def work_off(
-    family, domain, axis_field, level, plan, stack, top, leaves, filled, most, better_p, better_u, room
-):
-    """Do what ``branch`` does, with the scratch space that it made."""
-    row, axis = scratch(COLUMNS), scratch(3)
-    level_axes = is_level(axis_field)
-    nodes = sought = 0
+    workspace, row, axis = workspace_of(family), scratch(COLUMNS), scratch(3)
+    boxes = sought = 0
     while top > 0:
-        if nodes >= most:
-            return LIMIT, top, filled, nodes, sought
+        if boxes >= most:
+            return LIMIT, top, filled, boxes, sought
         if top + 3 > stack.shape[0] or filled >= leaves.shape[0]:
-            return FULL, top, filled, nodes, sought
-        nodes += 1
+            return FULL, top, filled, boxes, sought
+        boxes += 1
         top -= 1
-        for m in range(COLUMNS):
-            row[m] = stack[top, m]
+        copy_into(stack[top], row)
         row[LEVEL] = level
-        verdict, side, new = examine(family, domain, axis_field, plan, row, room, axis)
+        verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
         sought += new
         if verdict == _EXCLUDED:
-            for m in range(COLUMNS):
-                leaves[filled, m] = row[m]
+            copy_into(row, leaves[filled])
             filled += 1
         elif verdict == _BETTER:
-            for i in range(3):
-                better_p[i], better_u[i] = row[CENTRE + i], axis[i]
-            return BETTER, top + 1, filled, nodes, sought
+            copy_into(row[CENTRE:HALF], better_p)
+            copy_into(axis, better_u)
+            return BETTER, top + 1, filled, boxes, sought
         elif verdict == _BY_AXIS:
-            top = split_axis(row, level_axes, stack, top)
+            top = split_axis(row, is_level(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
-    return DONE, top, filled, nodes, sought
+    return DONE, top, filled, boxes, sought

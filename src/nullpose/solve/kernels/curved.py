@@ -15,6 +15,7 @@ import numpy as np
 
 from nullpose.solve.kernels.borders import border_multipliers, borders, slope_and_rest
 from nullpose.solve.kernels.enclosure import JET, link_jet
+from nullpose.solve.kernels.forms import entry
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.node import (
     BALL,
@@ -52,16 +53,14 @@ def add_jet(weight, jet, total):
 @inner_kernel
 def denominator_jet(family, axis_field, row, jet, totals):
     """Fill the jet of ``-t D_g`` of each denominator over a row's box."""
-    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
-    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
-    for g in range(d0.shape[0]):
+    for g in range(totals.shape[0]):
         total = totals[g]
-        for m in range(JET):
-            total[m] = 0.0
-        total[0] = total[16] = total[17] = -row[LEVEL] * d0[g]
-        for e in range(dstart[g], dstart[g + 1]):
-            link_jet(points, turn, dpt[e], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-            add_jet(-row[LEVEL] * dw[e], jet, total)
+        total[:] = 0.0
+        total[0] = total[16] = total[17] = -row[LEVEL] * family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j = family.denominator_point[e]
+            link_jet(family.points_m, family.turn, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+            add_jet(-row[LEVEL] * family.denominator_weight[e], jet, total)
 
 
 @inner_kernel
@@ -73,7 +72,7 @@ def scaled_bound(jet, half, gradient, hessian):
         hessian[i, i] = jet[4 + i] * half[i] * half[i]
         rest += 0.5 * jet[10 + i] * half[i] * half[i]
     for e in range(3, 6):
-        i, k = (0 if e < 5 else 1), (1 if e == 3 else 2)
+        i, k = entry(e)
         hessian[i, k] = hessian[k, i] = jet[4 + e] * half[i] * half[k]
         rest += jet[10 + e] * half[i] * half[k]
     return jet[0] + rest
@@ -144,21 +143,20 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
         jet: room for a jet.
         total: output, (JET,).
     """
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den, turn = family.numerator_point, family.denominator_of, family.turn
     if not row[COUNT] > 0.0:
         return False
-    for m in range(JET):
-        total[m] = 0.0
+    total[:] = 0.0
     for s in range(int(row[COUNT])):
+        minus = below[family.denominator_of[int(row[INDEX + s])]]
         for m in range(JET):
-            total[m] += row[WEIGHT + s] * below[den[int(row[INDEX + s])], m]
+            total[m] += row[WEIGHT + s] * minus[m]
     size = -total[0]
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
-        link_jet(points, turn, npt[k], axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-        total[0], total[17] = total[0] + row[WEIGHT + s] * n0[k], total[17] + row[WEIGHT + s] * n0[k]
-        add_jet(row[WEIGHT + s] * nw[k], jet, total)
+        j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
+        link_jet(family.points_m, family.turn, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        total[0], total[17] = total[0] + isotropic, total[17] + isotropic
+        add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
     total[0], total[17] = total[0] + _ROUNDING * size, total[17] + _ROUNDING * size
     row[NU] = 0.0
     if total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
@@ -201,7 +199,7 @@ def impact(total, half):
     for i in range(3):
         change = abs(total[1 + i]) * half[i] + (abs(total[4 + i]) + total[10 + i]) * half[i] ** 2
         for e in range(3, 6):
-            j, k = (0 if e < 5 else 1), (1 if e == 3 else 2)
+            j, k = entry(e)
             if i in (j, k):
                 change += (abs(total[4 + e]) + total[10 + e]) * half[j] * half[k]
         if change > most:
@@ -216,28 +214,25 @@ def linear_bound(value, slopes, half):
 
 
 @inner_kernel
-def curved_multipliers(family, axis_field, row, below, jet, room):
+def curved_multipliers(family, axis_field, row, below, jet, workspace):
     """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
 
     Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
     smallest ratio at the centre relative to the level.
     """
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den, turn = family.numerator_point, family.denominator_of, family.turn
-    ratios = nw.shape[0]
+    n0, nw, ratios = family.numerator_isotropic, family.numerator_weight, family.numerator_weight.shape[0]
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    weights, values, gradients = room[:3]
+    weights, values, gradients = workspace.weights, workspace.values, workspace.gradients
     smallest = math.inf
     for k in range(ratios):
-        link_jet(points, turn, npt[k], axis_field, centre, half, jet)
-        minus = below[den[k]]
+        link_jet(family.points_m, family.turn, family.numerator_point[k], axis_field, centre, half, jet)
+        minus = below[family.denominator_of[k]]
         smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
         values[k] = minus[0] + n0[k] + nw[k] * jet[0]
         for i in range(3):
             gradients[k, i] = minus[1 + i] + nw[k] * jet[1 + i]
         for e in range(6):
-            i = e if e < 3 else (0 if e < 5 else 1)
-            j = e if e < 3 else (1 if e == 3 else 2)
+            i, j = entry(e)
             radius = nw[k] * jet[10 + e] + minus[10 + e]
             if i == j:
                 radius = max(0.0, radius + nw[k] * jet[4 + e] + minus[4 + e])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.dual import top_eigenvector
-from nullpose.solve.kernels.expansion import TOWARDS_POINT, expand_point, min_distance
+from nullpose.solve.kernels.expansion import expand_point, min_distance
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solve.kernels.records import TOWARDS_POINT
 from nullpose.solve.kernels.scratch import scratch
 
 __all__ = ["ROUNDING", "add_mixed_denominators", "add_scaled", "expand_denominator", "sharpen"]
@@ -29,26 +30,23 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
 
 
 @inner_kernel
-def expand_denominator(family, g, level, view, centre, half, out, out_slopes):
+def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
     """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
-    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
-    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
-    kind, anchor, basis, rho, rho_min = view
     form, slopes = scratch(6), scratch(3, 6)
+    size = family.denominator_isotropic[g]
     for m in range(3):
-        out[m] -= level * d0[g]
+        out[m] -= level * size
     everywhere = across = 0.0
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    size = d0[g]
-    for e in range(dstart[g], dstart[g + 1]):
-        j = dpt[e]
-        _, down = expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes)
-        add_scaled(-level * dw[e], form, slopes, out, out_slopes)
-        if kind == TOWARDS_POINT and j == anchor:
-            across += level * dw[e] * (ROUNDING * (form[0] + form[1]) - radius * down)
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        _, down = expand_point(family.points_m, family.turn, j, frame, centre, half, form, slopes)
+        add_scaled(-level * weight, form, slopes, out, out_slopes)
+        if frame.kind == TOWARDS_POINT and j == frame.anchor:
+            across += level * weight * (ROUNDING * (form[0] + form[1]) - radius * down)
         else:
-            size += dw[e] * (form[0] + form[1] + form[2])
-            everywhere -= level * dw[e] * radius * down
+            size += weight * (form[0] + form[1] + form[2])
+            everywhere -= level * weight * radius * down
     return everywhere + ROUNDING * level * size, across
 
 
@@ -67,16 +65,15 @@ def group_weight(family, row, s):
 
 
 @inner_kernel
-def add_mixed_denominators(family, view, row, matrix, slopes):
+def add_mixed_denominators(family, frame, row, matrix, slopes):
     """Add ``-t sum_k lambda_k D_k`` of the row's multipliers and its slopes; return its remainders."""
-    den = family.denominator_of
     everywhere = across = 0.0
     for s in range(int(row[COUNT])):
         weight = group_weight(family, row, s) * row[LEVEL]
         if weight > 0.0:
-            g = den[int(row[INDEX + s])]
+            g = family.denominator_of[int(row[INDEX + s])]
             one, two = expand_denominator(
-                family, g, weight, view, row[CENTRE:HALF], row[HALF:LEVEL], matrix, slopes
+                family, g, weight, frame, row[CENTRE:HALF], row[HALF:LEVEL], matrix, slopes
             )
             everywhere += one
             across += two
@@ -93,7 +90,7 @@ def null_rest(a, rho):
 
 
 @inner_kernel
-def sharpen(family, view, row, matrix, slopes):
+def sharpen(family, frame, row, matrix, slopes):
     """Replace the denominators' remainders by smaller ones where they are smaller.
 
     With ``w = r / |r|^2``, r seen in the frame, a link is ``|u x w|^2``, and the rest of w beyond first
@@ -102,9 +99,7 @@ def sharpen(family, view, row, matrix, slopes):
     null, where T is small, far better than a remainder of the second order. The point that the frame turns
     towards keeps its own.
     """
-    points, den, dstart = family.points_m, family.denominator_of, family.denominator_start
-    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
-    kind, anchor, basis, rho, rho_min = view
+    points, turn = family.points_m, family.turn
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)
     top_eigenvector(matrix, v)
@@ -114,16 +109,14 @@ def sharpen(family, view, row, matrix, slopes):
         weight = group_weight(family, row, s) * row[LEVEL]
         if not weight > 0.0:
             continue
-        g = den[int(row[INDEX + s])]
-        for e in range(dstart[g], dstart[g + 1]):
-            if kind == TOWARDS_POINT and dpt[e] == anchor:
+        g = family.denominator_of[int(row[INDEX + s])]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
+            if frame.kind == TOWARDS_POINT and j == frame.anchor:
                 continue
-            scale = weight * dw[e]
-            _, down = expand_point(
-                points, turn, dpt[e], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
-            )
+            _, down = expand_point(points, turn, j, frame, centre, half, form, form_slopes)
             here, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
-            rest = 0.5 * square * null_rest(min_distance(points, dpt[e], centre, half), rho_min)
+            rest = 0.5 * square * null_rest(min_distance(points, j, centre, half), frame.least_radius_m)
             plain = -0.5 * square * down
             eta = rest / math.sqrt(max(here, 1e-12 * trace))
             if eta < _LARGEST_SHARE and eta * here + rest * rest / eta < plain:

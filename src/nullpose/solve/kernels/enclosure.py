@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from nullpose.solve.kernels.forms import entry
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
@@ -30,6 +31,25 @@ def square(a):
     """Return bounds on the square of a number of which bounds are given."""
     x, y = a[0] * a[0], a[1] * a[1]
     return (0.0 if a[0] < 0.0 < a[1] else min(x, y)), max(x, y)
+
+
+@inner_kernel
+def plus(a, b):
+    """Return bounds on the sum of two numbers of which bounds are given."""
+    return a[0] + b[0], a[1] + b[1]
+
+
+@inner_kernel
+def times(factor, a):
+    """Return bounds on a multiple of a number of which bounds are given."""
+    x, y = factor * a[0], factor * a[1]
+    return min(x, y), max(x, y)
+
+
+@inner_kernel
+def bounds(table, i):
+    """Return the bounds in row i of a table."""
+    return table[i, 0], table[i, 1]
 
 
 @kernel
@@ -90,6 +110,46 @@ def turned_field(axis_field, turn, j, offset, matrix):
             offset[i] += turn[j, i, a] * axis_field.offset[a]
             for k in range(3):
                 matrix[i, k] += turn[j, i, a] * axis_field.matrix[a, k]
+
+
+@inner_kernel
+def second_derivative(e, matrix, hc, boxed, dn, beta, sigma, n, s, b, w):
+    """Return bounds on number e of a link's Hessian, ``w (n_ij + n_i l_j + l_i n_j + n q_ij)`` (lemma 3).
+
+    Args:
+        e: which number of the form.
+        matrix: (3, 3) of the axis field.
+        hc: (3, 3, 3) the constant Hessians of the entries of ``u x r``.
+        boxed: (3, 4, 2) bounds on those entries and on their gradients.
+        dn: (3, 2) bounds on the gradient of ``n = |u x r|^2``.
+        beta: (3, 2) on the gradient of ``|u|^2`` over itself.
+        sigma: (3, 2) on that of ``|r|^2``.
+        n: bounds on n.
+        s: on ``|r|^2``.
+        b: on ``|u|^2``.
+        w: on ``1 / (|u|^2 |r|^4)``.
+    """
+    i, k = entry(e)
+    first, gram = (0.0, 0.0), 0.0
+    for m in range(3):
+        left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
+        first = plus(first, times(2.0, product(left, right) if i != k else square(left)))
+        first = plus(first, times(2.0 * hc[m, i, k], bounds(boxed[m], 0)))
+        gram += 2.0 * matrix[m, i] * matrix[m, k]
+    slope_i = (-beta[i, 1] - 2.0 * sigma[i, 1], -beta[i, 0] - 2.0 * sigma[i, 0])
+    slope_k = (-beta[k, 1] - 2.0 * sigma[k, 1], -beta[k, 0] - 2.0 * sigma[k, 0])
+    first = plus(plus(first, product(bounds(dn, i), slope_k)), product(bounds(dn, k), slope_i))
+    beta_i, beta_k, sigma_i, sigma_k = bounds(beta, i), bounds(beta, k), bounds(sigma, i), bounds(sigma, k)
+    bb = square(beta_i) if i == k else product(beta_i, beta_k)
+    ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
+    bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
+    low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
+    high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
+    low -= gram / (b[0] if gram > 0.0 else b[1])
+    high -= gram / (b[1] if gram > 0.0 else b[0])
+    if i == k:
+        low, high = low - 4.0 / s[0], high - 4.0 / s[1]
+    return product(w, plus(first, product(n, (low, high))))
 
 
 @kernel
@@ -153,35 +213,9 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         beta[i, 0], beta[i, 1] = relative_slopes(b, db, swing, b_low, b_high)
     w_range = (1.0 / (b_high * s_high * s_high), 1.0 / (b_low * s_low * s_low))
     jet[16], jet[17] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_low)
+    n_range, s_range, b_range = (n_low, n_high), (s_low, s_high), (b_low, b_high)
     for e in range(6):
-        i = e if e < 3 else (0 if e < 5 else 1)
-        k = e if e < 3 else (1 if e == 3 else 2)
-        first_low = first_high = gram = 0.0
-        for m in range(3):
-            first, second = (boxed[m, 1 + i, 0], boxed[m, 1 + i, 1]), (boxed[m, 1 + k, 0], boxed[m, 1 + k, 1])
-            x, y = product(first, second) if i != k else square(first)
-            first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
-            bent = 2.0 * hc[m, i, k]
-            x, y = bent * boxed[m, 0, 0], bent * boxed[m, 0, 1]
-            first_low, first_high = first_low + min(x, y), first_high + max(x, y)
-            gram += 2.0 * matrix[m, i] * matrix[m, k]
-        slope_i = (-beta[i, 1] - 2.0 * sigma[i, 1], -beta[i, 0] - 2.0 * sigma[i, 0])
-        slope_k = (-beta[k, 1] - 2.0 * sigma[k, 1], -beta[k, 0] - 2.0 * sigma[k, 0])
-        x, y = product((dn[i, 0], dn[i, 1]), slope_k)
-        first_low, first_high = first_low + x, first_high + y
-        x, y = product((dn[k, 0], dn[k, 1]), slope_i)
-        first_low, first_high = first_low + x, first_high + y
-        beta_i, beta_k = (beta[i, 0], beta[i, 1]), (beta[k, 0], beta[k, 1])
-        sigma_i, sigma_k = (sigma[i, 0], sigma[i, 1]), (sigma[k, 0], sigma[k, 1])
-        bb = square(beta_i) if i == k else product(beta_i, beta_k)
-        ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
-        bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
-        low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
-        high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
-        low -= gram / (b_low if gram > 0.0 else b_high)
-        high -= gram / (b_high if gram > 0.0 else b_low)
-        if i == k:
-            low, high = low - 4.0 / s_low, high - 4.0 / s_high
-        x, y = product((n_low, n_high), (low, high))
-        low, high = product(w_range, (first_low + x, first_high + y))
+        low, high = second_derivative(
+            e, matrix, hc, boxed, dn, beta, sigma, n_range, s_range, b_range, w_range
+        )
         jet[4 + e], jet[10 + e] = 0.5 * (low + high), 0.5 * (high - low)

@@ -19,7 +19,7 @@ from nullpose.solve.kernels.denominators import (
     sharpen,
 )
 from nullpose.solve.kernels.dual import top_eigenvector
-from nullpose.solve.kernels.expansion import WORLD, expand_point, min_distance
+from nullpose.solve.kernels.expansion import expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
@@ -40,6 +40,7 @@ from nullpose.solve.kernels.node import (
     WEIGHT,
     cell_side,
 )
+from nullpose.solve.kernels.records import WORLD
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
@@ -102,17 +103,16 @@ def negative_at_corners(matrix, slopes, half, level_axes):
 
 
 @inner_kernel
-def add_side(form, weight, view, matrix, matrix_slopes):
+def add_side(form, weight, frame, matrix, matrix_slopes):
     """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
-    kind, _, basis, rho, rho_min = view
-    q = scratch(6)
+    q, basis = scratch(6), frame.basis
     congruence(form, basis, q)
     for m in range(6):
         matrix[m] += weight * q[m]
-    if kind == WORLD:
+    if frame.kind == WORLD:
         return 0.0
     for i in range(3):
-        x, y = basis[i, 0] / rho, basis[i, 1] / rho
+        x, y = basis[i, 0] / frame.radius_m, basis[i, 1] / frame.radius_m
         matrix_slopes[i, 0] += weight * 2.0 * x * q[4]
         matrix_slopes[i, 1] += weight * 2.0 * y * q[5]
         matrix_slopes[i, 2] -= weight * 2.0 * (x * q[4] + y * q[5])
@@ -120,11 +120,11 @@ def add_side(form, weight, view, matrix, matrix_slopes):
         matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
         matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
     size = q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2)
-    return weight * 2.4143 * math.sqrt(2.0 * size) / (rho_min * rho_min)
+    return weight * 2.4143 * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
 
 
 @inner_kernel
-def add_band(axis_field, view, row, matrix, slopes):
+def add_band(axis_field, frame, row, matrix, slopes):
     """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
     weight = row[BAND]
     if axis_field.kind < 2 or weight == 0.0 or is_level(axis_field):
@@ -134,15 +134,12 @@ def add_band(axis_field, view, row, matrix, slopes):
     end = axis_field.offset[1] if weight > 0.0 else axis_field.offset[0]
     for m in range(3):
         matrix[m] += weight * end
-    return add_side(form, abs(weight), view, matrix, slopes)
+    return add_side(form, abs(weight), frame, matrix, slopes)
 
 
 @inner_kernel
-def add_numerators(family, axis_field, view, row, matrix, slopes):
+def add_numerators(family, axis_field, frame, row, matrix, slopes):
     """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, turn = family.numerator_point, family.turn
-    kind, anchor, basis, rho, rho_min = view
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes = scratch(6), scratch(3, 6)
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
@@ -150,33 +147,33 @@ def add_numerators(family, axis_field, view, row, matrix, slopes):
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         weight = row[WEIGHT + s]
-        up, _ = expand_point(
-            points, turn, npt[k], kind, anchor, basis, rho, rho_min, centre, half, form, form_slopes
-        )
-        add_scaled(weight * nw[k], form, form_slopes, matrix, slopes)
+        isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
+        j = family.numerator_point[k]
+        up, _ = expand_point(family.points_m, family.turn, j, frame, centre, half, form, form_slopes)
+        add_scaled(weight * strength, form, form_slopes, matrix, slopes)
         for m in range(3):
-            matrix[m] += weight * n0[k]
-        size = n0[k] + nw[k] * (form[0] + form[1] + form[2])
-        everywhere += weight * (radius * nw[k] * up + ROUNDING * size)
+            matrix[m] += weight * isotropic
+        size = isotropic + strength * (form[0] + form[1] + form[2])
+        everywhere += weight * (radius * strength * up + ROUNDING * size)
     if row[FACE] >= 0.0:
         for side in range(2):
             if row[SIDE + side] > 0.0:
                 cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
-                everywhere += radius * add_side(form, row[SIDE + side], view, matrix, slopes)
+                everywhere += radius * add_side(form, row[SIDE + side], frame, matrix, slopes)
                 everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
-    everywhere += radius * add_band(axis_field, view, row, matrix, slopes)
+    everywhere += radius * add_band(axis_field, frame, row, matrix, slopes)
     return everywhere + 4.0 * ROUNDING * abs(row[BAND])
 
 
 @inner_kernel
-def excludes(family, domain, axis_field, view, row, below):
+def excludes(family, domain, axis_field, frame, row, below):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
         family: arrays of the family.
         domain: box, keep-out balls, forbidden pieces and zones.
         axis_field: kind, offset and matrix; a free axis, perhaps within a band.
-        view: the frame at the box's centre, from ``set_frame``.
+        frame: at the box's centre.
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
             denominator for all.
@@ -184,15 +181,12 @@ def excludes(family, domain, axis_field, view, row, below):
     if not row[COUNT] > 0.0:
         return False
     matrix, slopes = scratch(6), scratch(3, 6)
-    for m in range(6):
-        matrix[m] = below[0][m]
-        for i in range(3):
-            slopes[i, m] = below[1][i, m]
+    copy_into(below[0], matrix)
+    copy_table(below[1], slopes)
     everywhere, across = below[2]
-    if family.denominator_isotropic.shape[0] > 1:
-        matrix[:], slopes[:, :] = 0.0, 0.0
-        everywhere, across = add_mixed_denominators(family, view, row, matrix, slopes)
-    everywhere += add_numerators(family, axis_field, view, row, matrix, slopes)
+    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
+        everywhere, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere += add_numerators(family, axis_field, frame, row, matrix, slopes)
     row[NU] = 0.0
     half, level_axes = row[HALF:LEVEL], is_level(axis_field)
     if row[BALL] < 0.0 and not negative_at_centre(matrix, level_axes):
@@ -205,7 +199,7 @@ def excludes(family, domain, axis_field, view, row, below):
     if level_axes:  # what is off the level plane does not count
         matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
         matrix[4] = matrix[5] = 0.0
-    sharpen(family, view, row, matrix, slopes)
+    sharpen(family, frame, row, matrix, slopes)
     if negative_at_corners(matrix, slopes, half, level_axes):
         return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
@@ -254,12 +248,11 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
 def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
     keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    for k in range(nw.shape[0]):
-        a = min_distance(points, npt[k], centre, half)
-        if (n0[k] - row[LEVEL] * d0[den[k]]) * a * a + nw[k] < 0.0:
+    for k in range(family.numerator_weight.shape[0]):
+        a = min_distance(family.points_m, family.numerator_point[k], centre, half)
+        least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
+        if (family.numerator_isotropic[k] - least) * a * a + family.numerator_weight[k] < 0.0:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     for q in range(keep_points.shape[0]):

@@ -15,13 +15,11 @@ import math
 
 from nullpose.solve.kernels.forms import seen_from
 from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
 
-__all__ = ["TOWARDS_POINT", "WORLD", "expand_point", "min_distance", "set_frame"]
-
-WORLD = 0
-TOWARDS_POINT = 1
+__all__ = ["expand_point", "frame_at", "min_distance"]
 
 
 @kernel
@@ -36,29 +34,25 @@ def min_distance(points, j, centre, half):
 
 
 @kernel
-def set_frame(points, kind, anchor, centre, half, basis):
-    """Fill the frame at the centre (columns); return its turning radius there and the least in the box.
-
-    ``kind``: WORLD, or TOWARDS_POINT, third column towards ``anchor``.
-    """
+def frame_at(points, kind, anchor, centre, half, basis):
+    """Return a frame at the centre, whose axes are filled into ``basis``."""
     if kind == WORLD:
         for i in range(3):
             for m in range(3):
                 basis[i, m] = 1.0 if i == m else 0.0
-        return math.inf, math.inf
+        return Frame(kind, anchor, basis, math.inf, math.inf)
     a, b, c = scratch(3), scratch(3), scratch(3)
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
     rho = math.sqrt(x * x + y * y + z * z)
     c[0], c[1], c[2] = x / rho, y / rho, z / rho
     tangents(c, a, b)
-    least = min_distance(points, anchor, centre, half)
     for i in range(3):
         basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]
-    return rho, least
+    return Frame(kind, anchor, basis, rho, min_distance(points, anchor, centre, half))
 
 
 @kernel
-def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, half, form, slopes):
+def expand_point(points, turn, j, frame, centre, half, form, slopes):
     """Fill the form of point j at the centre and its derivative along each world axis.
 
     Points with a turn of their own are looked at in the frame at rest only.
@@ -67,10 +61,9 @@ def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, hal
     box. For the anchor of a frame that turns towards it they hold on the first two axes; the third row and
     column vanish.
     """
-    x, y, z = seen_from(points, turn, j, centre, basis)
-    if turn.shape[0] > 0:
-        basis = turn[j]
-    anchored = kind == TOWARDS_POINT and j == anchor
+    x, y, z = seen_from(points, turn, j, centre, frame.basis)
+    basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
+    anchored = turns and j == frame.anchor
     if anchored:
         x = y = 0.0
     i2 = 1.0 / (x * x + y * y + z * z)
@@ -80,10 +73,10 @@ def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, hal
     for i in range(3):
         q0, q1, q2 = basis[i, 0], basis[i, 1], basis[i, 2]
         u, v, w = -q0, -q1, -q2
-        if kind == TOWARDS_POINT:
-            u += q0 * z / rho
-            v += q1 * z / rho
-            w -= (q1 * y + q0 * x) / rho
+        if turns:
+            u += q0 * z / frame.radius_m
+            v += q1 * z / frame.radius_m
+            w -= (q1 * y + q0 * x) / frame.radius_m
         dot = x * u + y * v + z * w
         k = 4.0 * dot * i4 * i2
         base = -2.0 * dot * i4
@@ -97,8 +90,8 @@ def expand_point(points, turn, j, kind, anchor, basis, rho, rho_min, centre, hal
     i4 = 1.0 / (a * a * a * a)
     if anchored:
         return 6.0 * i4, -2.0 * i4
-    if kind == WORLD:
+    if not turns:
         return 6.0 * i4, -4.0 * i4
-    mixed = 1.0 / (a * a * a * rho_min)
-    swing = 1.0 / (a * a * rho_min * rho_min)
+    mixed = 1.0 / (a * a * a * frame.least_radius_m)
+    swing = 1.0 / (a * a * frame.least_radius_m * frame.least_radius_m)
     return 6.0 * i4 + 16.0 * mixed + 8.31 * swing, -(4.0 * i4 + 12.0 * mixed + 6.31 * swing)

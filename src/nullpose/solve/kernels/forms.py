@@ -11,6 +11,7 @@ __all__ = [
     "add_form",
     "bilinear",
     "congruence",
+    "entry",
     "fill_form",
     "fill_forms",
     "form_value",
@@ -18,6 +19,14 @@ __all__ = [
     "seen_from",
     "turned_back",
 ]
+
+
+@inner_kernel
+def entry(k):
+    """Return the row and the column of number k of a form."""
+    if k < 3:
+        return k, k
+    return (0 if k < 5 else 1), (1 if k == 3 else 2)
 
 
 @kernel
@@ -55,8 +64,7 @@ def congruence(form, basis, out):
         half[1, m] = form[3] * x + form[1] * y + form[5] * z
         half[2, m] = form[4] * x + form[5] * y + form[2] * z
     for k in range(6):
-        i = k if k < 3 else (0 if k < 5 else 1)
-        j = k if k < 3 else (1 if k == 3 else 2)
+        i, j = entry(k)
         out[k] = basis[0, i] * half[0, j] + basis[1, i] * half[1, j] + basis[2, i] * half[2, j]
 
 

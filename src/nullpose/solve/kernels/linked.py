@@ -14,7 +14,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.registry import CPUDispatcher
 
-__all__ = ["LinkedDispatcher"]
+__all__ = ["LinkedDispatcher", "entry_of"]
 
 
 class _Whole(JITCodeLibrary):
@@ -71,3 +71,16 @@ class LinkedDispatcher(CPUDispatcher):
     @property
     def _numba_type_(self) -> Any:
         return self._part._numba_type_
+
+
+def entry_of(kernel: Any) -> Any:
+    """Return what Python calls where a kernel's arguments are always of the same types.
+
+    That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
+    as a short kernel, is left out.
+
+    Args:
+        kernel: any.
+    """
+    compiled = list(getattr(kernel, "overloads", {}).values())
+    return compiled[0].entry_point if len(compiled) == 1 else kernel

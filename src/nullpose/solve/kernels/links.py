@@ -15,7 +15,7 @@ import numpy as np
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch, zeroed
 
-__all__ = ["derivatives", "log_ratios", "min_log_ratio", "seen_axis"]
+__all__ = ["denominator_at", "derivatives", "log_ratios", "min_log_ratio", "numerator_at", "seen_axis"]
 
 
 @inner_kernel
@@ -43,22 +43,34 @@ def link_form(points, turn, j, p, u):
     return (cx * cx + cy * cy + cz * cz) / (rho2 * rho2)
 
 
+@inner_kernel
+def numerator_at(family, k, p, u):
+    """Return ``u^T N_k u`` at position p."""
+    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    link = link_form(family.points_m, family.turn, family.numerator_point[k], p, u)
+    return family.numerator_isotropic[k] * uu + family.numerator_weight[k] * link
+
+
+@inner_kernel
+def denominator_at(family, g, p, u):
+    """Return ``u^T D_g u`` at position p."""
+    total = family.denominator_isotropic[g] * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        link = link_form(family.points_m, family.turn, family.denominator_point[e], p, u)
+        total += family.denominator_weight[e] * link
+    return total
+
+
 @kernel
 def log_ratios(family, p, u, log_denominators, out):
     """Fill the logarithm of every ratio at position p and axis u, and those of the denominators."""
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
-    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
-    turn = family.turn
-    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
-    for g in range(d0.shape[0]):
-        total = d0[g] * uu
-        for e in range(dstart[g], dstart[g + 1]):
-            total += dw[e] * link_form(points, turn, dpt[e], p, u)
+    for g in range(log_denominators.shape[0]):
+        total = denominator_at(family, g, p, u)
         log_denominators[g] = math.log(total) if total > 0.0 else -math.inf
-    for k in range(nw.shape[0]):
-        value = n0[k] * uu + nw[k] * link_form(points, turn, npt[k], p, u)
-        out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominators[den[k]]
+    for k in range(out.shape[0]):
+        value = numerator_at(family, k, p, u)
+        log_denominator = log_denominators[family.denominator_of[k]]
+        out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominator
 
 
 @kernel

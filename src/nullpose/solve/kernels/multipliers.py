@@ -267,7 +267,7 @@ def interior_multipliers(
 
 
 @inner_kernel
-def free_multipliers(family, axis_field, basis, row, denominator, coarseness, room, axis):
+def free_multipliers(family, axis_field, basis, row, denominator, coarseness, workspace, axis):
     """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
 
     Both values are at the centre and relative to the level: the first is what multipliers cannot beat, the
@@ -276,10 +276,10 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, ro
     well below the level, and there is no axis.
     """
     level, ratios = row[LEVEL], family.numerator_isotropic.shape[0]
-    weights, every = room[:2]
+    weights, every = workspace.weights, workspace.values
     mean, back, v = scratch(6), scratch(3, 3), scratch(3)
     constraints, places, start = scratch(4, 6), scratch_int(4), scratch(4)
-    denominators = room[4]
+    denominators = workspace.denominators
     whiten(family, basis, row, denominator, denominators, mean, back)
     whitening = (denominators, mean, back)
     sides = constraint_forms(axis_field, basis, row, back, constraints, places)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = [
     "AFFINE",
@@ -68,8 +69,7 @@ def cell_side(face, cell, side, out):
     a = face
     v = (face + 1 + side) % 3
     low, high = cell[2 * side], cell[2 * side + 1]
-    for i in range(6):
-        out[i] = 0.0
+    out[:] = 0.0
     out[v] = -1.0
     out[a] = -low * high
     pair = 3 if a + v == 1 else (4 if a + v == 2 else 5)
@@ -130,8 +130,7 @@ def longest_side(row):
 def split_position(row, side, stack, top):
     """Push the halves of a box, cut across one side; return the new top."""
     for child in range(2):
-        for m in range(COLUMNS):
-            stack[top, m] = row[m]
+        copy_into(row, stack[top])
         stack[top, HALF + side] = 0.5 * row[HALF + side]
         stack[top, CENTRE + side] += (0.5 if child else -0.5) * row[HALF + side]
         top += 1
@@ -146,8 +145,7 @@ def split_axis(row, level_axes, stack, top):
     """
     if row[FACE] < 0.0:
         for face in range(3):
-            for m in range(COLUMNS):
-                stack[top, m] = row[m]
+            copy_into(row, stack[top])
             stack[top, FACE] = face
             stack[top, BAND] = 0.0
             for side in range(2):
@@ -160,8 +158,7 @@ def split_axis(row, level_axes, stack, top):
         side = 0 if row[FACE] == 0.0 else 1
     middle = 0.5 * (row[CELL + 2 * side] + row[CELL + 2 * side + 1])
     for child in range(2):
-        for m in range(COLUMNS):
-            stack[top, m] = row[m]
+        copy_into(row, stack[top])
         stack[top, CELL + 2 * side + (0 if child else 1)] = middle
         top += 1
     return top

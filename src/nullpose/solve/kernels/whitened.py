@@ -7,7 +7,7 @@ import numpy as np
 from nullpose.solve.kernels.exclusion import is_level
 from nullpose.solve.kernels.forms import add_form, congruence, inverse_factor, seen_from
 from nullpose.solve.kernels.jit import inner_kernel
-from nullpose.solve.kernels.links import link_form
+from nullpose.solve.kernels.links import denominator_at, numerator_at
 from nullpose.solve.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
 from nullpose.solve.kernels.scratch import scratch
 
@@ -27,25 +27,17 @@ def half_width(axis_field):
 
 
 @inner_kernel
-def add_plain_form(points, turn, j, basis, centre, weight, isotropic, out):
-    """Add ``isotropic I + weight T`` for point j seen from the centre, in the frame."""
-    x, y, z = seen_from(points, turn, j, centre, basis)
-    add_form(x, y, z, weight, isotropic, out)
-
-
-@inner_kernel
 def fill_denominators(family, basis, centre, denominators, mean):
     """Fill every denominator at the centre, in the frame, and their mean."""
-    points, d0, dstart = family.points_m, family.denominator_isotropic, family.denominator_start
-    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
-    groups = d0.shape[0]
+    groups = denominators.shape[0]
     denominators[:, :] = 0.0
     mean[:] = 0.0
     for g in range(groups):
         for m in range(3):
-            denominators[g, m] = d0[g]
-        for e in range(dstart[g], dstart[g + 1]):
-            add_plain_form(points, turn, dpt[e], basis, centre, dw[e], 0.0, denominators[g])
+            denominators[g, m] = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            x, y, z = seen_from(family.points_m, family.turn, family.denominator_point[e], centre, basis)
+            add_form(x, y, z, family.denominator_weight[e], 0.0, denominators[g])
         for m in range(6):
             mean[m] += denominators[g, m] / groups
 
@@ -73,16 +65,8 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
     several = family.denominator_isotropic.shape[0] > 1
     for m in range(6):
         raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
-    add_plain_form(
-        family.points_m,
-        family.turn,
-        family.numerator_point[k],
-        basis,
-        row[CENTRE:HALF],
-        family.numerator_weight[k],
-        family.numerator_isotropic[k],
-        raw,
-    )
+    x, y, z = seen_from(family.points_m, family.turn, family.numerator_point[k], row[CENTRE:HALF], basis)
+    add_form(x, y, z, family.numerator_weight[k], family.numerator_isotropic[k], raw)
     congruence(raw, back, out)
     if level_axes:  # no weight on the vertical: whitening leaves its direction alone
         out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level
@@ -130,23 +114,15 @@ def fill_values(family, centre, level, axis, size, values):
 
     Returns the smallest.
     """
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
-    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
-    turn = family.turn
-    square = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2
-    for k in range(nw.shape[0]):
-        values[k] = n0[k] * square + nw[k] * link_form(points, turn, npt[k], centre, axis)
-    if d0.shape[0] > 1:
-        for g in range(d0.shape[0]):
-            total = d0[g] * square
-            for e in range(dstart[g], dstart[g + 1]):
-                total += dw[e] * link_form(points, turn, dpt[e], centre, axis)
-            for k in range(nw.shape[0]):
-                if den[k] == g:
-                    values[k] += level * (size - total)
+    ratios, groups = family.numerator_weight.shape[0], family.denominator_isotropic.shape[0]
+    for k in range(ratios):
+        values[k] = numerator_at(family, k, centre, axis)
+    for g in range(groups if groups > 1 else 0):
+        excess = level * (size - denominator_at(family, g, centre, axis))
+        for k in range(ratios):
+            values[k] += excess if family.denominator_of[k] == g else 0.0
     smallest = values[0]
-    for k in range(1, nw.shape[0]):
+    for k in range(1, ratios):
         smallest = min(smallest, values[k])
     return smallest
 

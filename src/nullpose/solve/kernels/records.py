@@ -1,0 +1,67 @@
+"""What the kernels of the proof hand to each other, by name."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TOWARDS_POINT", "WORLD", "Frame", "Goal", "Workspace"]
+
+FloatArray: TypeAlias = NDArray[np.float64]
+
+WORLD = 0
+TOWARDS_POINT = 1
+
+
+class Frame(NamedTuple):
+    """A frame at a box's centre: WORLD, or TOWARDS_POINT, whose third axis turns with the way to a point.
+
+    Args:
+        kind: which of the two.
+        anchor: that point.
+        basis: (3, 3) its axes at the centre, in columns.
+        radius_m: distance of the anchor from the centre, about which the frame turns; infinity at rest.
+        least_radius_m: the least such distance in the box.
+    """
+
+    kind: int
+    anchor: int
+    basis: FloatArray
+    radius_m: float
+    least_radius_m: float
+
+
+class Goal(NamedTuple):
+    """What a run is after.
+
+    Args:
+        best: the incumbent's smallest ratio; a box's centre that beats it ends the call.
+        multipliers: a row with the multipliers at the incumbent, which are tried on every box.
+        axes_above: axes are split only where the dual's value, relative to the level, is above this.
+    """
+
+    best: float
+    multipliers: FloatArray
+    axes_above: float
+
+
+class Workspace(NamedTuple):
+    """Room for numbers of each ratio and of each denominator, made once for a run.
+
+    Args:
+        weights: (ratios + 4,) multipliers, of constraints too.
+        values: (ratios,).
+        gradients: (ratios, 3).
+        jets: (denominators, JET).
+        denominators: (denominators, 6) forms.
+        log_denominators: (denominators,).
+    """
+
+    weights: FloatArray
+    values: FloatArray
+    gradients: FloatArray
+    jets: FloatArray
+    denominators: FloatArray
+    log_denominators: FloatArray
