@@ -56,7 +56,7 @@ def _started() -> subprocess.Popen[bytes] | None:
 
 def _is_compiled(kernel: Any) -> bool:
     """Return whether there is nothing to compile in this process: done, or told not to."""
-    return isinstance(kernel, FunctionType) or bool(kernel.signatures)
+    return isinstance(kernel, FunctionType) or bool(kernel.overloads)
 
 
 def compile_proof() -> None:
