@@ -38,10 +38,8 @@ def test_what_turns_up_elsewhere_is_taken(paper: Callable) -> None:
     start = np.array([2.0, 25.0, 9.0, 0.1])
     assert hunt.look(start) == hunt.best > task.value(start)
     before = hunt.best
-    hunt.look(np.array([9.0, 1.0, 29.0, 0.1]))
+    assert hunt.look(np.array([9.0, 1.0, 29.0, 0.1])) <= hunt.best
     assert hunt.best >= before
-    hunt.look(hunt.state)
-    assert hunt.best == pytest.approx(before, abs=1e-9) or hunt.best > before
 
 
 @pytest.mark.parametrize("shared", [False, True])
