@@ -44,7 +44,15 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         cases: one or more.
     """
     nominal, moved = build_family(scenario), interferer_field(scenario, "offsets")
-    copies = _Copies()
+    copies: dict[bytes, tuple[FloatArray, FloatArray]] = {}  # each moved point with its rotation once
+    places: dict[bytes, int] = {}
+
+    def copied(point_m: FloatArray, rotation: FloatArray) -> int:
+        """Return the index of a copy, new or not."""
+        key = point_m.tobytes() + rotation.tobytes()
+        copies.setdefault(key, (point_m, rotation))
+        return places.setdefault(key, len(places))
+
     groups: dict[tuple[int, bytes], int] = {}
     numerator_point, denominator_of, of_group = [], [], []
     entries: list[int] = []
@@ -54,7 +62,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         offsets_m = _of_points(nominal, scenario, getattr(each.case, moved))
         moved_m = nominal.points_m - each.case.position_offset_m + offsets_m
         rotation = each.case.rotation_world
-        numerator_point.append(copies.add(moved_m[nominal.numerator_point[each.ratio]], rotation))
+        numerator_point.append(copied(moved_m[nominal.numerator_point[each.ratio]], rotation))
         group = int(nominal.denominator_of[each.ratio])
         bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
         disturbers_m = moved_m[nominal.denominator_point[bounds]]
@@ -62,15 +70,16 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         if key not in groups:
             groups[key] = len(groups)
             of_group.append(group)
-            entries += [copies.add(point_m, rotation) for point_m in disturbers_m]
+            entries += [copied(point_m, rotation) for point_m in disturbers_m]
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
+    points_m, rotations = (np.array(each) for each in zip(*copies.values(), strict=True))
     return replace(
         nominal,
-        points_m=np.array(copies.points_m),
-        turn=copies.turn,
+        points_m=points_m,
+        turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],
         numerator_weight=nominal.numerator_weight[ratios],
         numerator_point=np.array(numerator_point, dtype=np.int64),
@@ -80,30 +89,6 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         denominator_point=np.array(entries, dtype=np.int64),
         denominator_weight=np.concatenate(weights),
     )
-
-
-class _Copies:
-    """The points of a robust family, each moved point with its turn once."""
-
-    def __init__(self) -> None:
-        self.points_m: list[FloatArray] = []
-        self.rotations: list[FloatArray] = []
-        self._index: dict[bytes, int] = {}
-
-    def add(self, point_m: FloatArray, rotation: FloatArray) -> int:
-        """Return the index of a copy, new or not."""
-        key = point_m.tobytes() + rotation.tobytes()
-        if key not in self._index:
-            self._index[key] = len(self.points_m)
-            self.points_m.append(point_m)
-            self.rotations.append(rotation)
-        return self._index[key]
-
-    @property
-    def turn(self) -> FloatArray:
-        """The turns as a family has them: none at all if no point has one."""
-        turn = np.array(self.rotations)
-        return turn if np.any(turn != np.eye(3)) else np.zeros((0, 3, 3))
 
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
