@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.paper.study import JammingStudy, bound_db, lead_of
-from nullpose.paper.told import NOISE, PRINTED, RATIO, Measured, apart_m, told
+from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.numbers import at_least, at_most
@@ -37,7 +36,7 @@ SIGNIFICANT_DB = 1.0
 FLAT_DB, NEAR_DB = 1e-3, 0.01
 WEAK, STRONG = 0.01, 1.0  # P_M/P at most, at least
 
-_OPTIMUM, _NULL, _GAIN, _VERTICAL = PAPER_SCHEMES
+(_OPTIMUM, _NULL, _GAIN, _VERTICAL), _PRINTED = PAPER_SCHEMES, Scheme.MAXIMUM_GAIN_PRINTED
 
 
 def weak_jamming(study: JammingStudy) -> Measured:
@@ -215,11 +214,11 @@ def saturation(study: JammingStudy) -> Measured:
         study: the data.
     """
     strongest = study.levels[-1]
-    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in (*PAPER_SCHEMES, PRINTED)}
+    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in (*PAPER_SCHEMES, _PRINTED)}
     ends = [evidence[scheme] for scheme in PAPER_SCHEMES]
     starts = [end["within_0.01_db_from"] for end in ends]
     values = ", ".join(f"{name} {end['value_at_strongest_db']:.4f} dB" for name, end in evidence.items())
-    unequal_m = apart_m(study, study.curve(PRINTED))
+    unequal_m = apart_m(study, study.curve(_PRINTED))
     falls_db = [
         lead_of(study.at(scheme, strongest / 10.0), study.at(scheme, strongest)).most_db
         for scheme in PAPER_SCHEMES
@@ -227,7 +226,7 @@ def saturation(study: JammingStudy) -> Measured:
     return {
         "holds": all(abs(end["change_over_last_decade_db"]) <= FLAT_DB for end in ends),
         "finding": f"At P_M/P = {strongest:g}: {values}. Eq. 3.5 as printed, its axis not normalised, "
-        f"changes by {evidence[PRINTED]['change_over_last_decade_db']:.2f} dB over the last decade, its "
+        f"changes by {evidence[_PRINTED]['change_over_last_decade_db']:.2f} dB over the last decade, its "
         f"position staying equidistant from the nodes to {max(unequal_m, NOISE):.1g} m.",
         "evidence": evidence | {"printed_form_largest_distance_difference_m": unequal_m},
         "proved": f"Over the last decade no curve changes by more than {at_most(max(falls_db))} dB, between "

@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.airframes import answer_lines
+from nullpose.report.airframes import answer_lines, numbers_of
 from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import number, share_text
@@ -59,19 +59,8 @@ def draw_airframes(comparison: AirframeComparison) -> Figure:
     return figure
 
 
-def _columns(comparison: AirframeComparison, quantity: Quantity) -> FloatArray:
-    """Return value, bound, and what the pose shown and the robust one guarantee, (4, n); NaN for none."""
-    rows = []
-    for result in comparison.results:
-        objective, guaranteed = result.objective, result.guaranteed
-        found = [None] * 2 if objective is None else [objective.value, objective.upper_bound]
-        kept = [None] * 2 if guaranteed is None else [guaranteed.nominal_pose, guaranteed.robust_pose]
-        rows.append([math.nan if each is None else quantity.in_unit(each) for each in (*found, *kept)])
-    return np.transpose(rows)
-
-
 def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, places: FloatArray) -> None:
-    numbers = _columns(comparison, quantity)
+    numbers = numbers_of(comparison)[:4]
     known = numbers[np.isfinite(numbers)]
     high, low = max(known.max(initial=0.0), 1e-3), 0.0  # a rate is drawn from nothing
     if not quantity.is_rate:
