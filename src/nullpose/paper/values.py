@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -47,10 +47,9 @@ def weak_jamming(study: JammingStudy) -> Measured:
     """
     weakest = study.levels[0]
     next_db = study.lead(_OPTIMUM, _GAIN, 10 * weakest).least_db
-    limit = study.holds_up_to(_coincident(study, _GAIN))
-    measured, slope = _approach(study, _GAIN, weakest, [weakest * 10**i for i in range(4)])
+    limit = study.holds_up_to(lambda level: study.lead(_OPTIMUM, _GAIN, level).found_db <= COINCIDE_DB)
+    measured = _approach(study, _GAIN, weakest, [weakest * 10**i for i in range(4)])
     return measured | {
-        "holds": measured["holds"] and slope > 0.0,
         "finding": f"{measured['finding']} It stays within {COINCIDE_DB} dB up to {told(limit)}.",
         "proved": f"{measured['proved']}, and at least {at_least(next_db)} dB at {10 * weakest:g}: it grows.",
         "holds_up_to": limit,
@@ -64,31 +63,23 @@ def strong_jamming(study: JammingStudy) -> Measured:
         study: the data.
     """
     strongest = study.levels[-1]
-    limit = study.holds_from(_coincident(study, _NULL))
-    measured, slope = _approach(study, _NULL, strongest, [1.0, 10.0, 100.0, 1000.0, strongest])
-    proved = measured["proved"]
-    if limit is not None:
-        proved += (
-            f", and at most {at_most(study.lead(_OPTIMUM, _NULL, limit).most_db, 5)} dB at every power from "
-            f"{limit:.3g} on, between the swept ones too: more jamming never raises the optimum, and does "
-            "not touch zero interference"
-        )
+    limit = study.holds_from(lambda level: study.lead(_OPTIMUM, _NULL, level).found_db <= COINCIDE_DB)
+    measured = _approach(study, _NULL, strongest, [1.0, 10.0, 100.0, 1000.0, strongest])
+    most_db = study.lead(_OPTIMUM, _NULL, limit or strongest).most_db
     return measured | {
-        "holds": measured["holds"] and slope < 0.0,
         "finding": f"{measured['finding']} It is within {COINCIDE_DB} dB from {told(limit)} on.",
-        "proved": f"{proved}.",
+        "proved": f"{measured['proved']}, and at most {at_most(most_db, 5)} dB at every power from "
+        f"{limit or strongest:.3g} on, between the swept ones too: more jamming never raises the optimum, "
+        "and does not touch zero interference.",
         "holds_from": limit,
     }
 
 
-def _coincident(study: JammingStudy, scheme: Scheme) -> Callable[[float], bool]:
-    return lambda level: study.lead(_OPTIMUM, scheme, level).found_db <= COINCIDE_DB
+def _approach(study: JammingStudy, scheme: Scheme, end: float, levels: Sequence[float]) -> Measured:
+    """Return how far a scheme is from the optimum at some levels, and the exponent between the first two.
 
-
-def _approach(
-    study: JammingStudy, scheme: Scheme, end: float, levels: Sequence[float]
-) -> tuple[Measured, float]:
-    """Return how far a scheme is from the optimum at some levels, and the exponent between the first two."""
+    It has to be near at one end, and nearer the closer to that end the first two levels are.
+    """
     shortfalls_db = [study.lead(_OPTIMUM, scheme, level).found_db for level in levels]
     slope = math.nan
     if min(shortfalls_db[:2]) > 0.0:
@@ -107,15 +98,15 @@ def _approach(
             }
         )
     lead = study.lead(_OPTIMUM, scheme, end)
-    measured = {
-        "holds": lead.found_db <= COINCIDE_DB,
+    towards = 1.0 if end <= levels[0] else -1.0
+    return {
+        "holds": lead.found_db <= COINCIDE_DB and slope * towards > 0.0,
         "finding": f"At P_M/P = {end:g} {scheme.label.lower()} is {max(lead.found_db, 0.0):.2g} dB below the "
         f"optimum. Between P_M/P = {levels[0]:g} and {levels[1]:g} the shortfall goes as "
         f"(P_M/P)^{slope:.2f}, so the two coincide exactly only in the limit.",
         "evidence": {"scheme": scheme, "exponent_of_the_shortfall": slope, "levels": rows},
         "proved": f"The true shortfall is at most {at_most(lead.most_db)} dB at P_M/P = {end:g}",
     }
-    return measured, slope
 
 
 def _axes_apart_deg(first: Pose, second: Pose) -> float:

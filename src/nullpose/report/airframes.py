@@ -44,7 +44,7 @@ def airframes_view(comparison: AirframeComparison) -> RenderableType:
     values = rows(
         {
             "vehicle, dipole": labels,
-            "ratio": [None if quantity.is_rate else f"{result.value:.5g}" for result in results],
+            "ratio": [None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives],
             "value": _told(value, 4),
             "at most": [None if of is None else bound_text(of, 4) for of in objectives],
             "difference": _told(value - value[whole], 3),

@@ -234,7 +234,7 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> Rendera
         "node": [link.node for link in links],
         **own,
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
-        quantity.ratio: [f"{link.sinr:.5g}" for link in links],
+        quantity.ratio: [None if own else f"{link.sinr:.5g}" for link in links],
         "distance (m)": [f"{distance:.2f}" for distance in distances_m],
         **more,
         "": ["binding" if link.node in binding else "" for link in links],

@@ -27,6 +27,8 @@ __all__ = ["ALONE", "DRONE", "PAIR", "PANELS", "SURFACE", "Stage", "View", "draw
 _MARGIN = 0.12  # free ground around the scene
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
+_ZOOM = 1.12  # how much of its place a scene fills
+_COLUMN_INCH = 2.3  # of the legend
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 _AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
@@ -46,18 +48,14 @@ class View:
     Args:
         inches: width of each panel, height of the figure.
         edges: where panels end and begin, as shares of the height.
-        columns: of the legend.
         elevation_deg: how high the camera stands.
-        zoom: how much of its place a scene fills.
         pattern: radius drawn where the gain is largest; a pattern has no size of its own.
         azimuth_deg: where the camera stands, from x (east) towards y (north).
     """
 
     inches: tuple[float, float]
     edges: tuple[float, float]
-    columns: int
     elevation_deg: float
-    zoom: float
     pattern: float
     azimuth_deg: float = -32.0
 
@@ -69,9 +67,9 @@ class View:
         return np.array([flat * math.cos(azimuth), flat * math.sin(azimuth), math.sin(elevation)])
 
 
-PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), columns=6, elevation_deg=20.0, zoom=1.13, pattern=0.15)
-PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), columns=4, elevation_deg=38.0, zoom=1.05, pattern=0.11)
-ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), columns=3, elevation_deg=38.0, zoom=1.17, pattern=0.11)
+PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), elevation_deg=20.0, pattern=0.15)
+PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11)
+ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), elevation_deg=38.0, pattern=0.11)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +78,7 @@ class Stage:
 
     Args:
         scenario: the scene.
-        poses: those that there must be room for in each panel.
+        poses: one for each panel; all show the same space.
         view: size, camera and lengths.
         uncertain: whether sets are drawn that jammers and eavesdroppers may be anywhere in.
     """
@@ -121,8 +119,7 @@ class Stage:
 
 
 def draw_panels(
-    stages: Sequence[Stage],
-    poses: Sequence[Pose],
+    stage: Stage,
     draw_vehicle: Callable[[Any, Stage, Pose], None],
     *,
     surface: str,
@@ -132,8 +129,7 @@ def draw_panels(
     """Return a figure with a panel for each pose: the scene, the vehicle, and the names of points.
 
     Args:
-        stages: what each panel has to show; all have the same view.
-        poses: one for each panel.
+        stage: what each panel has to show.
         draw_vehicle: draws the vehicle at a pose.
         surface: what its pattern is called in the legend.
         head: title of the figure; empty for none.
@@ -142,12 +138,12 @@ def draw_panels(
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    view = stages[0].view
+    view, count = stage.view, len(stage.poses)
     with house_style():
-        figure = Figure(figsize=(view.inches[0] * len(poses), view.inches[1]))
+        figure = Figure(figsize=(view.inches[0] * count, view.inches[1]))
         figure.subplots_adjust(left=0.016, right=0.962, bottom=view.edges[0], top=view.edges[1], wspace=0.08)
-        for index, (stage, pose) in enumerate(zip(stages, poses, strict=True)):
-            axes: Any = figure.add_subplot(1, len(poses), index + 1, projection="3d", computed_zorder=False)
+        for index, pose in enumerate(stage.poses):
+            axes: Any = figure.add_subplot(1, count, index + 1, projection="3d", computed_zorder=False)
             labels = _draw_scene(axes, stage, pose)
             draw_vehicle(axes, stage, pose)
             place_labels(axes, labels, pose.position_m, view.pattern * stage.extent_m)
@@ -155,7 +151,7 @@ def draw_panels(
         figure.suptitle(head, fontsize=10, parse_math=False)
         handles, names = figure.axes[0].get_legend_handles_labels()
         once = dict(zip(names, handles, strict=True)) | {surface: Patch(color=SURFACE, alpha=0.8)}
-        columns = min(len(once), view.columns)
+        columns = min(len(once), int(view.inches[0] * count / _COLUMN_INCH))
         legend = figure.legend(
             once.values(), once.keys(), loc="lower center", ncols=columns, frameon=False, handlelength=2.6
         )
@@ -228,7 +224,7 @@ def _frame(axes: Any, stage: Stage) -> None:
 
     low, high = _limits(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
+    axes.set_box_aspect(tuple(high - low), zoom=_ZOOM)  # one metre is as long along every axis
     axes.set_xlabel("x (east)  m", labelpad=-3)
     axes.set_ylabel("y (north)  m", labelpad=-1)
     axes.set_zlabel("z (up)  m", labelpad=-8)
