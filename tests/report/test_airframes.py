@@ -2,6 +2,7 @@
 
 import io
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from nullpose.scenario import apply_overrides
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
+@cache
 def compared(name: str, *overrides: str, **options: object) -> AirframeComparison:
     """Returns an example's vehicles compared."""
     return compare_airframes(apply_overrides(load(EXAMPLES / f"{name}.toml"), list(overrides)), **options)
