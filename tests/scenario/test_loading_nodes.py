@@ -386,3 +386,9 @@ def test_too_many_nodes(tmp_path: Path) -> None:
     ):
         fault = faults_of(tmp_path, file, content)[-1]
         assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"
+
+
+def test_a_geometry_that_is_a_text(tmp_path: Path) -> None:
+    """A text in place of a geometry is refused like any other value, whatever it says."""
+    (fault,) = faults_of(tmp_path, "n.geojson", collection(feature() | {"geometry": "Point"}))
+    assert fault.path == "n.geojson: features[0].geometry"

@@ -68,7 +68,8 @@ def _values(feature: Any) -> tuple[dict[str, object], bool]:
     _require(is_feature, "", _type(feature), 'an object with "type": "Feature"')
     properties, geometry = feature.get("properties"), feature.get("geometry")
     _require(properties is None or isinstance(properties, dict), ".properties", properties, "an object")
-    _require(_type(geometry) == "Point", ".geometry", _type(geometry), 'a geometry of type "Point"')
+    is_point = isinstance(geometry, dict) and geometry.get("type") == "Point"
+    _require(is_point, ".geometry", _type(geometry), 'a geometry of type "Point"')
     here, coordinates = ".geometry.coordinates", geometry.get("coordinates")
     is_place = isinstance(coordinates, list) and len(coordinates) in (2, 3) and None not in coordinates
     _require(is_place, here, coordinates, _COORDINATES)
