@@ -65,12 +65,18 @@ class LinkedDispatcher(CPUDispatcher):
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
+        self.entries: list[Any] = []
         part = options | {"no_cpython_wrapper": True}
         self._part = CPUDispatcher(function, targetoptions=part, pipeline_class=_PartCompiler)
 
     @property
     def _numba_type_(self) -> Any:
         return self._part._numba_type_
+
+    def add_overload(self, cres: Any) -> None:
+        """Keep the machine code for one choice of types."""
+        super().add_overload(cres)
+        self.entries.append(cres.entry_point)
 
 
 def entry_of(kernel: Any) -> Any:
@@ -82,5 +88,5 @@ def entry_of(kernel: Any) -> Any:
     Args:
         kernel: any.
     """
-    compiled = list(getattr(kernel, "overloads", {}).values())
-    return compiled[0].entry_point if len(compiled) == 1 else kernel
+    entries = getattr(kernel, "entries", ())
+    return entries[0] if len(entries) == 1 else kernel
