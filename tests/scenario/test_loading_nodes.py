@@ -303,7 +303,7 @@ def test_nodes_in_both_places(tmp_path: Path) -> None:
     table = "[[nodes]]\nposition_m = [0, 0, 0]\npower_w = -1.0\n"
     faults = faults_of(tmp_path, "n.csv", LOCAL + "a,1,2,3,4\n", SCENARIO + table)
     assert [fault.path for fault in faults] == ["nodes_from", "nodes[0].power_w"]
-    assert "both nodes and nodes_from are given, exactly one is allowed" in faults[0].message
+    assert "in place of its own nodes; remove it or them" in faults[0].message
 
 
 def test_all_faults_of_both_files_at_once(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ __all__ = ["Override", "apply_overrides", "parse_override"]
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+_PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,15 +113,12 @@ def _value(path: str, text: str) -> object:
 
 def _steps(path: str) -> Place:
     """Returns the path as keys, names and indices."""
-    steps: list[str | int] = []
-    end = 0
-    while end < len(path) or not steps:
-        step = _STEP.match(path, end)
-        if not step:
-            raise ScenarioError([Fault(path, "this is not a path")])
-        steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
-        end = step.end()
-    return tuple(steps)
+    if not _PATH.fullmatch(path):
+        raise ScenarioError([Fault(path, "this is not a path")])
+    found = (step.groups() for step in _STEP.finditer(path))
+    return tuple(
+        int(index) if index else double or single or bare or "" for double, single, bare, index in found
+    )
 
 
 def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object, path: str) -> None:
