@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from nullpose.family.build import build_family
-from nullpose.family.ratios import Family, FloatArray
+from nullpose.family.family import Family
+from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
@@ -71,8 +72,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
-    return replace(
-        nominal,
+    return nominal.changed(
         points_m=np.array(copies.points_m),
         turn=copies.turn,
         numerator_isotropic=nominal.numerator_isotropic[ratios],
