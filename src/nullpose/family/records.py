@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.objectives import FloatArray, IntArray
 
-__all__ = ["Axes", "Domain"]
+__all__ = ["ArrayProblem", "Axes", "Domain"]
 
 
 class Domain(NamedTuple):
@@ -51,3 +51,13 @@ class Axes(NamedTuple):
     kind: int
     offset: FloatArray
     matrix: FloatArray
+
+
+class ArrayProblem(NamedTuple):
+    """What an array on a level vehicle hears; m points, the nodes first, and k elements."""
+
+    points_m: FloatArray  # (m, 3)
+    strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires
+    nodes: int
+    base: FloatArray  # (k, 2) elements in body axes, wavelengths
+    shared: bool  # whether one beam serves all nodes; otherwise each has its own weights
