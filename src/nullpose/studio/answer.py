@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 
 from nullpose.objectives import Quantity
-from nullpose.physics import Link, Pose, evaluate, to_db
+from nullpose.physics import Link, Pose, evaluate
 from nullpose.report.numbers import short
 from nullpose.scenario import Scenario
 from nullpose.solve import Solution, Status
 from nullpose.solve.robust import RobustSolution
 from nullpose.studio.case import Case
 
-__all__ = ["Answer", "Stage", "answer_of", "robust_answer_of", "status_words"]
-
-
-class Stage(StrEnum):
-    """How far the solve of a case has come."""
-
-    BEST_SO_FAR = "best so far"
-    CERTIFIED = "certified"
-    NOT_CERTIFIED = "not certified"
+__all__ = ["Answer", "answer_of", "status_words"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,23 +23,20 @@ class Answer:
     Args:
         version: the version of the scene that it belongs to.
         case: the case it answers.
-        scenario: what was solved for it.
-        stage: how far it has come.
-        pose: where the drone is and how it is turned.
+        status: how far it is proved.
+        pose: where the drone is, and its attitude.
         links: what every node has there.
         value: the objective: a power ratio, or bits/s/Hz; of the robust case, what the pose guarantees.
         bound: no pose exceeds this; None if nothing is proved.
         gap: relative gap between the two; None if nothing is proved.
         binding_node: the node that decides.
         note: a sentence on the answer; may be empty.
-        seconds: what its solve took.
         solution: what the solver returned.
     """
 
     version: int
     case: Case
-    scenario: Scenario
-    stage: Stage
+    status: Status
     pose: Pose
     links: tuple[Link, ...]
     value: float
@@ -56,8 +44,12 @@ class Answer:
     gap: float | None
     binding_node: str
     note: str
-    seconds: float
     solution: Solution | RobustSolution
+
+    @property
+    def scenario(self) -> Scenario:
+        """What was solved for it."""
+        return self.solution.scenario
 
     @property
     def quantity(self) -> Quantity:
@@ -67,67 +59,37 @@ class Answer:
     @property
     def shown_value(self) -> float:
         """The value in the unit that is shown: dB, or bits/s/Hz."""
-        return self._in_unit(self.value)
-
-    @property
-    def shown_bound(self) -> float | None:
-        """The bound in the unit that is shown; None if nothing is proved."""
-        return None if self.bound is None else self._in_unit(self.bound)
-
-    def _in_unit(self, value: float) -> float:
-        return value if self.quantity.is_rate else float(to_db(value))
+        return self.quantity.in_unit(self.value)
 
 
-def answer_of(version: int, case: Case, solution: Solution) -> Answer:
-    """Return the answer that a solution is.
+def answer_of(version: int, case: Case, solution: Solution | RobustSolution) -> Answer:
+    """Return the answer that a solution is; the value of a robust one is what its pose guarantees.
 
     Args:
         version: the version of the scene that was solved.
         case: the case that was solved.
         solution: what the solver returned.
     """
-    objective = solution.objective
+    stopped = f"The proof stopped: {solution.reason}" if solution.reason else ""
+    if isinstance(solution, RobustSolution):
+        best, note = solution.robust, f"Worst case: {solution.robust.worst_case}"
+        pose, links, node = best.pose, evaluate(solution.scenario, best.pose), best.binding_node
+        value, bound, gap = best.guaranteed, solution.upper_bound, solution.relative_gap
+    else:
+        pose, links, node, note = solution.pose, solution.links, solution.binding_node, solution.note
+        objective = solution.objective
+        value, bound, gap = objective.value, objective.upper_bound, objective.relative_gap
     return Answer(
         version=version,
         case=case,
-        scenario=solution.scenario,
-        stage=_STAGES[solution.status],
-        pose=solution.pose,
-        links=solution.links,
-        value=objective.value,
-        bound=objective.upper_bound,
-        gap=objective.relative_gap,
-        binding_node=solution.binding_node,
-        note=". ".join(text for text in (solution.note, _stopped(solution.reason)) if text),
-        seconds=solution.stats.wall_s,
-        solution=solution,
-    )
-
-
-def robust_answer_of(version: int, case: Case, solution: RobustSolution) -> Answer:
-    """Return the answer that a robust solution is: its value is what the pose guarantees.
-
-    Args:
-        version: the version of the scene that was solved.
-        case: the case that was solved.
-        solution: what the robust solver returned.
-    """
-    robust = solution.robust
-    return Answer(
-        version=version,
-        case=case,
-        scenario=solution.scenario,
-        stage=_STAGES[solution.status],
-        pose=robust.pose,
-        links=evaluate(solution.scenario, robust.pose),
-        value=robust.guaranteed,
-        bound=solution.upper_bound,
-        gap=solution.relative_gap,
-        binding_node=robust.binding_node,
-        note=". ".join(
-            text for text in (f"Worst case: {robust.worst_case}", _stopped(solution.reason)) if text
-        ),
-        seconds=solution.stats.wall_s,
+        status=solution.status,
+        pose=pose,
+        links=links,
+        value=value,
+        bound=bound,
+        gap=gap,
+        binding_node=node,
+        note=". ".join(filter(None, (note, stopped))),
         solution=solution,
     )
 
@@ -143,20 +105,9 @@ def status_words(version: int, answer: Answer | None) -> str:
     """
     if answer is None or answer.version != version:
         return "solving"
-    if answer.stage is Stage.BEST_SO_FAR or answer.gap is None:
+    if answer.status is Status.BEST_FOUND or answer.gap is None:
         return "best so far"
     reach = short(answer.gap) if math.isfinite(answer.gap) else "no gap that is finite"
-    if answer.stage is Stage.CERTIFIED:
+    if answer.status is Status.CERTIFIED:
         return f"certified to {reach}, {answer.solution.rigour.value}"
     return f"best so far, proved to {reach}"
-
-
-def _stopped(reason: str) -> str:
-    return f"The proof stopped: {reason}" if reason else ""
-
-
-_STAGES = {
-    Status.CERTIFIED: Stage.CERTIFIED,
-    Status.GAP_NOT_REACHED: Stage.NOT_CERTIFIED,
-    Status.BEST_FOUND: Stage.BEST_SO_FAR,
-}

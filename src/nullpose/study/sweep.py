@@ -17,7 +17,7 @@ from nullpose.solve import (
 )
 from nullpose.study.table import SweepRow, SweepTable
 
-__all__ = ["scenarios_along", "sweep"]
+__all__ = ["scenarios_along", "sweep", "sweep_row"]
 
 
 def sweep(
@@ -77,7 +77,7 @@ def sweep(
             )
             if solution.interrupted:
                 raise KeyboardInterrupt
-            rows.append(_row(value, solution))
+            rows.append(sweep_row(value, solution))
             if on_progress is not None:
                 on_progress(len(rows), total)
     return SweepTable(path=path, rows=tuple(rows), left_out=MappingProxyType(left_out))
@@ -127,7 +127,13 @@ def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
     return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
 
 
-def _row(value: float, solution: Solution) -> SweepRow:
+def sweep_row(value: float, solution: Solution) -> SweepRow:
+    """Return the row of one solve.
+
+    Args:
+        value: of the setting, in its own unit.
+        solution: what was found there.
+    """
     return SweepRow(
         value=value,
         scheme=solution.scheme.value,
