@@ -15,8 +15,7 @@ from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve import certificate_of, solve
 from nullpose.solve.certificate_from_proof import leaves_of
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
 Place = tuple[float, float, float]
@@ -62,7 +61,7 @@ def put_together() -> Callable[..., Certificate]:
     def make(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3) -> Certificate:
         family, fields = build_family(scenario), claimed_axes(scenario, scheme, None)
         assert fields is not None
-        effort = Effort(limits=Limits(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9))
+        effort = SolveOptions(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9)
         outcome = solve_and_prove(family, list(fields.values()), effort)
         mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
         east, north, up = outcome.incumbent.axis * np.sign(outcome.incumbent.axis[2] or 1.0)

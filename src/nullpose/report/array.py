@@ -31,7 +31,7 @@ def array_view(solution: ArraySolution) -> RenderableType:
     lines = (
         bound_words(objective),
         status_words(solution),
-        agreeing if stats.searches > 1 else "",
+        agreeing if (stats.searches or 1) > 1 else "",
         requirement_words(solution),
     )
     array = Array(

@@ -32,14 +32,14 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     scenario, solutions = comparison.scenario, comparison.solutions
     quantity = Quantity.of(scenario)
     best = max((quantity.in_unit(each.objective.value) for each in solutions), default=math.nan)
-    labels = [each.scheme.label for each in solutions]
+    labels = [each.label for each in solutions]
     sections = ([_values(each, best) for each in solutions], map(_pose, solutions), map(_links, solutions))
     rows: list[Mapping[str, str]] = []
     for cells in sections:
         rows += [*beside(dict(zip(labels, cells, strict=True))), {}]
     smallest = f"smallest {quantity.short} ({quantity.unit})"
-    lines = [f"{each.scheme.label}: {each.note}" for each in solutions if each.note]
-    lines += [f"{each.scheme.label}: {words}" for each in solutions if (words := requirement_words(each))]
+    lines = [f"{each.label}: {each.note}" for each in solutions if each.note]
+    lines += [f"{each.label}: {words}" for each in solutions if (words := requirement_words(each))]
     lines += not_applicable_lines(comparison.left_out)
     lines += _certainty(solutions)
     lines.append(f"* binding: the {quantity.smallest} is at this node")
@@ -55,14 +55,14 @@ def _certainty(solutions: Sequence[Solution]) -> list[str]:
         return []
     lines = []
     for status in Status:
-        labels = [solution.scheme.label for solution in solutions if solution.status is status]
+        labels = [solution.label for solution in solutions if solution.status is status]
         who = "All" if len(labels) == len(solutions) else ", ".join(labels)
         if len(solutions) == len(labels) == 1:
             lines.append(f"{begun(status.message)}.")
         elif labels:
             lines.append(f"{who}: {status.message}.")
-    lines += rigour_lines((solution.scheme.label, solution.rigour) for solution in solutions)
-    lines += [f"{solution.scheme.label}: {solution.reason}" for solution in solutions if solution.reason]
+    lines += rigour_lines((solution.label, solution.rigour) for solution in solutions)
+    lines += [f"{solution.label}: {solution.reason}" for solution in solutions if solution.reason]
     starts = sum(solution.stats.starts for solution in solutions)
     return [*lines, f"{work_words(starts, sum(each.stats.boxes for each in solutions))} in all"]
 

@@ -15,7 +15,7 @@ from nullpose.report.numbers import count_words, degrees_text, fixed
 from nullpose.report.quantity import bound_words, value_words
 from nullpose.report.requirements import requirement_words
 from nullpose.scenario import Scenario
-from nullpose.solve import ArraySolution, Scheme, Solution
+from nullpose.solve import ArrayDetails, ArraySolution, Scheme, Solution
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -118,7 +118,7 @@ def solution_view(solution: Solution) -> RenderableType:
     note = "Jamming does not depend on the pose; it is counted in the noise of the nodes."
     rate = objective.quantity.is_rate
     return document(
-        head(scenario.name, solution.scheme.label, value_words(objective), lines),
+        head(scenario.name, solution.label, value_words(objective), lines),
         pairs("", _pose_rows(solution)),
         links_table(solution, _own_cells(solution), _gain_cells(solution)),
         _jammers_table(scenario, solution.pose) if scenario.jammers and not rate else None,
@@ -178,7 +178,7 @@ def links_table(
     points_m = solution.scenario.node_positions_m
     columns = {"node": [link.node for link in links], **own}
     columns[f"{quantity.ratio} (dB)"] = [f"{link.sinr_db:.4f}" for link in links]
-    if quantity.noun == quantity.ratio or isinstance(solution, ArraySolution):
+    if quantity.noun == quantity.ratio or isinstance(solution.details, ArrayDetails):
         columns[quantity.ratio] = [f"{link.sinr:.5g}" for link in links]
     columns["distance (m)"] = [f"{distance_m(solution.pose, point):.2f}" for point in points_m]
     columns |= gains or {}

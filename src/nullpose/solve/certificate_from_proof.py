@@ -16,8 +16,8 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve.proof import Proof
+from nullpose.solve.result import Result
 from nullpose.solve.rigour import Rigour, bound_above
-from nullpose.solve.solution import Solution
 
 __all__ = ["certificate_of", "require_certificate", "verified"]
 
@@ -42,7 +42,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     return fields
 
 
-def certificate_of(solution: Solution) -> Certificate:
+def certificate_of(solution: Result) -> Certificate:
     """Return the certificate of a solution: everything that a verifier needs to check its bound.
 
     Args:
@@ -58,7 +58,7 @@ def certificate_of(solution: Solution) -> Certificate:
     value, bound = _ratios(solution)
     return Certificate(
         scenario=solution.scenario,
-        scheme=solution.scheme.value,
+        scheme=str(solution.scheme),
         null_jammer=solution.null_jammer,
         value=value,
         upper_bound=bound,
@@ -74,7 +74,7 @@ def certificate_of(solution: Solution) -> Certificate:
     )
 
 
-def verified(solution: Solution, on_progress: Callable[[int, int], None] | None = None) -> Solution:
+def verified(solution: Result, on_progress: Callable[[int, int], None] | None = None) -> Result:
     """Return a solution after the verifier has checked its certificate: its rigour is the verdict.
 
     It is ``verified``; or, should the verifier reject what the solver proved in floating point,
@@ -96,7 +96,7 @@ def verified(solution: Solution, on_progress: Callable[[int, int], None] | None 
     )
 
 
-def _ratios(solution: Solution) -> tuple[float, float]:
+def _ratios(solution: Result) -> tuple[float, float]:
     """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
     objective = solution.objective
     if not objective.quantity.is_rate:

@@ -136,7 +136,7 @@ def sweep_row(value: float, solution: Solution) -> SweepRow:
     """
     return SweepRow(
         value=value,
-        scheme=solution.scheme.value,
+        scheme=str(solution.scheme),
         status=solution.status.value,
         objective=solution.objective,
         pose=solution.pose,

@@ -109,7 +109,7 @@ def _pose_properties(solution: Solution) -> dict[str, object]:
     }
     return {
         "kind": "pose",
-        "name": solution.scheme.label,
+        "name": solution.label,
         "status": solution.status.value,
         "rigour": solution.rigour.value,
         "objective": objective.name,

@@ -1,11 +1,11 @@
-"""Limits of a proof: what they may be."""
+"""SolveOptions of a proof: what they may be."""
 
 import math
 
 import pytest
 
 from nullpose.errors import UsageError
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap
+from nullpose.solve.options import NODE_LIMIT, TIME_LIMIT_S, SolveOptions, default_gap
 
 
 def test_gaps_asked_for_by_default() -> None:
@@ -16,7 +16,7 @@ def test_gaps_asked_for_by_default() -> None:
 
 def test_defaults_are_the_documented_ones() -> None:
     """Left out, the time and the boxes are those of the command line."""
-    limits = Limits(gap=1e-3)
+    limits = SolveOptions(gap=1e-3)
     assert (limits.time_limit_s, limits.node_limit) == (TIME_LIMIT_S, NODE_LIMIT) == (60.0, 10**9)
 
 
@@ -24,25 +24,25 @@ def test_defaults_are_the_documented_ones() -> None:
 def test_gaps_that_cannot_be_met(gap: float) -> None:
     """Below rounding, above ten, or no number."""
     with pytest.raises(UsageError, match="gap: given"):
-        Limits(gap=gap)
+        SolveOptions(gap=gap)
 
 
 @pytest.mark.parametrize("time_limit_s", [0.0, -1.0, math.nan, -math.inf])
 def test_times_that_cannot_be_met(time_limit_s: float) -> None:
     """No time at all, or no number; endless time is allowed."""
     with pytest.raises(UsageError, match="time limit: given"):
-        Limits(gap=1e-3, time_limit_s=time_limit_s)
-    assert Limits(gap=1e-3, time_limit_s=math.inf).time_limit_s == math.inf
+        SolveOptions(gap=1e-3, time_limit_s=time_limit_s)
+    assert SolveOptions(gap=1e-3, time_limit_s=math.inf).time_limit_s == math.inf
 
 
 @pytest.mark.parametrize("node_limit", [0, -1, 1.5, 1.0, True, "9", None])
 def test_node_limits_that_cannot_be_met(node_limit: object) -> None:
     """Fewer than one, or no whole number."""
     with pytest.raises(UsageError, match="node limit: given"):
-        Limits(gap=1e-3, node_limit=node_limit)
+        SolveOptions(gap=1e-3, node_limit=node_limit)
 
 
 @pytest.mark.parametrize("gap", [1e-8, 1e-6, 1.0, 10.0])
 def test_gaps_that_can(gap: float) -> None:
     """The ends of the range belong to it."""
-    assert Limits(gap=gap, node_limit=1).gap == gap
+    assert SolveOptions(gap=gap, node_limit=1).gap == gap
