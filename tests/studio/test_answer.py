@@ -16,7 +16,7 @@ def test_words_follow_what_is_proved(paper: Scenario) -> None:
     assert status_words(4, proved) == "solving"
     assert status_words(3, searched) == "best so far"
     assert status_words(3, proved) == "certified to 1e-6, verifiable"
-    assert cut.status is Status.GAP_NOT_REACHED
+    assert cut.result.status is Status.GAP_NOT_REACHED
     assert status_words(3, cut).startswith("best so far, proved to ")
     assert cut.note.startswith("The proof stopped")
 
@@ -27,6 +27,6 @@ def test_a_robust_answer_is_what_is_guaranteed(paper: Scenario) -> None:
     scenario = paper.model_copy(update={"jammers": (unsure,)})
     solution = solve_robust(scenario, certify=False)
     answer = answer_of(1, case_named("Robust pose"), solution)
-    assert answer.value == solution.robust.guaranteed
-    assert answer.value <= min(link.sinr for link in answer.links) * (1.0 + 1e-9)
+    assert answer.result.objective.value == solution.robust.guaranteed
+    assert answer.result.objective.value <= min(link.sinr for link in answer.result.links) * (1.0 + 1e-9)
     assert status_words(1, answer) == "best so far"

@@ -54,11 +54,14 @@ def test_two_cases_differ_by_what_is_known_of_both(idle: Session) -> None:
     robust = case_named("Robust pose")
     idle.change(lambda view: view.with_compared(robust))
     (first,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    second = replace(first, case=robust, value=0.5 * first.value)
+    objective = first.result.objective
+    half = replace(objective, value=0.5 * objective.value)
+    second = replace(first, case=robust, result=replace(first.result, objective=half))
     idle._take(first)
     idle._take(second)
     assert 'data-np="difference"' not in readout_html(idle)
-    idle._take(replace(second, bound=0.6 * first.value))
+    known = replace(half, upper_bound=0.6 * objective.value)
+    idle._take(replace(second, result=replace(first.result, objective=known)))
     assert "A over B: 3.01 dB (B guaranteed, A without errors)" in _Text(readout_html(idle)).text
     assert idle.close()
 

@@ -39,7 +39,7 @@ def session(paper: Scenario) -> Iterator[Session]:
 
 def _certified(session: Session) -> bool:
     answer = session.answer(session.view.case)
-    return session.is_current(answer) and answer is not None and answer.status is Status.CERTIFIED
+    return session.is_current(answer) and answer is not None and answer.result.status is Status.CERTIFIED
 
 
 def test_the_answer_is_the_solvers(session: Session) -> None:
@@ -50,8 +50,8 @@ def test_the_answer_is_the_solvers(session: Session) -> None:
         answer = session.answer(OPTIMUM)
         assert answer is not None
         expected = solve(session.view.scenario)
-        assert answer.value == pytest.approx(expected.objective.value, rel=1e-9)
-        assert answer.bound == pytest.approx(expected.objective.upper_bound, rel=1e-9)
+        assert answer.result.objective.value == pytest.approx(expected.objective.value, rel=1e-9)
+        assert answer.result.objective.upper_bound == pytest.approx(expected.objective.upper_bound, rel=1e-9)
 
 
 def test_an_old_answer_is_never_current(session: Session) -> None:
@@ -85,7 +85,7 @@ def test_everything_told_names_its_version(paper: Scenario) -> None:
     assert session.close(_PATIENCE_S)
     versions = [answer.version for answer in told]
     assert versions == sorted(versions)
-    assert all(answer.scenario == scenes[answer.version] for answer in told)
+    assert all(answer.result.scenario == scenes[answer.version] for answer in told)
     assert versions[-1] == session.version
 
 
@@ -108,7 +108,7 @@ def test_two_cases_are_answered(session: Session) -> None:
     first, second = session.answer(OPTIMUM), session.answer(vertical)
     assert first is not None
     assert second is not None
-    assert first.value >= second.value
+    assert first.result.objective.value >= second.result.objective.value
 
 
 def test_undo_and_redo_are_solved_too(session: Session) -> None:

@@ -16,10 +16,10 @@ def test_a_quick_answer_is_the_best_pose(paper: Scenario, power_db: float) -> No
     for case in cases_of(view.scenario):
         (answer,) = quick_answers(3, view, case)
         assert answer.version == 3
-        assert answer.status is Status.BEST_FOUND
-        assert answer.bound is answer.gap is None
+        assert answer.result.status is Status.BEST_FOUND
+        assert answer.result.objective.upper_bound is None
         best = solve(case.on(view.scenario), case.scheme)
-        assert answer.value == pytest.approx(best.objective.value, rel=1e-6)
+        assert answer.result.objective.value == pytest.approx(best.objective.value, rel=1e-6)
 
 
 class Enough(BaseException):

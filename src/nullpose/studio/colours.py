@@ -8,12 +8,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["GROUND", "INK", "KIND_COLOURS", "SLOTS", "css", "scale_colour", "scale_colours", "scale_range"]
+__all__ = ["KIND_COLOURS", "SLOTS", "Rgb", "css", "scale_colour", "scale_colours", "scale_range"]
 
 Rgb = tuple[int, int, int]
-
-INK: Rgb = (26, 26, 26)
-GROUND: Rgb = (110, 110, 110)
 
 KIND_COLOURS = MappingProxyType(
     {"nodes": (0, 114, 178), "jammers": (213, 94, 0), "eavesdroppers": (204, 121, 167)}

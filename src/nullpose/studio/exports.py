@@ -24,16 +24,17 @@ def pose_json(session: Session) -> bytes:
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    answers = [_current(session, slot) for slot in range(len(session.view.cases))]
-    solved = [{"case": answer.case.label} | answer.solution.to_dict() for answer in answers]
+    solved = [{"case": one.case.label} | one.result.to_dict() for one in _current(session)]
     return (json.dumps(solved[0] if len(solved) == 1 else solved, indent=2, allow_nan=False) + "\n").encode()
 
 
-def _current(session: Session, slot: int) -> Answer:
-    answer = session.answer(session.view.cases[slot])
-    if answer is None or not session.is_current(answer):
+def _current(session: Session) -> list[Answer]:
+    """Return the answers of the cases that are shown, all to the present scene."""
+    answers = [session.answer(case) for case in session.view.cases]
+    current = [one for one in answers if one is not None and session.is_current(one)]
+    if len(current) < len(answers):
         raise UsageError("the scene is being solved; try again when its pose is there")
-    return answer
+    return current
 
 
 def figure_png(session: Session) -> bytes:
@@ -74,20 +75,21 @@ def scene_html(
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    from nullpose.studio.drone import Carpet, Drone
+    from nullpose.studio.carpet import Carpet
+    from nullpose.studio.drone import Drone
     from nullpose.studio.opening import LOOPBACK, open_server
     from nullpose.studio.panel import BEST_MAP, NO_MAP
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
     view = session.view
-    answers = [_current(session, slot) for slot in range(len(view.cases))]
+    answers, size_m = _current(session), scene_size_m(view.scenario)
     server, _ = open_server(LOOPBACK, 0)
     try:
         server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
-        Ground(server.scene, None).draw(view, freed=False)
+        Ground(server.scene, None).show(view, size_m, freed=False)
         for slot, answer in enumerate(answers):
-            drone = Drone(server.scene, slot, scene_size_m(view.scenario))
+            drone = Drone(server.scene, slot, size_m)
             drone.show(answer, drone_text(session, slot), link_range_db, pattern=True)
         fields = session.field_map
         if fields is not None and chosen_map != NO_MAP:

@@ -88,7 +88,7 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
         answer: whose case, altitude and pose they are of.
         go_on: called now and then; what it raises ends the work.
     """
-    scenario, pose, quantity = answer.scenario, answer.pose, answer.quantity
+    scenario, pose, quantity = answer.result.scenario, answer.result.pose, answer.result.objective.quantity
     low_m, high_m = map_extent_m(scenario, pose.position_m)
     step_m = float(np.max(high_m - low_m)) / (_CELLS - 1)
     east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low_m, high_m, strict=True))
@@ -124,7 +124,7 @@ def _db(values: FloatArray) -> FloatArray:
 
 def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     """Return the objective at each position with the axis of the answer's case, shape (n,)."""
-    scenario = answer.scenario
+    scenario = answer.result.scenario
     fields = answer.case.scheme.record.fields(scenario, None)
     given = [field for field in (fields or {}).values() if not field.is_free]
     if given:
@@ -132,7 +132,7 @@ def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], No
         return np.asarray(np.max(each, axis=0))
     if fields is None:
         axes = _ranked_axes((0.0, 1.0), positions_m, lambda some, axes: _served(scenario, some, axes), go_on)
-    elif scenario.axis_band == (0.0, 1.0) and not answer.quantity.is_rate:
+    elif scenario.axis_band == (0.0, 1.0) and not answer.result.objective.quantity.is_rate:
         axes = _exact_axes(scenario, positions_m, go_on)
     else:
         rank = objective_value

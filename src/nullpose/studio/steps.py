@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, Status, solve
+from nullpose.solve import PAPER_SCHEMES, Result, Rigour, Scheme, Status, solve
 from nullpose.solve.robust import solve_robust
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
@@ -44,12 +44,14 @@ def quick_answers(version: int, view: View, case: Case) -> Iterator[Answer]:
     Raises:
         NullposeError: there is no pose, or the case has no meaning here.
     """
-    found = answer_of(version, case, _quick_solution(case.on(view.scenario), case.scheme))
-    note = _QUICK_ROBUST if case.robust else found.note
-    yield replace(found, status=Status.BEST_FOUND, bound=None, gap=None, note=note)
+    found = _quick_result(case.on(view.scenario), case.scheme)
+    unproved = replace(found.objective, upper_bound=None, relative_gap=None, rigour=Rigour.NONE)
+    result = replace(found, status=Status.BEST_FOUND, objective=unproved, proofs=(), reason="")
+    answer = answer_of(version, case, result)
+    yield replace(answer, note=_QUICK_ROBUST) if case.robust else answer
 
 
-def _quick_solution(scenario: Scenario, scheme: Scheme) -> Solution:
+def _quick_result(scenario: Scenario, scheme: Scheme) -> Result:
     """Return a rough proof's pose where that is quick, else that of a search which needs none."""
     if len(scenario.nodes) <= _QUICKLY_PROVED:
         proved = solve(scenario, scheme, gap=_QUICK_GAP, node_limit=_QUICK_BOXES, threads=1)
