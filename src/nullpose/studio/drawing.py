@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.studio.colours import Rgb
 from nullpose.studio.meshes import Mesh
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ FLAT = {"cast_shadow": False, "receive_shadow": False}
 """Shadows took half of the time of a picture without a graphics card."""
 
 
-def add_mesh(scene: SceneApi, name: str, mesh: Mesh, colour: Rgb, **style: Any) -> Any:
+def add_mesh(scene: SceneApi, name: str, mesh: Mesh, colour: ArrayLike, **style: Any) -> Any:
     """Return the handle of a mesh added to a scene.
 
     Args:
@@ -30,7 +29,9 @@ def add_mesh(scene: SceneApi, name: str, mesh: Mesh, colour: Rgb, **style: Any) 
         style: more of what viser takes.
     """
     vertices, faces = mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32)
-    return scene.add_mesh_simple(name, vertices, faces, color=colour, **FLAT, **style)
+    return scene.add_mesh_simple(
+        name, vertices, faces, color=np.asarray(colour, dtype=np.uint8), **FLAT, **style
+    )
 
 
 def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLike, thickness: float) -> Any:

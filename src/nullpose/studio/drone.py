@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nullpose.studio.answer import Answer
-from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colour, scale_colours
+from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colours
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
 from nullpose.studio.meshes import (
     body_mesh,
@@ -31,7 +32,7 @@ _LABEL_AT = (np.array([0.0, 0.0, 0.17]), np.array([0.0, 0.14, 0.0]))  # above, a
 _ANCHORS = ("bottom-center", "center-left")
 _HULLS = ((60, 64, 72), (120, 124, 130))
 _EACH = np.zeros((1, 2, 3))  # their ends have colours of their own
-_LINES = {
+_LINES: dict[str, tuple[ArrayLike, float]] = {
     "null": (_NULL, 3.0),
     "drop": ((120, 120, 120), 1.2),
     "links": (_EACH, 3.0),
@@ -129,4 +130,4 @@ class Drone:
             return
         for i, (band, gain) in enumerate(doughnut_bands(radius_m)):
             # its near side only: both of them, finely meshed, took a quarter of the time of a picture
-            add_mesh(self._scene, f"{name}/band-{i}", band, scale_colour(gain, 0.0, 1.0), opacity=0.5)
+            add_mesh(self._scene, f"{name}/band-{i}", band, scale_colours(gain, 0.0, 1.0), opacity=0.5)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from contextlib import redirect_stdout
 from io import BytesIO, StringIO
-from typing import Any
 
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
@@ -58,23 +56,18 @@ def figure_png(session: Session) -> bytes:
     return picture.getvalue()
 
 
-def scene_html(
-    session: Session,
-    chosen_map: str,
-    link_range_db: tuple[float, float],
-    camera_m: Callable[[Any], tuple[Any, Any]],
-) -> bytes:
+def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, float]) -> bytes:
     """Return the scene as one HTML file that needs neither a server nor a network.
 
     Args:
         session: whose.
         chosen_map: the map that is shown.
         link_range_db: ends of the links' colours, dB.
-        camera_m: tells where the camera stands and what it looks at.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
+    from nullpose.studio.camera import aim
     from nullpose.studio.carpet import Carpet
     from nullpose.studio.drone import Drone
     from nullpose.studio.opening import LOOPBACK, open_server
@@ -82,16 +75,15 @@ def scene_html(
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
-    view = session.view
-    answers, size_m = _current(session), scene_size_m(view.scenario)
+    view, answers, fields = session.view, _current(session), session.field_map
+    size_m = scene_size_m(view.scenario)
     server, _ = open_server(LOOPBACK, 0)
     try:
-        server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
+        aim(server.initial_camera, view.scenario)
         Ground(server.scene, None).show(view, size_m, freed=False)
         for slot, answer in enumerate(answers):
-            drone = Drone(server.scene, slot, size_m)
-            drone.show(answer, drone_text(session, slot), link_range_db, pattern=True)
-        fields = session.field_map
+            text = drone_text(session, slot)
+            Drone(server.scene, slot, size_m).show(answer, text, link_range_db, pattern=True)
         if fields is not None and chosen_map != NO_MAP:
             Carpet(server.scene).show(fields.best if chosen_map == BEST_MAP else fields.footprint)
         return str(server.scene.as_html()).encode()

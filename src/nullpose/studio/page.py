@@ -16,11 +16,10 @@ from nullpose.errors import NullposeError, ScenarioError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.studio.camera import camera_m, near_m
+from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.case import Case, case_named
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
-from nullpose.studio.events import Event
 from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.field_map import FieldMap
 from nullpose.studio.map_kernel import MapKernel
@@ -29,7 +28,7 @@ from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.session import Session
-from nullpose.studio.view import POWER_DB, PointKey, View
+from nullpose.studio.view import PointKey, View
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -66,7 +65,7 @@ class Page:
         self._link_range_db = LINK_RANGE_DB
         self._drones: list[Drone] = []
         self.session = Session(
-            scenario, on_view=self._view_changed, on_event=self._found, map_kernel=map_kernel
+            scenario, on_view=self._view_changed, on_event=self._refresh, map_kernel=map_kernel
         )
         self.panel = Panel(client.gui)
         self._ground = Ground(client.scene, self._dragged)
@@ -91,13 +90,13 @@ class Page:
             (panel.case, lambda label: self._change(lambda view: view.with_case(case_named(label)))),
             (panel.compared, lambda label: self._change(lambda view: view.with_compared(_case(label)))),
             (panel.power, self._slid),
-            *((one, lambda value: self._refresh()) for one in (panel.map, panel.pattern, panel.freed)),
+            *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
         ]
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
             (panel.save, "scenario.toml", lambda: session.view.scenario.to_toml().encode()),
             (panel.pose, "pose.json", partial(pose_json, session)),
             (panel.figure, "figure.png", partial(figure_png, session)),
-            (panel.html, "scene.html", self._html),
+            (panel.html, "scene.html", lambda: scene_html(session, panel.map.value, self._link_range_db)),
         ]
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),
@@ -143,9 +142,6 @@ class Page:
         if taken:
             self._aim()
 
-    def _html(self) -> bytes:
-        return scene_html(self.session, self.panel.map.value, self._link_range_db, camera_m)
-
     def _send(self, name: str, make: Callable[[], bytes]) -> None:
         try:
             self._client.send_file_download(name, make(), save_immediately=True)
@@ -153,39 +149,23 @@ class Page:
             self._client.add_notification("Not exported", str(error), color="red", auto_close_seconds=8.0)
 
     def _aim(self) -> None:
-        scenario, camera = self.session.view.scenario, self._client.camera
         with self._client.atomic():
-            camera.position, camera.look_at = camera_m(scenario)
-            camera.near = near_m(scenario)
+            aim(self._client.camera, self.session.view.scenario)
 
     def _view_changed(self) -> None:
-        if self._ground.dragged is None:
-            self._refresh()
-            return
-        with self._lock:  # one picture for each step of a drag, that with its answer
-            if self._late is None and self._open:
-                self._late = threading.Timer(_LATE_S, self._draw_late)
+        with self._lock:
+            if self._ground.dragged is None:
+                self._refresh()
+            elif (
+                self._late is None and self._open
+            ):  # one picture for each step of a drag, that with its answer
+                self._late = threading.Timer(_LATE_S, self._refresh)
                 self._late.daemon = True
                 self._late.start()
 
-    def _draw_late(self) -> None:
+    def _refresh(self, *_: object) -> None:
         with self._lock:
-            self._late = None
-            self._refresh()
-
-    def _not_late(self) -> None:
-        with self._lock:
-            if self._late is not None:
-                self._late.cancel()
-                self._late = None
-
-    def _found(self, event: Event) -> None:
-        if event.version == self.session.version:
             self._not_late()
-        self._refresh()
-
-    def _refresh(self) -> None:
-        with self._lock:
             if not self._open:
                 return
             try:
@@ -195,6 +175,11 @@ class Page:
                     self._client.flush()  # at once, since viser gathers messages for a sixtieth of a second
             except Exception:
                 _log.exception("the page could not be refreshed")
+
+    def _not_late(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
 
     def _refresh_scene(self) -> None:
         session, view, scene = self.session, self.session.view, self._client.scene
@@ -236,7 +221,7 @@ class Page:
 
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel
-        panel.show_cases(view)
+        panel.show(view)
         answer = session.answer(view.case)
         panel.readout.content = readout_html(session)
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
@@ -247,7 +232,6 @@ class Page:
             value=answer.shown_value if answer and session.is_current(answer) and at_rest else None,
             unit=Quantity.of(view.scenario).unit,
         )
-        panel.show_power(view.power_db, POWER_DB)
         panel.undo.disabled = not session.history.past
         panel.redo.disabled = not session.history.future
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeVar
 
 from nullpose.scenario import Scenario
@@ -57,7 +58,7 @@ class Session:
 
     def start(self) -> None:
         """Ask for the first answers."""
-        self._renew(self.history)
+        self._go(replace)
 
     def close(self, timeout_s: float = 5.0) -> bool:
         """Return whether the worker has ended within a time.
@@ -123,21 +124,21 @@ class Session:
         Raises:
             ScenarioError: the scenario would be faulty; nothing changes.
         """
-        with self._lock:
-            history = self.history.changed(change(self.view), gesture)
-            if history is not self.history:
-                self._renew(history)
+        self._go(lambda history: history.changed(change(history.present), gesture))
 
     def undo(self) -> None:
         """Go one step back, if there is one."""
-        self._renew(self.history.undone())
+        self._go(History.undone)
 
     def redo(self) -> None:
         """Go one step forward again, if there is one."""
-        self._renew(self.history.redone())
+        self._go(History.redone)
 
-    def _renew(self, history: History) -> None:
+    def _go(self, change: Callable[[History], History]) -> None:
         with self._lock:
+            history = change(self.history)
+            if history is self.history:
+                return
             self.history = history
             self.version += 1
             self._worker.request(self.version, history.present)
