@@ -73,7 +73,7 @@ def test_missing_file(tmp_path: Path) -> None:
 def test_missing_folder(tmp_path: Path) -> None:
     """A file in a missing folder is missing with its folder."""
     message = fault_of(tmp_path / "nowhere" / "paper.toml").message
-    assert message == f"there is no such file, nor a folder {tmp_path / 'nowhere'}; check the path"
+    assert message.startswith(f"there is no such file, nor a folder {tmp_path / 'nowhere'}")
 
 
 def test_folder_given(tmp_path: Path) -> None:

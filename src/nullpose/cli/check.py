@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile, read_scenario
-from nullpose.cli.output import tell
+from nullpose.cli.output import show, show_json
 
 __all__ = ["check"]
 
@@ -17,9 +17,11 @@ def check(
     json_output: JsonOutput = False,
 ) -> None:
     """Check a scenario file and show what it amounts to, unsolved."""
-    from nullpose.report.scenario_tables import scenario_view
-    from nullpose.report.summary import summarise
+    from nullpose.report.scenario import scenario_view, summarise
 
-    tell(summarise(read_scenario(file, overrides, allow_outside)), scenario_view, json_output)
-    if not json_output:
-        typer.echo(f"{file}: no faults")
+    scenario = read_scenario(file, overrides, allow_outside)
+    if json_output:
+        show_json(summarise(scenario))
+        return
+    show(scenario_view(scenario))
+    typer.echo(f"{file}: no faults")

@@ -60,8 +60,7 @@ def compare(
         prepare_outputs(file, figure=figure)
         _compare_airframes(scenario, options, figure, json_output)
         return
-    from nullpose.report.comparison import compare_all
-    from nullpose.report.comparison_tables import comparison_view
+    from nullpose.report.comparison import compare_all, comparison_view
 
     with compiling_announced(), Ticker("solving") as ticker:
         comparison = compare_all(scenario, on_progress=ticker, **options)

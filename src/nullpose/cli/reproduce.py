@@ -11,8 +11,8 @@ __all__ = ["reproduce"]
 
 def reproduce(out: OutFolder, seed: Seed = 0, json_output: JsonOutput = False) -> None:
     """Redraw the paper's Figure 2 and check each of its claims."""
-    from nullpose.report.reproduce import reproduce as reproduce_paper
-    from nullpose.report.reproduce import reproduction_view
+    from nullpose.paper.pages import reproduction_view
+    from nullpose.paper.reproduce import reproduce as reproduce_paper
 
     with compiling_announced(), Ticker("reproducing the paper") as ticker:
         reproduction = reproduce_paper(out, seed=seed, on_progress=ticker)

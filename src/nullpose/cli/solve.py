@@ -65,9 +65,7 @@ def solve(
 
     The proof bounds how far from the best of all it can be.
     """
-    from nullpose.report.array import array_view
-    from nullpose.report.robust import robust_view
-    from nullpose.report.tables import solution_view
+    from nullpose.report.results import array_view, robust_view, solution_view
 
     scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
@@ -141,7 +139,7 @@ def _solve_dipole(
     Raises:
         UsageError: before any work, there is no proof that could be checked, or no place on the map.
     """
-    from nullpose.report.export import require_origin
+    from nullpose.report.geojson import require_origin
     from nullpose.solve import require_certificate, verified
     from nullpose.solve import solve as solve_scenario
     from nullpose.solve.options import SolveOptions
@@ -162,7 +160,7 @@ def _solve_dipole(
 def _write(solution: Result, certificate: Path | None, geojson: Path | None) -> None:
     """Write the files that were asked for."""
     from nullpose.certificate import write_certificate
-    from nullpose.report.export import write_geojson
+    from nullpose.report.geojson import write_geojson
     from nullpose.solve import certificate_of
 
     if certificate is not None:

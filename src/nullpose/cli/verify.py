@@ -61,10 +61,9 @@ def verify(
 
 def _show(verdict: Verdict, certificate: Certificate) -> None:
     from nullpose.certificate import subject
-    from nullpose.report.scenario_tables import scenario_view
-    from nullpose.report.summary import summarise
+    from nullpose.report.scenario import scenario_view
 
     typer.echo(verdict.message, err=not verdict.proved)
     if verdict.proved:
         typer.echo(f"case {certificate.scheme}, scenario SHA-256 {subject(certificate)['scenario_sha256']}\n")
-        show(scenario_view(summarise(certificate.scenario)))
+        show(scenario_view(certificate.scenario))

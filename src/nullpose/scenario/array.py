@@ -6,13 +6,15 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from nullpose.scenario.choice import Choice
+from nullpose.scenario.rules import Choice, Count
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Count, Wavelengths
+from nullpose.scenario.units import Wavelengths
 
 __all__ = ["Array"]
 
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
+
+
 _Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
 
 

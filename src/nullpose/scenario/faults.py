@@ -3,40 +3,59 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.wording import printable
+from nullpose.scenario.wording import described, printable
 
-__all__ = ["Place", "as_error_details", "collected", "path_of", "rejection", "scenario_error"]
+__all__ = ["Place", "collected", "path_of", "rejection", "reworded", "scenario_error"]
 
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
 
-KIND = "scenario"
-"""The type that every fault worded here carries through pydantic."""
-
-
+_KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def rejection(message: str) -> PydanticCustomError:
     """Returns the exception with which a validator refuses a value, in exactly these words."""
     # The message travels as context: braces in it (from user text) are then not taken for placeholders.
-    return PydanticCustomError(KIND, "{message}", {"message": message})
+    return PydanticCustomError(_KIND, "{message}", {"message": message})
 
 
-def as_error_details(place: Place, message: str, given: object = None) -> InitErrorDetails:
-    """Returns one fault in the form in which pydantic collects them."""
-    return InitErrorDetails(type=rejection(message), loc=place, input=given)
-
-
-def collected(title: str, details: Sequence[InitErrorDetails]) -> ValidationError:
+def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationError:
     """Returns pydantic's exception that carries all the faults together."""
-    return ValidationError.from_exception_data(title, list(details))
+    details = [InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults]
+    return ValidationError.from_exception_data(title, details)
+
+
+def reworded(
+    error: ValidationError, fields: Mapping[str, FieldInfo], untold: Collection[str] = ()
+) -> Iterator[tuple[Place, str]]:
+    """Yields in plain words what pydantic found in a table.
+
+    Args:
+        error: what it found.
+        fields: the fields of the table.
+        untold: keys of which it need not be said that they are missing.
+    """
+    for entry in error.errors(include_url=False):
+        place, given = entry["loc"], entry["input"]
+        match entry["type"]:
+            case "missing" if place[-1] in untold:
+                continue
+            case "missing":
+                expected = fields[str(place[-1])].description or ""
+                message = f"missing; it must be given: {expected.rstrip('.')}"
+            case kind if kind == _KIND:
+                message = entry["msg"]
+            case _:
+                message = f"got {described(given)}, which cannot be used here"
+        yield place, message
 
 
 def path_of(place: Iterable[str | int]) -> str:
@@ -60,25 +79,19 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
         source: the file or object at fault, as the user would name it.
     """
     found = [(tuple(entry["loc"]), entry["msg"]) for entry in error.errors(include_url=False)]
-    found.sort(key=lambda fault: _position(fault[0], data))
+    found.sort(key=lambda fault: _ranks(fault[0], data))
     return ScenarioError([Fault(path_of(place), message) for place, message in found], source)
 
 
-def _position(place: Place, data: object) -> tuple[int, ...]:
-    """Returns a sort key: the rank of each step of the place among its siblings in the input."""
+def _ranks(place: Place, data: object) -> list[int]:
+    """Returns the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
-        if isinstance(data, Mapping):
-            keys = list(data)
-            ranks.append(keys.index(step) if step in keys else len(keys))
-            data = data.get(step)
+        siblings = list(data) if isinstance(data, Mapping) else []
+        if isinstance(step, int):
+            ranks.append(step)
+            data = data[step] if isinstance(data, list | tuple) and step < len(data) else None
         else:
-            ranks.append(step if isinstance(step, int) else 0)
-            data = _member(data, step)
-    return tuple(ranks)
-
-
-def _member(values: object, step: str | int) -> object:
-    if isinstance(values, list | tuple) and isinstance(step, int) and 0 <= step < len(values):
-        return values[step]
-    return None
+            ranks.append(siblings.index(step) if step in siblings else len(siblings))
+            data = data.get(step) if isinstance(data, Mapping) else None
+    return ranks

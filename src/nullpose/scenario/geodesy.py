@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["enu_from_geodetic", "enu_from_ned", "geodetic_from_enu", "ned_from_enu"]
+__all__ = ["enu_from_geodetic", "geodetic_from_enu", "ned_from_enu"]
 
 # pymap3d is imported where it is used: most scenarios have no place on the Earth.
 
@@ -54,6 +54,8 @@ def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.fl
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
     """Returns vectors in north, east, down: the first two components swapped, the third negated.
 
+    Done twice, it gives the vectors back: so it leads from north, east, down to east, north, up too.
+
     Args:
         vector: components east, north and up, in any unit, (..., 3).
 
@@ -61,18 +63,6 @@ def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
         Array of shape (..., 3).
     """
     return _rows(vector)[..., [1, 0, 2]] * [1.0, 1.0, -1.0] + 0.0  # no negative zeros
-
-
-def enu_from_ned(vector: ArrayLike) -> NDArray[np.float64]:
-    """Returns vectors in east, north, up; the same exchange as ``ned_from_enu``, which undoes itself.
-
-    Args:
-        vector: components north, east and down, in any unit, (..., 3).
-
-    Returns:
-        Array of shape (..., 3).
-    """
-    return ned_from_enu(vector)
 
 
 def _rows(values: ArrayLike) -> NDArray[np.float64]:

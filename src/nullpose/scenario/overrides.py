@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import Place, path_of
-from nullpose.scenario.names import named
-from nullpose.scenario.origin import unlocated
+from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
 from nullpose.scenario.wording import listed, nearest, plain
@@ -74,32 +74,26 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         ScenarioError: with every path that does not exist and every fault of the result.
     """
     data = scenario.to_dict()
-    known = tuple(_known_paths(Scenario, scenario))
     faults: list[Fault] = []
     applied: list[Override] = []
     for override in overrides:
         try:
             parsed = parse_override(override) if isinstance(override, str) else override
             applied.append(parsed)
-            _assign(data, _steps(parsed.path), deepcopy(plain(parsed.value)))
+            steps = _steps(parsed.path)
+            _assign(Scenario, data, steps, deepcopy(plain(parsed.value)), parsed.path)
+            if steps[0] == "origin":
+                _unlocate(data)
         except ScenarioError as error:
             faults += error.faults
-        except _UnknownPathError as error:
-            guess = _nearest_path(parsed.path, known)
-            meant = f"; did you mean {guess}?" if guess != parsed.path else ""
-            faults.append(Fault(parsed.path, f"{error}{meant}"))
     source = f"override {listed([str(override) for override in applied])}"
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
-        raise ScenarioError([*faults, *error.faults], source) from None
+        faults += error.faults
     if faults:
         raise ScenarioError(faults, source)
     return changed
-
-
-class _UnknownPathError(Exception):
-    """A path that leads nowhere; the message says where it ends."""
 
 
 def _value(path: str, text: str) -> object:
@@ -120,109 +114,74 @@ def _value(path: str, text: str) -> object:
 
 
 def _steps(path: str) -> Place:
-    """Returns the path as keys, names and indices; raises _UnknownPathError when it is not one."""
+    """Returns the path as keys, names and indices."""
     steps: list[str | int] = []
     end = 0
-    while end < len(path):
+    while end < len(path) or not steps:
         step = _STEP.match(path, end)
         if not step:
-            raise _UnknownPathError("this is not a path")
+            raise ScenarioError([Fault(path, "this is not a path")])
         steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
         end = step.end()
     return tuple(steps)
 
 
-def _assign(data: dict[str, Any], steps: Place, value: object) -> None:
-    """Sets the value at the place that the steps lead to."""
-    if not steps or steps[0] not in Scenario.model_fields:
-        raise _UnknownPathError("there is no such value in a scenario")
-    if steps[0] == "origin":
-        unlocated(data)
-    _assign_in_table(Scenario, data, steps, value)
-
-
-def _assign_in_table(kind: type[Section], table: object, steps: Place, value: object) -> None:
-    """Sets what the steps lead to inside a table; drops what it takes the place of."""
+def _assign(kind: type[Section], table: dict[str, Any], steps: Place, value: object, path: str) -> None:
+    """Sets the value at the place in a raw table that the steps lead to; drops what it takes the place of."""
     key, rest = steps[0], steps[1:]
-    if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
-        raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
+    if not isinstance(key, str) or key not in kind.model_fields:
+        message = f"there is no such key; the keys here are {listed(kind.model_fields)}"
+        raise _leads_nowhere(path, key, list(kind.model_fields), message)
     inner = inner_section(kind.model_fields[key])
+    # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
+    begun = inner is not None and inner.letter is None and rest
+    holder = {} if begun and table.get(key) is None else table.get(key)
     if not rest:
-        table[key] = value
-    elif inner is None:
-        _assign_in_row(key, table.get(key), rest, value)
-    elif inner.letter is None:
-        # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
-        begun = table.get(key, {})
-        _assign_in_table(inner, begun, rest, value)
-        table[key] = begun
+        holder = value
+    elif inner is not None and isinstance(holder, dict):
+        _assign(inner, holder, rest, value, path)
     else:
-        members: Any = table.get(key)
-        index = _index(key, inner.letter, members, rest[0])
-        if len(rest) == 1:
-            members[index] = value
-        else:
-            _assign_in_table(inner, members[index], rest[1:], value)
-    for other in _replaced(kind, key):
-        table.pop(other, None)
+        _assign_member(inner, key, holder, rest, value, path)
+    table[key] = holder
+    for ways in kind.ways:
+        for other in ways.others(key):
+            table.pop(other, None)
 
 
-def _replaced(kind: type[Section], key: str) -> Iterator[str]:
-    """Yields the keys that state in another way what a key states."""
-    for one, other in (*kind.pairs, *kind.alternatives):
-        if key in (one, other):
-            yield other if key == one else one
-    if any(key in way for way in kind.ways):
-        yield from (other for way in kind.ways if key not in way for other in way)
-
-
-def _index(key: str, letter: str, members: object, step: str | int) -> int:
-    """Returns the index of the member with a name or an index."""
+def _assign_member(
+    inner: type[Section] | None, key: str, members: object, steps: Place, value: object, path: str
+) -> None:
+    """Sets a member of a list, or something in it: a table, by its name or index, or a number."""
     if not isinstance(members, list) or not members:
-        raise _UnknownPathError(f"the scenario has no {key}")
-    names = [member.get("name") if isinstance(member, dict) else None for member in named(members, letter)]
-    if step in names:
-        return names.index(str(step))
-    if isinstance(step, int) and step < len(members):
-        return step
-    have = listed([f"[{index}] {name}" for index, name in enumerate(names)])
-    raise _UnknownPathError(f"{key} has no member {path_of((step,))}, it has {have}")
-
-
-def _assign_in_row(key: str, row: object, steps: Place, value: object) -> None:
-    """Sets a member of a list of numbers, or of a list of such lists."""
-    index = steps[0]
-    if not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
-        raise _UnknownPathError(f"{key} {_shape(row)}")
-    if len(steps) == 1:
-        row[index] = value
+        raise ScenarioError([Fault(path, f"{key} has no members here, so set it whole")])
+    letter = "" if inner is None else inner.letter or ""
+    names = [
+        member.get("name") or f"{letter}{place}" if isinstance(member, dict) else ""
+        for place, member in enumerate(members, 1)
+    ]
+    step, rest = steps[0], steps[1:]
+    index = names.index(str(step)) if step in names else step
+    if not isinstance(index, int) or index >= len(members):
+        have = listed([f"[{index}] {name}".strip() for index, name in enumerate(names)])
+        message = f"{key} has no member {path_of((step,))}, it has {have}"
+        raise _leads_nowhere(path, step, names, message)
+    if not rest:
+        members[index] = value
+    elif inner is not None and isinstance(members[index], dict):
+        _assign(inner, members[index], rest, value, path)
     else:
-        _assign_in_row(f"{key}[{index}]", row[index], steps[1:], value)
+        _assign_member(None, f"{key}[{index}]", members[index], rest, value, path)
 
 
-def _shape(row: object) -> str:
-    if row is None:
-        return "is not given, so set it whole"
-    return f"has the members [0] to [{len(row) - 1}]" if isinstance(row, list) else "is a single value"
+def _leads_nowhere(path: str, step: str | int, known: Sequence[str], message: str) -> ScenarioError:
+    """Returns the fault that a path ends at a step, with the path that may be meant."""
+    guess = path_of((nearest(str(step), known) or known[0],))
+    meant = f"; did you mean {path.replace(str(step), guess, 1)}?" if isinstance(step, str) and guess else ""
+    return ScenarioError([Fault(path, f"{message}{meant}")])
 
 
-def _nearest_path(path: str, known: Sequence[str]) -> str:
-    """Returns a known path of the same depth and much like the given, else its known beginning, else any."""
-    same_depth = [other for other in known if other.count(".") == path.count(".")]
-    beginning = max((other for other in known if path.startswith(other)), key=len, default="")
-    return nearest(path, same_depth, at_least=0.7) or beginning or nearest(path, known, at_least=0.0)
-
-
-def _known_paths(kind: type[Section], values: Section | None, at: Place = ()) -> Iterator[str]:
-    """Yields every path that may be set below a place, members by name and by index."""
-    for key, field in kind.model_fields.items():
-        yield path_of((*at, key))
-        inner = inner_section(field)
-        value = getattr(values, key, None)
-        if inner is not None and inner.letter is None:
-            yield from _known_paths(inner, value, (*at, key))
-        elif inner is not None:
-            for index, member in enumerate(value or ()):
-                for step in (member.name, index):
-                    yield path_of((*at, key, step))
-                    yield from _known_paths(type(member), member, (*at, key, step))
+def _unlocate(data: Mapping[str, Any]) -> None:
+    """Takes position_m from the points of a raw scenario that are stated by latitude and longitude too."""
+    for point in chain(*(members for key in POINT_LISTS if isinstance(members := data.get(key), list))):
+        if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
+            point.pop("position_m", None)

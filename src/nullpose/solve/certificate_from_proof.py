@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
-from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
+from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
@@ -104,8 +103,7 @@ def _ratios(solution: Result) -> tuple[float, float]:
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
-    position = [Fraction(float(x)) for x in pose.position_m]
-    value = float(smallest_ratio(build_family(solution.scenario), position, axis))
+    value = float(smallest_ratio(build_family(solution.scenario), exact(pose.position_m), axis))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))
 
 

@@ -24,7 +24,7 @@ from nullpose.report.figures.scene import (
 from nullpose.report.figures.style import house_style
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS
-from nullpose.report.robust import error_words
+from nullpose.report.words import error_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution
 from nullpose.solve.robust import GuardedPose, RobustSolution

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
-from nullpose.study.monte_carlo.scene import POINT_LISTS
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["MOST_DRAWS", "Draws", "draw_scene", "scene_at"]
@@ -153,8 +153,7 @@ def _of_point(
 
 def _replacing(points: Points, key: str, value: float) -> dict[str, object]:
     """Return the update that sets a key and drops the one that states the same in another unit."""
-    pairs = (*points.pairs, *points.alternatives)
-    others = {one if key == other else other for one, other in pairs if key in (one, other)}
+    others = {other for ways in points.ways for other in ways.others(key)}
     return {**dict.fromkeys(others), key: value}
 
 

@@ -1,0 +1,389 @@
+"""Nodes in a file of their own: read from GeoJSON and CSV, and every fault at its place in that file."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import Scenario, load
+from nullpose.scenario.geodesy import enu_from_geodetic
+
+SCENARIO = """\
+nodes_from = "FILE"
+[airspace]
+altitude_m = [8.0, 30.0]
+[receiver]
+noise_w = 1e-3
+reference_gain_db = 0.0
+"""
+ORIGIN = """\
+[origin]
+lat_deg = 50.0
+lon_deg = 14.5
+alt_m = 230.0
+"""
+PLACES = [[50.001, 14.502, 232.0], [50.002, 14.501, 231.0]]
+GEODETIC = "name,lat_deg,lon_deg,alt_m,power_dbm\n"
+LOCAL = "name,x_m,y_m,z_m,power_w\n"
+CRS = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+
+
+def feature(coordinates: object = (14.502, 50.001, 232.0), **properties: Any) -> dict[str, Any]:
+    """Returns a feature; a power is added unless one is given."""
+    if not {"power_w", "power_dbm", "powr_w"} & properties.keys():
+        properties["power_w"] = 1.0
+    return {
+        "type": "Feature",
+        "geometry": {"type": "Point", "coordinates": coordinates},
+        "properties": properties,
+    }
+
+
+def collection(*features: object, **others: Any) -> str:
+    """Returns a GeoJSON text."""
+    return json.dumps({"type": "FeatureCollection", "features": features} | others)
+
+
+def written(folder: Path, file: str, content: str | None, scenario: str = SCENARIO + ORIGIN) -> Path:
+    """Returns the path of a scenario file that names a file of nodes, with such a file beside it."""
+    if content is not None:
+        (folder / file).write_text(content, encoding="utf-8")
+    path = folder / "scene.toml"
+    path.write_text(scenario.replace("FILE", file), encoding="utf-8")
+    return path
+
+
+def faults_of(folder: Path, file: str, content: str | None, scenario: str = SCENARIO + ORIGIN) -> list[Fault]:
+    """Returns the faults with which the scenario is refused."""
+    path = written(folder, file, content, scenario)
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    assert caught.value.source == str(path)
+    assert caught.value.__suppress_context__
+    return list(caught.value.faults)
+
+
+def test_geojson(tmp_path: Path) -> None:
+    """Points with properties are nodes; null properties are keys left out, and names come by place."""
+    text = collection(
+        feature([14.502, 50.001, 232.0], name="a", power_dbm=20.0, min_sinr_db=3.0),
+        feature([14.501, 50.002], alt_m=231.0, power_w=2.0, weight=None),
+        crs=CRS,
+        name="a layer",
+    )
+    scenario = load(written(tmp_path, "nodes.geojson", text))
+    np.testing.assert_array_equal(scenario.node_positions_m, enu_from_geodetic(PLACES, [50.0, 14.5, 230.0]))
+    assert scenario.node_names == ("a", "S2")
+    assert scenario.node_powers_w.tolist() == pytest.approx([0.1, 2.0])
+    assert scenario.nodes[0].min_sinr_db == 3.0
+    assert scenario.nodes_from is None
+    assert Scenario.from_dict(scenario.to_dict()) == scenario
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_csv_by_latitude(mark: str, tmp_path: Path) -> None:
+    """A line is a node; empty cells, empty lines and blanks about the commas are left out."""
+    text = f'{mark}{GEODETIC}"a, b", 50.001 ,14.502,232,20\n,,,,\n\n,50.002,14.501,231,2e1\n'
+    scenario = load(written(tmp_path, "nodes.csv", text))
+    np.testing.assert_array_equal(scenario.node_positions_m, enu_from_geodetic(PLACES, [50.0, 14.5, 230.0]))
+    assert scenario.node_names == ("a, b", "S2")
+
+
+def test_csv_in_metres(tmp_path: Path) -> None:
+    """Columns x_m, y_m, z_m need no origin; each node may use its own unit of power, and others' keys."""
+    text = "z_m,x_m,y_m,power_w,power_dbm,weight\n1,2,3,4,,\n5,6,7,,30,2\n"
+    scenario = load(written(tmp_path, "Nodes.CSV", text, SCENARIO))
+    assert scenario.node_positions_m.tolist() == [[2.0, 3.0, 1.0], [6.0, 7.0, 5.0]]
+    assert scenario.node_powers_w.tolist() == pytest.approx([4.0, 1.0])
+    assert [node.weight for node in scenario.nodes] == [None, 2.0]
+
+
+def test_the_same_nodes_whichever_the_file(tmp_path: Path) -> None:
+    """GeoJSON, CSV and tables in the scenario file itself make equal scenarios."""
+    tables = "".join(
+        f'[[nodes]]\nname = "{name}"\nlat_deg = {lat}\nlon_deg = {lon}\nalt_m = {alt}\npower_w = 1.0\n'
+        for name, (lat, lon, alt) in zip("ab", PLACES, strict=True)
+    )
+    rows = "".join(
+        f"{name},{lat},{lon},{alt},1\n" for name, (lat, lon, alt) in zip("ab", PLACES, strict=True)
+    )
+    features = [
+        feature([lon, lat, alt], name=name) for name, (lat, lon, alt) in zip("ab", PLACES, strict=True)
+    ]
+    plain = SCENARIO.replace('nodes_from = "FILE"\n', "") + ORIGIN + tables
+    scenarios = [
+        load(written(tmp_path, "none", None, plain)),
+        load(written(tmp_path, "n.csv", GEODETIC.replace("dbm", "w") + rows)),
+        load(written(tmp_path, "n.json", collection(*features))),
+    ]
+    assert scenarios[0] == scenarios[1] == scenarios[2]
+
+
+def test_the_file_is_looked_for_beside_the_scenario(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The name is relative to the scenario's folder, whatever the working folder, and may be absolute."""
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    monkeypatch.chdir(inner)
+    (tmp_path / "lists").mkdir()
+    path = written(tmp_path, "lists/nodes.csv", LOCAL + "a,1,2,3,4\n", SCENARIO)
+    assert load(path).node_names == ("a",)
+    path.write_text(SCENARIO.replace("FILE", str(tmp_path / "lists" / "nodes.csv")), encoding="utf-8")
+    assert load(path).node_names == ("a",)
+
+
+GEOJSON_CASES = [
+    ("[1]", "n.geojson", "got a list of one value, must be a FeatureCollection"),
+    ("{", "n.geojson: line 1, column 2", "this is not JSON"),
+    ('{"type": 1, "type": 2}', "n.geojson", 'the key "type" is given twice'),
+    ('{"features": [0, {"id": 1, "id": 2}]}', "n.geojson: features[1]", 'the key "id" is given twice'),
+    ("[" * 100_000, "n.geojson", "nested too deeply"),
+    (f'{{"a": {"9" * 5000}}}', "n.geojson", "too many digits"),
+    (json.dumps(feature()), "n.geojson: type", 'got the text "Feature", must be "FeatureCollection"'),
+    (collection(), "n.geojson: features", "got an empty list, must be a list of one feature or more"),
+    (collection(feature(), crs={"name": "EPSG::3857"}), "n.geojson: crs", "must be WGS-84"),
+    (collection(3), "n.geojson: features[0]", 'must be an object with "type": "Feature"'),
+    (collection(feature() | {"type": "Point"}), "n.geojson: features[0]", '"type": "Feature"'),
+    (collection(feature() | {"properties": [1]}), "n.geojson: features[0].properties", "must be an object"),
+    (
+        collection(feature() | {"geometry": None}),
+        "n.geojson: features[0].geometry",
+        'got nothing, must be a geometry of type "Point"',
+    ),
+    (
+        collection(feature() | {"geometry": {"type": "Polygon"}}),
+        "n.geojson: features[0].geometry",
+        'got the text "Polygon"',
+    ),
+    (
+        collection(feature([14.5, 50.0])),
+        "n.geojson: features[0].geometry.coordinates",
+        "add the altitude, or a property alt_m",
+    ),
+    (
+        collection(feature([14.5])),
+        "n.geojson: features[0].geometry.coordinates",
+        "must be [longitude, latitude, altitude]",
+    ),
+    (collection(feature([14.5, None, 1])), "n.geojson: features[0].geometry.coordinates", "must be [long"),
+    (collection(feature(alt_m=3.0)), "n.geojson: features[0].properties.alt_m", "third of the coordinates"),
+    (collection(feature(lat_deg=3.0)), "n.geojson: features[0].properties.lat_deg", "remove this property"),
+    (
+        collection(feature(), feature([14.5, 91.0, 1])),
+        "n.geojson: features[1].geometry.coordinates[1]",
+        "latitude",
+    ),
+    (collection(feature(["x", 50.0, 1])), "n.geojson: features[0].geometry.coordinates[0]", "longitude"),
+    (collection(feature([14.5, 50.0, 1e9])), "n.geojson: features[0].geometry.coordinates[2]", "altitude"),
+    (
+        collection(feature([14.5, 50.0], alt_m=float("nan"))),
+        "n.geojson: features[0].properties.alt_m",
+        "got NaN, must be an altitude",
+    ),
+    (
+        collection(feature([50.0, 14.5, 230.0])),
+        "n.geojson: features[0]",
+        "are latitude and longitude exchanged",
+    ),
+    (collection(feature(power_w=-1.0)), "n.geojson: features[0].properties.power_w", "got -1.0"),
+    (collection(feature(powr_w=1.0)), "n.geojson: features[0].properties.powr_w", 'did you mean "power_w"?'),
+    (collection(feature(name=7)), "n.geojson: features[0].properties.name", "must be text in quotes"),
+    (
+        collection(feature(power_w=1.0, power_dbm=1.0)),
+        "n.geojson: features[0]",
+        "both power_w and power_dbm are given",
+    ),
+    (
+        collection(feature(name="a"), feature([14.5, 50.0, 230.0], name="a")),
+        "n.geojson: features[1].properties.name",
+        "the name of n.geojson: features[0] already",
+    ),
+    (
+        collection(feature(), feature()),
+        "n.geojson: features[1].geometry",
+        "the place of n.geojson: features[0] already",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "path", "words"), GEOJSON_CASES)
+def test_faults_of_geojson(text: str, path: str, words: str, tmp_path: Path) -> None:
+    """Each fault is told once, with its place in the GeoJSON file."""
+    (fault,) = faults_of(tmp_path, "n.geojson", text)
+    assert fault.path == path
+    assert words in fault.message
+
+
+CSV_CASES = [
+    ("", "n.csv: line 1", "the file is empty, must be a header line"),
+    (LOCAL, "n.csv", "there is no line below the header"),
+    (LOCAL + '"a,1,2,3,4\n', "n.csv", "this is not CSV"),
+    (LOCAL.replace(",", ";") + "a;1;2;3;4\n", "n.csv: line 1", "columns separated by commas"),
+    (LOCAL.replace(",", "\t") + "a\t1\t2\t3\t4\n", "n.csv: line 1", "columns separated by commas"),
+    (LOCAL.replace("power_w", "pwr_w") + "a,1,2,3,4\n", "n.csv: line 1", 'did you mean "power_w"?'),
+    (LOCAL.replace("name", "") + "a,1,2,3,4\n", "n.csv: line 1", '"": unknown column'),
+    (
+        LOCAL.replace("name", "power_w") + "1,1,2,3,4\n",
+        "n.csv: line 1",
+        'the column "power_w" is there twice',
+    ),
+    (LOCAL.replace("x_m,", "") + "a,2,3,4\n", "n.csv: line 1", "y_m and z_m given without x_m"),
+    (
+        LOCAL.replace("z_m", "alt_m") + "a,1,2,3,4\n",
+        "n.csv: line 1",
+        "x_m and y_m and alt_m are given",
+    ),
+    ("name,power_w\na,1\n", "n.csv: line 1", "neither x_m and y_m and z_m nor lat_deg"),
+    (LOCAL + "a,1,2,3,4\nb,1,2,3\n", "n.csv: line 3", "got 4 values, must be 5"),
+    (LOCAL + "a,1,,3,4\n", "n.csv: line 2, column y_m", "got an empty text, must be a number"),
+    (LOCAL + "a,1,2,3,x\n", "n.csv: line 2, column power_w", 'got the text "x"'),
+    (LOCAL + "\n\na,1,2,3,1_000\n", "n.csv: line 4, column power_w", 'got the text "1_000"'),
+    (LOCAL + "a,1,2,inf,4\n", "n.csv: line 2, column z_m", "got infinity"),
+    (LOCAL + "a,1,2,3,\n", "n.csv: line 2", "needs power_w or power_dbm"),
+    (LOCAL + "a,1,2,3,4\na,5,6,7,8\n", "n.csv: line 3, column name", "the name of n.csv: line 2 already"),
+    (LOCAL + "a,1,2,3,4\nb,1,2,3,4\n", "n.csv: line 3", "the place of n.csv: line 2 already"),
+    (GEODETIC + "a,50,14.5,,3\n", "n.csv: line 2, column alt_m", "got an empty text"),
+    (GEODETIC + "a,14.5,50,230,3\n", "n.csv: line 2", "are latitude and longitude exchanged"),
+]
+
+
+@pytest.mark.parametrize(("text", "path", "words"), CSV_CASES)
+def test_faults_of_csv(text: str, path: str, words: str, tmp_path: Path) -> None:
+    """Each fault is told once, with its line and column."""
+    (fault,) = faults_of(tmp_path, "n.csv", text)
+    assert fault.path == path
+    assert words in fault.message
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "path", "words"),
+    [
+        ("nodse.csv", None, "nodes_from", "there is no such file; check the path"),
+        (".", None, ".", "the name must end in one of .geojson, .json, .csv"),
+        ("x.csv/..", None, "x.csv/..", "the name must end in one of .geojson, .json, .csv"),
+        ("nodes.txt", "x", "nodes.txt", "the name must end in one of .geojson, .json, .csv"),
+        ("", None, "nodes_from", "got an empty text, must be the name of a GeoJSON or CSV file"),
+        ("no/where.csv", None, "nodes_from", "nor a folder"),
+    ],
+)
+def test_files_that_are_none(file: str, content: str | None, path: str, words: str, tmp_path: Path) -> None:
+    """A file that cannot be read is one fault, and the nodes are not told as missing too."""
+    (fault,) = faults_of(tmp_path, file, content)
+    assert fault.path == path
+    assert words in fault.message
+
+
+def test_a_file_of_a_like_name_is_suggested_as_it_would_be_written(tmp_path: Path) -> None:
+    """The suggestion is the name as seen from the scenario's folder."""
+    (tmp_path / "nodes.csv").write_text(LOCAL, encoding="utf-8")
+    (fault,) = faults_of(tmp_path, "node.csv", None)
+    assert fault.message == "there is no such file; did you mean nodes.csv?"
+
+
+def test_other_encodings(tmp_path: Path) -> None:
+    """A file that is no UTF-8 is told with the line in it."""
+    (tmp_path / "n.csv").write_bytes(LOCAL.encode() + b"caf\xe9,1,2,3,4\n")
+    (fault,) = faults_of(tmp_path, "n.csv", None)
+    assert fault.path == "n.csv: line 2"
+    assert "byte 0xe9 is not UTF-8 text" in fault.message
+
+
+@pytest.mark.parametrize("value", ["3", "[]", "true", '{a = "b"}'])
+def test_the_name_is_a_text(value: str, tmp_path: Path) -> None:
+    """Anything but a text is refused by what it is."""
+    (fault,) = faults_of(tmp_path, "", None, SCENARIO.replace('"FILE"', value))
+    assert fault.path == "nodes_from"
+    assert "must be the name of a GeoJSON or CSV file" in fault.message
+
+
+def test_nodes_in_both_places(tmp_path: Path) -> None:
+    """Nodes in the scenario file and in another are refused, and those that are there are judged."""
+    table = "[[nodes]]\nposition_m = [0, 0, 0]\npower_w = -1.0\n"
+    faults = faults_of(tmp_path, "n.csv", LOCAL + "a,1,2,3,4\n", SCENARIO + table)
+    assert [fault.path for fault in faults] == ["nodes_from", "nodes[0].power_w"]
+    assert "both nodes and nodes_from are given, exactly one is allowed" in faults[0].message
+
+
+def test_all_faults_of_both_files_at_once(tmp_path: Path) -> None:
+    """What is wrong with the lines, with the file and with the scenario comes in one report."""
+    text = GEODETIC + "a,50.001,14.5,230,nan\na,50.002,14.5,230,20\nc,1,2\nd,50.003,x,230,20\n"
+    scenario = SCENARIO.replace("[8.0, 30.0]", "[30.0, 8.0]") + ORIGIN.replace("230.0", '"230"')
+    faults = faults_of(tmp_path, "n.csv", text, scenario)
+    assert [fault.path for fault in faults] == [
+        "n.csv: line 4",
+        "n.csv: line 2, column power_dbm",
+        "n.csv: line 3, column name",
+        "n.csv: line 5, column lon_deg",
+        "airspace.altitude_m",
+        "origin.alt_m",
+    ]
+
+
+def test_a_missing_origin_names_the_line(tmp_path: Path) -> None:
+    """Nodes by latitude in a scenario without an origin: one fault, which says who needs it."""
+    (fault,) = faults_of(tmp_path, "n.csv", GEODETIC + "a,50,14.5,230,20\nb,50.1,14.5,230,20\n", SCENARIO)
+    assert fault.path == "origin"
+    assert "n.csv: line 2 is stated by lat_deg" in fault.message
+
+
+def test_jammers_in_another_way_than_the_file(tmp_path: Path) -> None:
+    """A jammer in metres beside nodes by latitude is refused, with the line of the first node."""
+    jammer = "[[jammers]]\nposition_m = [1, 2, 3]\npower_w = 1.0\n"
+    (fault,) = faults_of(tmp_path, "n.csv", GEODETIC + "a,50,14.5,230,20\n", SCENARIO + ORIGIN + jammer)
+    assert fault.path == "jammers[0]"
+    assert "stated by position_m, but n.csv: line 2 by lat_deg" in fault.message
+
+
+def test_a_dictionary_names_no_file() -> None:
+    """In Python the nodes are given; the name of a file is refused."""
+    data = {"airspace": {"altitude_m": [8, 9]}, "receiver": {"noise_w": 1.0, "frequency_hz": 1e9}}
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_dict(data | {"nodes_from": "nodes.csv"})
+    (fault,) = caught.value.faults
+    assert fault.path == "nodes_from"
+    assert "only a scenario file may name" in fault.message
+
+
+def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:
+    """By an absolute path, by dots or through a link: what lies outside the folder is not even looked at."""
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (tmp_path / "n.csv").write_text("secret\n", encoding="utf-8")
+    (folder / "link.csv").symlink_to(tmp_path / "n.csv")
+    (folder / "linked").symlink_to(tmp_path)
+    for file in (str(tmp_path / "n.csv"), "../n.csv", "link.csv", "linked/n.csv", "../none.csv"):
+        (fault,) = faults_of(folder, file, None)
+        assert fault.path == "nodes_from"
+        assert "outside the folder of the file that names it; put it there, or allow this by" in fault.message
+        assert "secret" not in fault.message
+
+
+def test_nodes_from_elsewhere_may_be_allowed(tmp_path: Path) -> None:
+    """If the caller says so they are read; below the scenario's folder they are in any case."""
+    (tmp_path / "scene" / "below").mkdir(parents=True)
+    text = LOCAL + "a,1,2,3,4\n"
+    (tmp_path / "n.csv").write_text(text, encoding="utf-8")
+    path = written(tmp_path / "scene", "../n.csv", None)
+    assert load(path, allow_outside=True).node_names == ("a",)
+    (tmp_path / "scene" / "below" / "n.csv").write_text(text, encoding="utf-8")
+    for file in ("below/n.csv", str(tmp_path / "scene" / "below" / "n.csv"), "../scene/below/n.csv"):
+        assert load(written(tmp_path / "scene", file, None)).node_names == ("a",)
+
+
+def test_a_file_of_another_kind_is_not_read(tmp_path: Path) -> None:
+    """The name decides before the content does: a device of another name is told by its name."""
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    (fault,) = faults_of(tmp_path, "zero", None)
+    assert "must end in one of" in fault.message
+
+
+def test_too_many_nodes(tmp_path: Path) -> None:
+    """Files of more nodes than are allowed are refused for that."""
+    for file, content in (
+        ("n.csv", LOCAL + "a,1,2,3,4\n" * 20_000),
+        ("n.json", '{"type": "FeatureCollection", "features": [' + "[]," * 20_000 + "1]}"),
+    ):
+        fault = faults_of(tmp_path, file, content)[-1]
+        assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"

@@ -1,0 +1,139 @@
+"""Whether an airspace, less the keep-out balls, is empty."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.scenario import Airspace
+from nullpose.scenario.reach import may_hold_a_position
+
+ROOT_THIRD = 1.0 / np.sqrt(3.0)
+
+
+def has_room(lower: np.ndarray, upper: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+    """Returns whether a box holds a position outside balls."""
+    x_m, y_m, altitude_m = ((low, high) for low, high in zip(lower.tolist(), upper.tolist(), strict=True))
+    bounds = {"x_m": x_m, "y_m": y_m, "altitude_m": altitude_m}
+    finite = {key: ends for key, ends in bounds.items() if np.isfinite(ends).all()}
+    return may_hold_a_position(Airspace(keep_out_m=radius, **finite), centres)
+
+
+def box(*ranges: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the lower and the upper corner."""
+    low, high = np.array(ranges, dtype=float).T
+    return low, high
+
+
+UNIT = box((0, 1), (0, 1), (0, 1))
+
+
+def test_box_without_balls_has_room() -> None:
+    """Nothing is taken from a box by no balls, were it a point."""
+    assert has_room(*UNIT, np.zeros((0, 3)), 1.0)
+    assert has_room(*box((1, 1), (1, 1), (1, 1)), np.zeros((0, 3)), 1.0)
+
+
+@pytest.mark.parametrize("unbounded", [0, 1])
+def test_unbounded_box_has_room(unbounded: int) -> None:
+    """Balls cannot fill a box that is unbounded to one side, be it flat."""
+    low, high = box((0, 1), (0, 1), (0, 0))
+    low[unbounded], high[unbounded] = -np.inf, np.inf
+    assert has_room(low, high, np.zeros((1, 3)), 1e7)
+
+
+@pytest.mark.parametrize(("radius", "expected"), [(0.85, True), (0.87, False)])
+def test_one_ball_around_the_centre(radius: float, expected: bool) -> None:
+    """A ball around a cube's centre leaves the corners until it holds them, at half the diagonal."""
+    assert has_room(*UNIT, np.full((1, 3), 0.5), radius) is expected
+
+
+def test_surface_of_a_ball_is_outside() -> None:
+    """A distance of exactly the keep-out radius is enough."""
+    assert has_room(*box((3, 3), (0, 0), (4, 4)), np.zeros((1, 3)), 5.0)
+    assert not has_room(*box((3, 3), (0, 0), (4, 4)), np.zeros((1, 3)), 5.001)
+
+
+@pytest.mark.parametrize(("radius", "expected"), [(0.55, True), (0.57, False)])
+def test_room_left_on_an_edge_only(radius: float, expected: bool) -> None:
+    """Two balls at the ends of a segment leave its middle until they meet there."""
+    centres = np.array([[0.0, 0.25, 0.0], [1.0, 0.25, 0.0]])
+    assert has_room(*box((0, 1), (0, 0), (0, 0)), centres, radius) is expected
+
+
+@pytest.mark.parametrize(("radius", "expected"), [(ROOT_THIRD - 0.002, True), (ROOT_THIRD + 0.002, False)])
+def test_room_left_inside_a_face_only(radius: float, expected: bool) -> None:
+    """Discs on a triangular lattice leave a hole until the radius is the side over the square root of 3."""
+    rows, columns = np.meshgrid(np.arange(-6, 7), np.arange(-6, 7))
+    lattice = np.stack([columns + 0.5 * rows, rows * np.sqrt(0.75), 0.0 * rows], axis=-1).reshape(-1, 3)
+    centres = lattice[np.abs(lattice[:, :2]).max(axis=1) < 2.5]
+    # A box around the hole between (0, 0), (1, 0) and (1/2, sqrt(3)/2).
+    assert has_room(*box((0.4, 0.6), (0.2, 0.4), (0, 0)), centres, radius) is expected
+
+
+@pytest.mark.parametrize(("radius", "expected"), [(0.86, True), (0.87, False)])
+def test_room_left_in_the_middle_only(radius: float, expected: bool) -> None:
+    """Balls around a cube's corners and beside it leave its centre until they hold it, where spheres meet."""
+    corners = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T.astype(float)
+    assert has_room(*box((0.3, 0.7), (0.3, 0.7), (0.3, 0.7)), corners, radius) is expected
+
+
+def test_far_balls_take_nothing() -> None:
+    """Balls that do not reach the box do not count."""
+    assert has_room(*UNIT, np.array([[5.0, 0.0, 0.0], [0.5, 0.5, 3.0]]), 1.9)
+
+
+def test_many_balls_in_few_seconds() -> None:
+    """A hundred balls, none of which covers the box alone, are judged by all their triples."""
+    generator = np.random.default_rng(7)
+    centres = generator.uniform(-0.5, 1.5, size=(100, 3))
+    assert not has_room(*UNIT, centres, 0.8)
+
+
+coordinate = st.integers(-8, 8).map(lambda eighth: eighth / 8.0)
+corner = st.integers(0, 3).map(lambda quarter: quarter / 4.0)
+
+
+@given(
+    st.lists(st.tuples(coordinate, coordinate, coordinate), min_size=1, max_size=7, unique=True),
+    st.tuples(corner, corner, corner),
+    st.floats(0.3, 1.4),
+)
+def test_agrees_with_sampling(
+    centres: list[tuple[float, ...]], sides: tuple[float, ...], radius: float
+) -> None:
+    """Where a position of a dense grid is free there is room; where all are deep in balls there is none."""
+    low, high = np.zeros(3), np.array(sides)
+    axes = [np.linspace(0.0, side, 17 if side else 1) for side in sides]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    clearance = np.linalg.norm(grid[:, None] - np.array(centres), axis=-1).min(axis=1).max() - radius
+    spacing = np.linalg.norm(high / 16.0) / 2.0  # no position is farther than this from the grid
+    room = has_room(low, high, np.array(centres), radius)
+    if clearance >= 0.0:
+        assert room
+    elif clearance < -spacing:
+        assert not room
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(1.0, 1e6))
+def test_does_not_depend_on_the_unit(seed: int, scale: float) -> None:
+    """Scaling the scene changes nothing."""
+    centres = np.random.default_rng(seed).uniform(0.0, 1.0, size=(4, 3))
+    low, high = UNIT
+    assert has_room(low, high, centres, 0.75) == has_room(
+        low * scale, high * scale, centres * scale, 0.75 * scale
+    )
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_hole_between_random_balls(seed: int) -> None:
+    """A position kept free by moving every ball away from it is found, and lost when a ball is put there."""
+    generator = np.random.default_rng(seed)
+    hole = generator.uniform(0.2, 0.8, size=3)
+    directions = generator.normal(size=(40, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    centres = hole + 1.01 * directions  # the hole is 0.01 from each ball, and little else of the box is free
+    assert has_room(*UNIT, centres, 1.0)
+    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    if (np.linalg.norm(grid[:, None] - centres, axis=-1).min(axis=1) < 0.8).all():
+        assert not has_room(*UNIT, np.vstack([centres, hole]), 1.0)
