@@ -53,16 +53,13 @@ def answer_of(version: int, case: Case, result: Result) -> Answer:
     return Answer(version=version, case=case, result=result, binding_node=node, note=said)
 
 
-def status_words(version: int, answer: Answer | None) -> str:
+def status_words(answer: Answer | None) -> str:
     """Return how far the solve of the present scene has come, in words.
 
-    An answer to another version of the scene counts for nothing.
-
     Args:
-        version: the present version of the scene.
-        answer: the latest answer, or None.
+        answer: the latest to the present scene, or None.
     """
-    if answer is None or answer.version != version:
+    if answer is None:
         return "solving"
     result, gap = answer.result, answer.result.objective.relative_gap
     if result.status is Status.BEST_FOUND or gap is None:

@@ -28,9 +28,8 @@ def pose_json(session: Session) -> bytes:
 
 def _current(session: Session) -> list[Answer]:
     """Return the answers of the cases that are shown, all to the present scene."""
-    answers = [session.answer(case) for case in session.view.cases]
-    current = [one for one in answers if one is not None and session.is_current(one)]
-    if len(current) < len(answers):
+    current = [answer for answer in map(session.current, session.view.cases) if answer is not None]
+    if len(current) < len(session.view.cases):
         raise UsageError("the scene is being solved; try again when its pose is there")
     return current
 

@@ -156,9 +156,7 @@ class Page:
         with self._lock:
             if self._ground.dragged is None:
                 self._refresh()
-            elif (
-                self._late is None and self._open
-            ):  # one picture for each step of a drag, that with its answer
+            elif self._late is None and self._open:  # each step of a drag has one picture: with its answer
                 self._late = threading.Timer(_LATE_S, self._refresh)
                 self._late.daemon = True
                 self._late.start()
@@ -222,14 +220,14 @@ class Page:
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel
         panel.show(view)
-        answer = session.answer(view.case)
+        answer = session.current(view.case)
         panel.readout.content = readout_html(session)
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
         panel.plot.content = power_plot_svg(
             session.curve,
             version=session.version,
             power_db=view.power_db,
-            value=answer.shown_value if answer and session.is_current(answer) and at_rest else None,
+            value=answer.shown_value if answer and at_rest else None,
             unit=Quantity.of(view.scenario).unit,
         )
         panel.undo.disabled = not session.history.past

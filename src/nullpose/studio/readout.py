@@ -57,17 +57,22 @@ def readout_html(session: Session) -> str:
 
 
 def _case_html(session: Session, slot: int) -> str:
-    answer, status = _shown(session, slot)
-    tone = _tone(session, answer, status)
+    case = session.view.cases[slot]
+    answer, current, status = session.answer(case), session.current(case), session.status(case)
+    tone = "waiting"
+    if status.startswith("no pose"):
+        tone = "failed"
+    elif current is not None:
+        tone = "proved" if current.result.status is Status.CERTIFIED else "found"
     colour, mark = _TONES[tone]
     head = (
         f'<div style="font-weight:600;color:{css(SLOTS[slot])}">{_letter(session, slot)}'
-        f"{escape(session.view.cases[slot].label)}</div>"
+        f"{escape(case.label)}</div>"
         f'<div data-np="status-{slot}" style="color:{colour};font-weight:600">{mark} {escape(status)}</div>'
     )
     if answer is None or tone == "failed":
         return head
-    shade = "" if session.is_current(answer) else "opacity:.4;"
+    shade = "" if answer is current else "opacity:.4;"
     note = f'<div style="color:#555;font-size:12px">{escape(answer.note)}</div>' if answer.note else ""
     return (
         f'{head}<div data-np="numbers-{slot}" data-version="{answer.version}" style="{shade}">'
@@ -75,22 +80,8 @@ def _case_html(session: Session, slot: int) -> str:
     )
 
 
-def _shown(session: Session, slot: int) -> tuple[Answer | None, str]:
-    """Return what is known of the chosen case (slot 0) or the compared one (1), and how far it has come."""
-    case = session.view.cases[slot]
-    return session.answer(case), session.status(case)
-
-
 def _letter(session: Session, slot: int) -> str:
     return f"{'AB'[slot]}: " if session.view.compared is not None else ""
-
-
-def _tone(session: Session, answer: Answer | None, status: str) -> str:
-    if status.startswith("no pose"):
-        return "failed"
-    if answer is None or not session.is_current(answer):
-        return "waiting"
-    return "proved" if answer.result.status is Status.CERTIFIED else "found"
 
 
 def _value(answer: Answer, slot: int) -> str:
@@ -133,8 +124,8 @@ def _pose(result: Result, slot: int) -> str:
 
 
 def _difference_html(session: Session) -> str:
-    first, second = (session.answer(case) for case in session.view.cases)
-    if first is None or second is None or not (session.is_current(first) and session.is_current(second)):
+    first, second = map(session.current, session.view.cases)
+    if first is None or second is None:
         return ""
     if any(one.case.robust and one.result.objective.upper_bound is None for one in (first, second)):
         return ""  # what it guarantees is not known yet
@@ -174,11 +165,12 @@ def drone_text(session: Session, slot: int) -> str:
         session: whose.
         slot: 0 for the chosen case, 1 for the compared one.
     """
-    answer, status = _shown(session, slot)
-    if answer is None or not session.is_current(answer):
-        return f"{_letter(session, slot)}{status}"
-    value = fixed(answer.shown_value, 2).replace("-", MINUS)
-    return f"{_letter(session, slot)}{value} {answer.result.objective.quantity.unit}, {status}"
+    case = session.view.cases[slot]
+    answer, value = session.current(case), ""
+    if answer is not None:
+        unit = answer.result.objective.quantity.unit
+        value = f"{fixed(answer.shown_value, 2)} {unit}, ".replace("-", MINUS)
+    return f"{_letter(session, slot)}{value}{session.status(case)}"
 
 
 def _signed(number: float, digits: int = 2) -> str:

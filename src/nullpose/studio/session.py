@@ -76,8 +76,7 @@ class Session:
     @property
     def field_map(self) -> FieldMap | None:
         """The maps of the present version, or None."""
-        found = self._last(FieldMap)
-        return found if found is not None and found.version == self.version else None
+        return self._last(FieldMap, current=True)
 
     @property
     def curve(self) -> PowerCurve | None:
@@ -85,20 +84,20 @@ class Session:
         return self._last(PowerCurve)
 
     def answer(self, case: Case) -> Answer | None:
-        """Return the latest answer for a case, whatever version it is of; see :meth:`is_current`.
+        """Return the latest answer for a case, whatever version it is of; see :meth:`current`.
 
         Args:
             case: which.
         """
         return self._last(Answer, case)
 
-    def is_current(self, answer: Answer | None) -> bool:
-        """Return whether an answer is one to the present version of the scene.
+    def current(self, case: Case) -> Answer | None:
+        """Return the answer for a case to the present version of the scene, or None.
 
         Args:
-            answer: or None, which is not.
+            case: which.
         """
-        return answer is not None and answer.version == self.version
+        return self._last(Answer, case, current=True)
 
     def status(self, case: Case) -> str:
         """Return how far the solve of a case has come, in words.
@@ -107,12 +106,12 @@ class Session:
             case: which.
         """
         with self._lock:
-            failure = self._last(Failure, case)
-            if failure is not None and failure.version == self.version:
+            failure, answer = self._last(Failure, case, current=True), self.current(case)
+            if failure is not None:
                 return f"no pose: {failure.message}"
-            words = status_words(self.version, self.answer(case))
-            compiling = words == "solving" and self._last(Compiling) is not None
-            return "compiling the solver, once, which takes a minute" if compiling else words
+            if answer is None and self._last(Compiling) is not None:
+                return "compiling the solver, once, which takes a minute"
+            return status_words(answer)
 
     def change(self, change: Callable[[View], View], gesture: str = "") -> None:
         """Change the view.
@@ -144,9 +143,12 @@ class Session:
             self._worker.request(self.version, history.present)
         self._on_view()
 
-    def _last(self, kind: type[_E], case: Case | None = None) -> _E | None:
+    def _last(self, kind: type[_E], case: Case | None = None, *, current: bool = False) -> _E | None:
+        """Return the latest event of a kind, if there is one, or only one of the present version."""
         found = self._found.get((kind, case))
-        return found if isinstance(found, kind) else None
+        if not isinstance(found, kind) or (current and found.version != self.version):
+            return None
+        return found
 
     def _take(self, event: Event) -> None:
         with self._lock:
