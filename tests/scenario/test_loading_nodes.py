@@ -341,9 +341,8 @@ def test_a_dictionary_names_no_file() -> None:
     data = {"airspace": {"altitude_m": [8, 9]}, "receiver": {"noise_w": 1.0, "frequency_hz": 1e9}}
     with pytest.raises(ScenarioError) as caught:
         Scenario.from_dict(data | {"nodes_from": "nodes.csv"})
-    (fault,) = caught.value.faults
-    assert fault.path == "nodes_from"
-    assert "only a scenario file may name" in fault.message
+    messages = {fault.path: fault.message for fault in caught.value.faults}
+    assert "only a scenario file may name" in messages["nodes_from"]
 
 
 def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:

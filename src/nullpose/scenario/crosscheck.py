@@ -39,6 +39,9 @@ def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterato
         for index, point in enumerate(getattr(scenario, kind) or ())
         if point is not None
     }
+    if scenario.nodes_from is not None:
+        message = "only a scenario file may name another, which is read together with it; give the nodes"
+        yield ("nodes_from",), message
     airspace, array, airframe = scenario.airspace, scenario.array, scenario.airframe
     misplaced = list(origin_faults(scenario.origin, points, stated))
     yield from misplaced
@@ -92,7 +95,7 @@ def _stated(
     kind, _, quantity = what.partition(".")
     if not quantity:
         table = inner_section(type(scenario).model_fields[kind])
-        yield (kind,), [table.header if table else kind], [kind] if getattr(scenario, kind) else []
+        yield (kind,), [table.heading() if table else kind], [kind] if getattr(scenario, kind) else []
         return
     ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
     keys = [key for group in ways.groups for key in group]

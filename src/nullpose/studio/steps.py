@@ -13,7 +13,6 @@ from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB, View
 from nullpose.study import SweepRow, SweepTable
-from nullpose.study.sweep import sweep_row
 
 __all__ = ["POWER_LABEL", "power_curves", "proved_answers", "quick_answers"]
 
@@ -111,7 +110,7 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
         scenario = OPTIMUM.on(view.with_power_db(power_db).scenario)
         for scheme in schemes:
             go_on()
-            rows.append(sweep_row(power_db, solve(scenario, scheme, certify=False)))
+            rows.append(SweepRow.of(power_db, solve(scenario, scheme, certify=False)))
         complete = done == len(order)
         if complete or (done - len(coarse)) % _CURVE_SHOWN == 0:
             table = SweepTable(
