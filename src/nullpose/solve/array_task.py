@@ -124,7 +124,7 @@ class ArrayTask:
         Returns:
             Distances, (w,) metres, negative inside; and their slopes, (w, 3), unit vectors.
         """
-        from nullpose.solve.kernels.chart import choose_sides
+        from nullpose.solve.kernels.local_coordinates import choose_sides
 
         family = self.family
         away = position_m - family.keep_out_points_m

@@ -13,7 +13,7 @@ from nullpose.family import AxisField, Family
 from nullpose.solve.effort import Effort
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.limits import Limits
-from nullpose.solve.multistart import CLIMBS, landmarks, shift_of
+from nullpose.solve.multistart import landmarks, shift_of
 from nullpose.solve.precompile import ready
 from nullpose.solve.proof import DIRECT_NODES, INSIDE, BudgetUsed, late_nodes, prove
 
@@ -151,7 +151,7 @@ class Batch:
         """
         from nullpose.solve.kernels.many import solve_and_prove_many
 
-        limits, search = effort.limits, effort.search
+        limits = effort.limits
         ready(self.families[0], field)
         solve_and_prove_many(
             self._shape,
@@ -161,8 +161,7 @@ class Batch:
             field.arrays,
             self._landmarks,
             shift_of(effort.seed),
-            (search.coarse, search.polished, search.rounds, search.patience),
-            np.array(CLIMBS),
+            effort.search,
             -1.0 if limits is None else INSIDE * limits.gap,
             (1, 1, 1) if limits is None else self._budget(limits),
             known.position_m,

@@ -101,13 +101,15 @@ def compile_search(family: Family, axis_field: AxisField) -> None:
 
     from nullpose.solve.kernels.polish import polish
     from nullpose.solve.kernels.search import cut_box, search
+    from nullpose.solve.multistart import SearchSettings
 
     ratios = len(family.numerator_point)
     p, u, z = np.full(3, 1e3), np.array([0.0, 0.0, 1.0]), np.empty(ratios)
     polish(family.arrays, family.domain, axis_field.arrays, p, u, 0.1, 0, z)
     cut_box(family.arrays, family.low_m, family.high_m, 0.0, np.empty(3), np.empty(3))
     none = np.empty((0, 3))
-    search(family.arrays, family.domain, axis_field.arrays, none, np.zeros(3), 1, 0, 0, 0, p, u, z)
+    nothing = SearchSettings(1, 0, 0, 0)
+    search(family.arrays, family.domain, axis_field.arrays, none, np.zeros(3), nothing, p, u, z)
 
 
 def compile_other_half() -> None:
