@@ -12,18 +12,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from nullpose.files import write_text
+from nullpose.report.document import markdown_table
 from nullpose.report.study import report_study
-from nullpose.report.study.tables import gain_table, share_table
+from nullpose.report.study.markdown import gain_tables
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"
 REQUIREMENT_DB = 0.0
-TABLES = {
-    "Median gain over the level vehicle, dB": (gain_table, "gain_median"),
-    "Gain in the worst tenth, dB": (gain_table, "shift_worst_tenth"),
-    "Share of the omnidirectional vehicle's median gain, %": (share_table, "share_of_median"),
-    "Share of its gain in the worst tenth, %": (share_table, "share_of_worst_tenth"),
-}
 
 
 def main(study: Path) -> None:
@@ -38,7 +33,7 @@ def main(study: Path) -> None:
             shutil.copyfile(image, IMAGES / f"study-report-{image.name}")
         shutil.copyfile(Path(folder) / "summary.csv", FOLDER / "study-report.csv")
     write_text(FOLDER / "study-report-answer.txt", "\n\n".join([report.answer, *report.notes]) + "\n")
-    tables = [f"**{heading}**\n\n{table(report.summary, name)}" for heading, (table, name) in TABLES.items()]
+    tables = [f"**{title}**\n\n{markdown_table(rows)}" for title, rows in gain_tables(report.summary).items()]
     write_text(FOLDER / "study-report-gains.txt", "\n\n".join(tables) + "\n")
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -10,18 +9,16 @@ import pytest
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
+from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve import certificate_of, solve
 from nullpose.solve.certificate_from_proof import leaves_of
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
 Place = tuple[float, float, float]
 
-_COLUMNS = ("box", "cell", "test", "point", "level", "mix", "sides", "band", "ball", "ball_multiplier")
 _ENOUGH_S = 600.0  # the kernels may have to be compiled first
 
 
@@ -62,14 +59,14 @@ def put_together() -> Callable[..., Certificate]:
     def make(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3) -> Certificate:
         family, fields = build_family(scenario), claimed_axes(scenario, scheme, None)
         assert fields is not None
-        effort = Effort(limits=Limits(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9))
+        effort = SolveOptions(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9)
         outcome = solve_and_prove(family, list(fields.values()), effort)
         mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
         east, north, up = outcome.incumbent.axis * np.sign(outcome.incumbent.axis[2] or 1.0)
         # the body leans in the plane of vertical and dipole, by the least angle that brings it there
         lean = float(np.arctan2(np.hypot(east, north), up)) - mount_rad
         attitude = (0.0, lean, float(np.arctan2(north, east)))
-        position = [Fraction(float(x)) for x in outcome.incumbent.position_m]
+        position = exact(outcome.incumbent.position_m)
         value = float(smallest_ratio(family, position, antenna_axis(attitude, mount_rad)))
         trees = zip(fields, outcome.proofs, strict=True)
         return Certificate(
@@ -102,12 +99,12 @@ def cut_into_cells() -> Callable[[Certificate], Certificate]:
         cells = [[0, 0, 0, 0, 0], [1, 0, 0, 1, 0], [1, 0, 0, 1, 1], [2, 1, 0, 0, 0], [2, 1, 1, 0, 0]]
         rest = np.setdiff1d(np.arange(len(leaves)), chosen)
         rows = np.concatenate([rest, np.repeat(chosen, len(cells))])
-        columns = {name: getattr(leaves, name)[rows] for name in _COLUMNS}
-        columns["cell"][len(rest) :] = np.tile(cells, (len(chosen), 1))
+        cut_leaves = leaves.chosen(rows)
+        cut_leaves.cell[len(rest) :] = np.tile(cells, (len(chosen), 1))
         for power in range(12):
-            columns["sides"] = np.zeros((len(rows), 2))
-            columns["sides"][len(rest) :] = 4.0**-power * np.mean(leaves.level)
-            cut = replace(tree, leaves=Leaves(mixes=leaves.mixes, **columns))
+            sides = np.zeros((len(rows), 2))
+            sides[len(rest) :] = 4.0**-power * np.mean(leaves.level)
+            cut = replace(tree, leaves=replace(cut_leaves, sides=sides))
             result = replace(certificate, trees=(cut, *certificate.trees[1:]))
             if verify(result).proved:
                 return result

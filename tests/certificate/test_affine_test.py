@@ -12,7 +12,7 @@ from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import AFFINE
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.pose_value import link
+from nullpose.certificate.pose_value import Exact, exact, link
 from nullpose.family import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
@@ -27,18 +27,9 @@ FIELDS = [
 ]
 
 
-def exact(array: np.ndarray) -> list[Fraction]:
-    """Return numbers exactly."""
-    return [Fraction(float(x)) for x in array]
-
-
-def exact_link(field: AxisField, point: np.ndarray, p: list[Fraction]) -> Fraction:
+def exact_link(field: AxisField, point: np.ndarray, p: Exact) -> Fraction:
     """Return a link's ``sin^2 / |r|^2`` at a position with the field's axis, exactly."""
-    axis = [
-        a + sum(m * x for m, x in zip(row, p, strict=True))
-        for a, row in zip(exact(field.offset), map(exact, field.matrix), strict=True)
-    ]
-    return link(exact(point), p, axis)
+    return link(exact(point), p, exact(field.offset) + exact(field.matrix) @ p)
 
 
 def plain_link(field: AxisField, point: np.ndarray, p: np.ndarray) -> float:
@@ -73,16 +64,16 @@ def test_expansions_enclose_the_links(field: AxisField, seed: int) -> None:
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
     value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[j][None])
-    if not all(np.isfinite(x.low[0]) and np.isfinite(x.high[0]) for x in hessian):
+    if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
     centre, half = exact(boxes.centre[0]), exact(boxes.half[0])
     assert ends(value)[0] <= exact_link(field, POINTS[j], centre) <= ends(value)[1]
     for shares in rng.integers(-8, 9, (4, 3)):
         x = [Fraction(int(s), 8) * h for s, h in zip(shares, half, strict=True)]
-        there = exact_link(field, POINTS[j], [c + d for c, d in zip(centre, x, strict=True)])
-        terms = [ends(value)] + [times(s, d) for s, d in zip(slopes, x, strict=True)]
-        for entry, (i, k) in zip(hessian, SIX, strict=True):
-            terms.append(times(entry, x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
+        there = exact_link(field, POINTS[j], centre + np.array(x))
+        terms = [ends(value)] + [times(slopes[i], d) for i, d in enumerate(x)]
+        for entry, (i, k) in enumerate(SIX):
+            terms.append(times(hessian[entry], x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
         assert sum(low for low, _ in terms) <= there <= sum(high for _, high in terms)
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
 
@@ -100,8 +91,8 @@ def test_hessians_contain_finite_differences(field: AxisField, seed: int) -> Non
         for c, s, h in zip(centre, rng.uniform(-1, 1, 3), exact(boxes.half[0]), strict=True)
     ]
 
-    def at(base: list[Fraction], *moves: tuple[int, int]) -> Fraction:
-        place = list(base)
+    def at(base: Exact, *moves: tuple[int, int]) -> Fraction:
+        place = np.array(base)
         for i, sign in moves:
             place[i] += sign * step
         return exact_link(field, POINTS[j], place)
@@ -110,13 +101,13 @@ def test_hessians_contain_finite_differences(field: AxisField, seed: int) -> Non
     for i in range(3):
         first = float((at(centre, (i, 1)) - at(centre, (i, -1))) / (2 * step))
         assert slopes[i].low[0] - 1e-5 * scale <= first <= slopes[i].high[0] + 1e-5 * scale
-    for entry, (i, k) in zip(hessian, SIX, strict=True):
+    for entry, (i, k) in enumerate(SIX):
         if i == k:
             second = (at(p, (i, 1)) + at(p, (i, -1)) - 2 * at(p)) / step**2
         else:
             second = at(p, (i, 1), (k, 1)) + at(p, (i, -1), (k, -1)) - at(p, (i, 1), (k, -1))
             second = (second - at(p, (i, -1), (k, 1))) / (4 * step**2)
-        assert entry.low[0] - 1e-5 * scale <= float(second) <= entry.high[0] + 1e-5 * scale
+        assert hessian[entry].low[0] - 1e-5 * scale <= float(second) <= hessian[entry].high[0] + 1e-5 * scale
 
 
 def test_small_boxes_have_narrow_bounds() -> None:
@@ -127,7 +118,7 @@ def test_small_boxes_have_narrow_bounds() -> None:
         )
         value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[0][None])
         there = plain_link(field, POINTS[0], boxes.centre[0])
-        for x in (value, *slopes, *hessian):
+        for x in (value, *(slopes[i] for i in range(3)), *(hessian[i] for i in range(6))):
             assert x.high[0] - x.low[0] <= 1e-5 * there
         assert ranged.high[0] - ranged.low[0] <= 1e-5 * there
 
@@ -151,16 +142,11 @@ def test_negative_quadratics_are_negative() -> None:
         value, gradient, hessian = quadratic(rng)
         half = 10.0 ** rng.uniform(-2, 2, 3)
         slack = 10.0 ** rng.uniform(-8, -1) * np.abs(hessian).max()
-        boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.zeros((1, 3)), half=half[None])
-        bounds = [
-            Interval(
-                [(hessian[i, k] - slack) / (half[i] * half[k])],
-                [(hessian[i, k] + slack) / (half[i] * half[k])],
-            )
-            for i, k in SIX
-        ]
-        slopes = [Interval([g / h]) for g, h in zip(gradient, half, strict=True)]
-        holds = _quadratic_negative(boxes, Interval([value]), slopes, bounds)[0]
+        scaled = np.array([[hessian[i, k] / (half[i] * half[k])] for i, k in SIX])
+        room = np.array([[slack / (half[i] * half[k])] for i, k in SIX])
+        slopes = Interval((gradient / half)[:, None])
+        bounds = Interval(scaled - room, scaled + room)
+        holds = _quadratic_negative(half[:, None], Interval([value]), slopes, bounds)[0]
         y = np.vstack([rng.uniform(-1, 1, (200, 3)), np.sign(rng.normal(size=(50, 3)))])
         noise = slack * np.triu(rng.choice([-1.0, 1.0], (len(y), 3, 3)))
         noise = noise + np.swapaxes(np.triu(noise, 1), 1, 2)

@@ -10,9 +10,12 @@ from hypothesis import strategies as st
 
 from nullpose.certificate.axis_cells import cell_ends, off_band_holds, side_form
 from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.forms import quadratic
 from nullpose.family import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
+
+NO_FAMILY = None  # the test of a cell does without
 
 
 def cells_of(rng: np.random.Generator, count: int, deepest: int) -> np.ndarray:
@@ -57,7 +60,7 @@ def test_side_forms_vanish_at_the_ends(seed: int) -> None:
             for share, sign in ((0.0, 0), (0.5, 1), (1.0, 0)):
                 u[(cell[0] + 1 + side) % 3] = ends[0] + share * (ends[1] - ends[0])
                 size = (ends[1] - ends[0]) ** 2
-                assert u @ form.middle()[i] @ u == pytest.approx(0.25 * sign * size, abs=1e-15)
+                assert quadratic(form.middle()[:, i], u) == pytest.approx(0.25 * sign * size, abs=1e-15)
 
 
 def elevations(cell: np.ndarray) -> tuple[Fraction, Fraction]:
@@ -80,7 +83,7 @@ def test_cells_off_the_band_hold_none_of_its_axes(seed: int, band: list, make_le
     if tuple(band) == (1.0, 1.0):
         return
     field = AxisField.within(*band)
-    holds = off_band_holds(field, make_leaves(30, cell=cells), boxes_for(30))
+    holds = off_band_holds(NO_FAMILY, field, make_leaves(30, cell=cells), boxes_for(30))
     assert not holds[0]
     for cell, held in zip(cells[1:], holds[1:], strict=True):
         least, most = elevations(cell)
@@ -104,7 +107,7 @@ def test_bounds_of_the_elevation_are_met(make_leaves: Callable) -> None:
                 if not 0.0 < c < 1.0:
                     continue
                 field = AxisField.within(c, 1.0) if inside > 0.0 else AxisField.within(0.0, c)
-                assert off_band_holds(field, leaves, boxes_for(1))[0] == outwards
+                assert off_band_holds(NO_FAMILY, field, leaves, boxes_for(1))[0] == outwards
 
 
 def test_every_axis_is_within_the_whole_band(make_leaves: Callable) -> None:
@@ -112,4 +115,4 @@ def test_every_axis_is_within_the_whole_band(make_leaves: Callable) -> None:
     cells = cells_of(np.random.default_rng(5), 100, 10)
     leaves = make_leaves(100, cell=cells)
     for field in (AxisField.free(), AxisField.vertical()):
-        assert not np.any(off_band_holds(field, leaves, boxes_for(100)))
+        assert not np.any(off_band_holds(NO_FAMILY, field, leaves, boxes_for(100)))

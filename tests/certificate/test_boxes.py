@@ -7,7 +7,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nullpose.certificate.boxes import Boxes, boxes_of, mix_slots, parts
+from nullpose.certificate.boxes import Boxes, boxes_of, parts
+from nullpose.certificate.mixes import mix_slots
 
 ends = st.one_of(
     st.floats(-1e3, 1e3),
@@ -98,9 +99,8 @@ def test_chosen_boxes_keep_their_leaves() -> None:
 def test_mixes_fill_slots(make_leaves: Callable) -> None:
     """Each box gets its leaf's mix; unused slots, and leaves without a mix, weigh nothing."""
     leaves = make_leaves(3, mix=np.array([1, -1, 0]), mixes=({2: 0.25, 0: 0.75}, {1: 1.0}))
-    boxes = Boxes(leaf=np.array([2, 0, 1]), centre=np.zeros((3, 3)), half=np.ones((3, 3)))
-    ratio, weight = mix_slots(leaves, boxes)
+    ratio, weight = mix_slots(leaves.chosen(np.array([2, 0, 1])))
     assert ratio[:, 0].tolist() == [2, 0]
     assert weight.tolist() == [[0.25, 1.0, 0.0], [0.75, 0.0, 0.0]]
     none = make_leaves(1, mix=np.array([-1]), mixes=())
-    assert mix_slots(none, boxes.chosen(np.array([False, True, False])))[1].shape == (0, 1)
+    assert mix_slots(none)[1].shape == (0, 1)

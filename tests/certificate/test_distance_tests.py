@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
+from nullpose.family import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -50,7 +51,7 @@ def test_far_is_far(
     top = family.numerator_isotropic[nodes] + family.numerator_weight[nodes] / reach**2
     exact = top / family.denominator_isotropic[family.denominator_of[nodes]]
     level[::2] = exact[::2] * (1.0 + 1e-9 * np.sign(rng.normal(size=15)))
-    holds = far_holds(family, make_leaves(30, point=nodes, level=level), boxes)
+    holds = far_holds(family, AxisField.free(), make_leaves(30, point=nodes, level=level), boxes)
     assert np.array_equal(holds, exact < level)
     for b in np.flatnonzero(holds):
         for p in inside(rng, boxes, b, 6):
@@ -67,14 +68,14 @@ def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_le
     ball = rng.integers(4, size=40)
     away = np.abs(family.keep_out_points_m[ball] - boxes.centre) + boxes.half
     farthest = np.linalg.norm(away, axis=1)
-    holds = kept_out_holds(family, make_leaves(40, point=ball), boxes)
+    holds = kept_out_holds(family, AxisField.free(), make_leaves(40, point=ball), boxes)
     assert np.array_equal(holds, farthest < 25.0)
     larger = replace(family, keep_out_m=float(farthest[0]) * (1.0 + 1e-12))
     smaller = replace(family, keep_out_m=float(farthest[0]) * (1.0 - 1e-12))
-    assert kept_out_holds(larger, make_leaves(40, point=ball), boxes)[0]
-    assert not kept_out_holds(smaller, make_leaves(40, point=ball), boxes)[0]
+    assert kept_out_holds(larger, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
+    assert not kept_out_holds(smaller, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
     none = replace(family, keep_out_points_m=np.zeros((0, 3)))
-    assert not np.any(kept_out_holds(none, make_leaves(40, point=ball), boxes))
+    assert not np.any(kept_out_holds(none, AxisField.free(), make_leaves(40, point=ball), boxes))
 
 
 @given(seed=seeds)
@@ -102,10 +103,10 @@ def test_nothing_beyond_the_root_beats_the_bound(seed: int, random_family: Calla
 
 
 def test_a_root_of_the_whole_domain_needs_no_reach(random_family: Callable) -> None:
-    """Where the room is bounded its own faces do; a hair inside does not."""
+    """Where the airspace is bounded its own faces do; a hair inside does not."""
     family = random_family(np.random.default_rng(1), 2, 1)
     low, high = np.array([-5.0, -5.0, 8.0]), np.array([5.0, 5.0, 9.0])
-    room = replace(family, low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
-    assert root_holds(room, np.array([low, high]), 1e-3) == ""
-    assert "x = " in root_holds(room, np.array([low + np.array([1e-12, 0, 0]), high]), 1e-3)
-    assert "z = " in root_holds(room, np.array([low, high - np.array([0, 0, 1e-12])]), 1e-3)
+    bounded = replace(family, low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
+    assert root_holds(bounded, np.array([low, high]), 1e-3) == ""
+    assert "x = " in root_holds(bounded, np.array([low + np.array([1e-12, 0, 0]), high]), 1e-3)
+    assert "z = " in root_holds(bounded, np.array([low, high - np.array([0, 0, 1e-12])]), 1e-3)

@@ -9,21 +9,17 @@ from hypothesis import strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.frames import Frames, expansion, frames_of, projector, turning_rate
+from nullpose.certificate.forms import COLUMN, ROW, matrices
+from nullpose.certificate.frames import Frames, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval
 from nullpose.family import Family
 
 seeds = st.integers(0, 2**32 - 1)
 
-SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
-
-def full(six: list[Interval], b: int = 0) -> np.ndarray:
-    """Return the middle of a form of six intervals as a matrix."""
-    matrix = np.empty((3, 3))
-    for x, (i, j) in zip(six, SIX, strict=True):
-        matrix[i, j] = matrix[j, i] = x.middle()[b]
-    return matrix
+def full(form: Interval) -> np.ndarray:
+    """Return the middle of one box's form as a matrix."""
+    return matrices(form.middle())[0]
 
 
 def one_box(rng: np.random.Generator) -> Boxes:
@@ -69,15 +65,15 @@ def test_expansions_enclose_the_forms(
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 3, 2), one_box(rng)
     frames = framed(family, boxes, turning, rng, make_leaves)
-    basis, gram = frames.basis[0].middle(), full(frames.gram)
+    basis, gram = frames.basis.middle()[:, :, 0], full(frames.gram)
     for x in rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]:
         p = boxes.centre[0] + x
         rotation = carried(family, frames, boxes.centre[0], p)
         for j in range(len(family.points_m)):
             form, slopes, up, down = expansion(family, frames, boxes, np.array([j]))
             turned = basis.T @ rotation.T @ link_matrix(family.points_m[j] - p) @ rotation @ basis
-            error = turned - full(form) - sum(h * full(s) for h, s in zip(x, slopes, strict=True))
-            around = full(projector(frames)) if turning and j == frames.anchor[0] else gram
+            error = turned - full(form) - sum(h * full(slopes[:, i]) for i, h in enumerate(x))
+            around = full(frames.across) if turning and j == frames.anchor[0] else gram
             reach = 0.5 * float(x @ x)
             slack = 1e-12 * np.abs(turned).max()
             assert np.linalg.eigvalsh(error - up.high[0] * reach * around)[-1] <= slack
@@ -92,15 +88,15 @@ def test_the_form_at_the_centre_is_exact(
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
     frames = framed(family, boxes, True, rng, make_leaves)
-    basis = frames.basis[0].middle()
+    basis = frames.basis.middle()[:, :, 0]
     assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
     for j in range(4):
         form, _, _, _ = expansion(family, frames, boxes, np.array([j]))
         exact = basis.T @ link_matrix(family.points_m[j] - boxes.centre[0]) @ basis
-        for x, (i, k) in zip(form, SIX, strict=True):
-            slack = 1e-14 * np.abs(exact).max()
-            assert x.low[0] - slack <= exact[i, k] <= x.high[0] + slack
-            assert x.high[0] - x.low[0] <= 1e-12 * np.abs(exact).max()
+        slack = 1e-14 * np.abs(exact).max()
+        assert np.all(form.low[:, 0] - slack <= exact[ROW, COLUMN])
+        assert np.all(exact[ROW, COLUMN] <= form.high[:, 0] + slack)
+        assert np.all(form.high - form.low <= 1e-12 * np.abs(exact).max())
 
 
 @given(seed=seeds)
@@ -111,8 +107,9 @@ def test_turning_rates_are_derivatives(seed: int, random_family: Callable, make_
     frames = framed(family, boxes, True, rng, make_leaves)
     q = rng.normal(size=(3, 3))
     q = q + q.T
-    centre, step = boxes.centre[0], 1e-4
+    centre, step, basis = boxes.centre[0], 1e-4, frames.basis.middle()[:, :, 0]
+    _, slopes = constant(frames, Interval(q[ROW, COLUMN][:, None]))
     for e in range(3):
         ends = [carried(family, frames, centre, centre + s * step * np.eye(3)[e]) for s in (-1.0, 1.0)]
         change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)
-        assert turning_rate(frames, Interval(q[None]), e).middle()[0] == pytest.approx(change, abs=1e-7)
+        assert full(slopes[:, e]) == pytest.approx(basis.T @ change @ basis, abs=1e-7)

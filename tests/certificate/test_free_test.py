@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
+from nullpose.certificate.forms import COLUMN, ROW, matrices
 from nullpose.certificate.frames import Frames, expansion, frames_of
 from nullpose.certificate.free_test import (
     Sum,
@@ -23,21 +24,18 @@ from nullpose.family import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 
-SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 BANDS = [(0.0, 0.0), (0.0, 0.1), (0.3, 0.3), (0.2, 0.9), (0.75, 1.0), (0.0, 1.0)]
 
 
-def full(six: list[Interval], b: int = 0) -> np.ndarray:
-    """Return the middle of a form of six intervals as a matrix."""
-    matrix = np.empty((3, 3))
-    for x, (i, j) in zip(six, SIX, strict=True):
-        matrix[i, j] = matrix[j, i] = x.middle()[b]
-    return matrix
+def full(form: Interval) -> np.ndarray:
+    """Return the middle of one box's form as a matrix."""
+    return matrices(form.middle())[0]
 
 
-def six_of(matrix: np.ndarray, slack: float = 0.0) -> list[Interval]:
-    """Return a symmetric matrix as six intervals for one box."""
-    return [Interval([matrix[i, j] - slack], [matrix[i, j] + slack]) for i, j in SIX]
+def six_of(matrix: np.ndarray, slack: float = 0.0) -> Interval:
+    """Return a symmetric matrix as the form of one box."""
+    six = matrix[ROW, COLUMN][:, None]
+    return Interval(six - slack, six + slack)
 
 
 def one_box(rng: np.random.Generator) -> Boxes:
@@ -81,30 +79,29 @@ def test_definiteness_is_that_of_the_eigenvalues(seed: int) -> None:
 
 
 @given(seed=seeds)
-def test_definiteness_on_the_level_plane_is_that_of_the_block(seed: int) -> None:
-    """Where only level axes count, the vertical's row and column do not."""
+def test_definiteness_on_the_horizontal_plane_is_that_of_the_block(seed: int) -> None:
+    """Where only horizontal axes count, the vertical's row and column do not."""
     rng = np.random.default_rng(seed)
     matrix = rng.normal(size=(3, 3))
     matrix = matrix + matrix.T
     top = np.linalg.eigvalsh(matrix[:2, :2])[-1]
     matrix[:2, :2] -= np.eye(2) * (top + 10.0 ** rng.uniform(-6, 1) * rng.choice([-1, 1]))
     matrix[2, 2] *= 10.0 ** rng.uniform(0, 8)
-    level = np.array([True])
-    assert negative_definite(six_of(matrix), level)[0] == (np.linalg.eigvalsh(matrix[:2, :2])[-1] < 0.0)
+    horizontal = np.array([True])
+    assert negative_definite(six_of(matrix), horizontal)[0] == (np.linalg.eigvalsh(matrix[:2, :2])[-1] < 0.0)
     for bad in (0.0, np.inf, np.nan):
         with np.errstate(all="ignore"):
-            assert not negative_definite([Interval([bad])] * 6, level)[0]
+            assert not negative_definite(Interval(np.full((6, 1), bad)), horizontal)[0]
 
 
 def test_undefined_forms_are_not_definite() -> None:
     """Neither zero nor infinity nor not-a-number passes."""
     for bad in (0.0, np.inf, -np.inf, np.nan):
         with np.errstate(all="ignore"):
-            assert not negative_definite([Interval([bad])] * 3 + [Interval([0.0])] * 3)[0] or bad == -np.inf
-            assert not negative_definite([Interval([-1.0])] * 2 + [Interval([bad])] + [Interval([0.0])] * 3)[
-                0
-            ] or (bad == -np.inf)
-            assert not negative_definite([Interval([-1.0])] * 3 + [Interval([np.nan])] * 3)[0]
+            for diagonal in ([bad] * 3, [-1.0, -1.0, bad]):
+                form = Interval(np.array([*diagonal, 0.0, 0.0, 0.0])[:, None])
+                assert not negative_definite(form)[0] or bad == -np.inf
+            assert not negative_definite(Interval(np.repeat([[-1.0], [np.nan]], 3, axis=0)))[0]
 
 
 def dense_side(cell: np.ndarray, side: int) -> np.ndarray:
@@ -177,8 +174,8 @@ def test_constant_forms_are_enclosed(
         assert u @ dense_band(band, ends[0]) @ u >= -1e-12 * (u @ u)
         x = rng.uniform(-1.0, 1.0, 3) * boxes.half[0]
         centre = boxes.centre[0]
-        turn = carried(frames, family.points_m[point[0]], centre, centre + x) @ frames.basis[0].middle()
-        bound = full(total.matrix) + sum(h * full(s) for h, s in zip(x, total.slopes, strict=True))
+        turn = carried(frames, family.points_m[point[0]], centre, centre + x) @ frames.basis.middle()[:, :, 0]
+        bound = full(total.matrix) + sum(h * full(total.slopes[:, i]) for i, h in enumerate(x))
         error = turn.T @ constant @ turn - bound
         assert np.abs(np.linalg.eigvalsh(error)).max() <= float(total.rest.high[0]) + 1e-11
         if not turning:
@@ -201,18 +198,18 @@ def test_the_remainder_near_a_null_is_a_bound(
         frames = frames_of(family, make_leaves(1, test=test, point=np.array([anchor])), boxes)
         near_null = (point_m - centre) / np.linalg.norm(point_m - centre)
         near_null = near_null + rng.normal(size=3) * 10.0 ** rng.uniform(-4.0, 0.0)
-        vector = np.linalg.solve(frames.basis[0].middle(), near_null / np.linalg.norm(near_null))
+        vector = np.linalg.solve(frames.basis.middle()[:, :, 0], near_null / np.linalg.norm(near_null))
         form, slopes, _, down = expansion(family, frames, boxes, np.array([point]))
         plain = down * boxes.half2 * 0.5
-        share, rest = sharper(form, vector[None], boxes, frames, np.array([point]), point_m[None], plain)
+        share, rest = sharper(form, vector[:, None], boxes, frames, np.array([point]), point_m[None], plain)
         used += share[0] > 0.0
         assert 0.0 <= share[0] < 1.0
         here = vector @ full(form) @ vector
         assert share[0] * here + rest.high[0] <= plain.high[0] * (1.0 + 1e-12)
         corners = rng.choice([-1.0, 1.0], (20, 3)) * rng.choice([1.0, rng.uniform()], (20, 1))
         for x in corners * half:
-            turn = carried(frames, anchor_m, centre, centre + x) @ frames.basis[0].middle()
-            bound = full(form) + sum(h * full(each) for h, each in zip(x, slopes, strict=True))
+            turn = carried(frames, anchor_m, centre, centre + x) @ frames.basis.middle()[:, :, 0]
+            bound = full(form) + sum(h * full(slopes[:, i]) for i, h in enumerate(x))
             exact = turn.T @ link_matrix(point_m - centre - x) @ turn
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]
             assert excess >= -1e-12 * np.trace(exact)

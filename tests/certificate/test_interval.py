@@ -103,7 +103,7 @@ def test_the_middle_is_inside_and_the_radius_reaches_both_ends(a: list[float]) -
 
 @given(rows=st.lists(st.tuples(numbers, numbers), min_size=1, max_size=6))
 def test_inner_products_contain_the_exact_ones(rows: list[tuple[float, float]]) -> None:
-    """Sums over the last axis and inner products hold the exact values, unless they overflow to unknown."""
+    """Sums over the first axis and inner products hold the exact values, unless they overflow to unknown."""
     x, y = (np.array(column) for column in zip(*rows, strict=True))
     with np.errstate(all="ignore"):
         for result, exact in (
@@ -148,7 +148,7 @@ def test_arrays_mix_with_intervals_from_either_side() -> None:
         assert isinstance(result, Interval)
         assert result.low.shape == (2,)
     assert as_interval(x).low is as_interval(x).high or np.array_equal(as_interval(x).low, x)
-    assert stack([Interval(x), Interval(x), Interval(x)]).low.shape == (2, 3)
+    assert stack([Interval(x), Interval(x), Interval(x)]).low.shape == (3, 2)
     assert np.array_equal(Interval(np.arange(3.0))[1:].low, [1.0, 2.0])
 
 

@@ -7,11 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nullpose.certificate.outline import Outline, clipped, corners, may_meet
+from nullpose.certificate.outline import Outline, Point, clipped, corners, exact, may_meet
 
 seeds = st.integers(0, 2**32 - 1)
-
-Point = tuple[Fraction, Fraction]
 
 
 def star(rng: np.random.Generator, on_grid: bool) -> np.ndarray:
@@ -42,11 +40,6 @@ def rectangle_near(
     return centre - half, centre + half
 
 
-def exact(point: np.ndarray) -> Point:
-    """Return a point exactly."""
-    return Fraction(float(point[0])), Fraction(float(point[1]))
-
-
 def is_on(edges: np.ndarray, point: Point) -> bool:
     """Return whether a point is on an edge, exactly."""
     for edge in edges:
@@ -71,12 +64,12 @@ def is_inside(edges: np.ndarray, point: Point) -> bool:
 def samples(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, edges: np.ndarray) -> list[Point]:
     """Return points of a rectangle: some anywhere, its corners, and some on the edges in it."""
     rectangle = exact(low), exact(high)
-    points = list(corners(rectangle))
+    points = list(corners(*rectangle))
     for x, y in rng.integers(0, 9, (12, 2)):
         share_x, share_y = Fraction(int(x), 8), Fraction(int(y), 8)
         points.append(tuple(a + s * (b - a) for a, b, s in zip(*rectangle, (share_x, share_y), strict=True)))
     for edge in edges:
-        ends = clipped((*exact(edge[:2]), *exact(edge[2:])), rectangle)
+        ends = clipped(exact(edge), *rectangle)
         points += ends
         if ends:
             points.append(tuple((a + b) / 2 for a, b in zip(*ends, strict=True)))
@@ -94,7 +87,7 @@ def test_allowed_points_meet_an_alternative(is_fence: bool, on_grid: bool, seed:
     outline = Outline.of(edges, is_fence)
     low, high = rectangle_near(rng, edges, on_grid)
     met = [int(e) for e in np.flatnonzero(may_meet(edges, low[None], high[None])[0])]
-    alternatives = outline.alternatives(met, (exact(low), exact(high)))
+    alternatives = outline.alternatives(met, low, high)
     for point in samples(rng, low, high, edges):
         on = is_on(edges, point)
         if on or is_inside(edges, point) == is_fence:
@@ -115,7 +108,7 @@ def test_edges_that_meet_are_never_left_out(seed: int) -> None:
         for b in range(10):
             rectangle = exact(low[b]), exact(high[b])
             for e, edge in enumerate(edges):
-                assert named[b, e] or not clipped((*exact(edge[:2]), *exact(edge[2:])), rectangle)
+                assert named[b, e] or not clipped(exact(edge), *rectangle)
 
 
 L_SHAPE = np.array([[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [4.0, 8.0], [4.0, 4.0], [0.0, 4.0]])
@@ -127,9 +120,7 @@ def around(point: tuple[float, float], half: float) -> list[tuple[int, ...]]:
     """Return the alternatives of the L around a point, as a forbidden zone and as a fence."""
     low, high = np.array(point) - half, np.array(point) + half
     met = [int(e) for e in np.flatnonzero(may_meet(L_EDGES, low[None], high[None])[0])]
-    return [
-        Outline.of(L_EDGES, fence).alternatives(met, (exact(low), exact(high))) for fence in (False, True)
-    ]
+    return [Outline.of(L_EDGES, fence).alternatives(met, low, high) for fence in (False, True)]
 
 
 def test_alternatives_are_as_few_as_can_be() -> None:
@@ -145,17 +136,16 @@ def test_alternatives_are_as_few_as_can_be() -> None:
     assert around((6.0, 6.0), 1.99) == [[], [()]]
     wide = np.array([3.9, 5.0]), np.array([8.1, 6.0])
     outline = Outline.of(L_EDGES, True)
-    assert outline.alternatives([1, 3], (exact(wide[0]), exact(wide[1]))) == [(1, 3)]
-    assert Outline.of(L_EDGES, False).alternatives([1, 3], (exact(wide[0]), exact(wide[1]))) == [(1,), (3,)]
+    assert outline.alternatives([1, 3], *wide) == [(1, 3)]
+    assert Outline.of(L_EDGES, False).alternatives([1, 3], *wide) == [(1,), (3,)]
 
 
 def test_edges_named_in_vain_do_no_harm() -> None:
     """Where an edge was named that does not meet the rectangle, its side is asked for only if it may be."""
-    inside, outside = (exact(np.array(p)) for p in ([5.0, 1.0], [-2.0, 1.0]))
-    for corner, forbids in ((inside, True), (outside, False)):
-        rectangle = corner, (corner[0] + 1, corner[1] + 1)
+    for corner, forbids in (([5.0, 1.0], True), ([-2.0, 1.0], False)):
+        low = np.array(corner)
         for met in ([0], [5], [0, 5], [2, 3], [1, 2]):
             outline = Outline.of(L_EDGES, False)
-            found = outline.alternatives(met, rectangle)
-            for point in corners(rectangle):
+            found = outline.alternatives(met, low, low + 1.0)
+            for point in corners(exact(low), exact(low + 1.0)):
                 assert forbids or any(all(outline.allowance(e, point) >= 0 for e in one) for one in found)

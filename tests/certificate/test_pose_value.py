@@ -14,6 +14,7 @@ from nullpose.certificate.pose_value import (
     antenna_axis,
     band_excess,
     body_axes,
+    exact,
     field_offset,
     sine_cosine,
     smallest_ratio,
@@ -31,11 +32,6 @@ from nullpose.physics import antenna_axis as physics_axis
 
 seeds = st.integers(0, 2**32 - 1)
 angles = st.floats(-4.0, 4.0)
-
-
-def exact(array: np.ndarray) -> list[Fraction]:
-    """Return numbers exactly."""
-    return [Fraction(float(x)) for x in array]
 
 
 @given(x=angles)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose.certificate import Certificate, Leaves, parse_certificate, read_certificate, verify
+from nullpose.certificate import Certificate, parse_certificate, read_certificate, verify
 from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS, WORLD
 from nullpose.scenario import Scenario, apply_overrides, load
 
@@ -85,8 +85,7 @@ def test_cells_are_proved(celled: Certificate) -> None:
     last = int(np.flatnonzero(cell[:, 0] == 2)[-1])
     kept = np.delete(np.arange(len(cell)), last)
     leaves = celled.trees[0].leaves
-    columns = {name: getattr(leaves, name)[kept] for name in Leaves.__slots__ if name != "mixes"}
-    assert "face2" in rejected(with_tree(celled, leaves=Leaves(mixes=leaves.mixes, **columns)))
+    assert "face2" in rejected(with_tree(celled, leaves=leaves.chosen(kept)))
 
 
 def test_multipliers_of_sides_count(celled: Certificate) -> None:
@@ -283,10 +282,8 @@ def test_a_root_that_is_too_small_is_rejected(walled: Certificate) -> None:
 
 def test_no_leaves_prove_nothing(walled: Certificate) -> None:
     """An empty tree is a hole as large as the root."""
-    leaves = walled.trees[0].leaves
-    columns = {name: getattr(leaves, name)[:0] for name in Leaves.__slots__ if name != "mixes"}
-    empty = with_tree(walled, leaves=Leaves(mixes=(), **columns))
-    assert "nothing covers root" in rejected(empty)
+    none = replace(walled.trees[0].leaves.chosen(np.zeros(0, dtype=np.int64)), mixes=())
+    assert "nothing covers root" in rejected(with_tree(walled, leaves=none))
 
 
 def test_a_failing_leaf_is_placed(walled: Certificate) -> None:
@@ -304,8 +301,7 @@ def test_the_order_of_leaves_does_not_matter(celled: Certificate) -> None:
     """Shuffled leaves prove the same."""
     leaves = celled.trees[0].leaves
     order = np.random.default_rng(1).permutation(len(leaves))
-    columns = {name: getattr(leaves, name)[order] for name in Leaves.__slots__ if name != "mixes"}
-    accepted(with_tree(celled, leaves=Leaves(mixes=leaves.mixes, **columns)))
+    accepted(with_tree(celled, leaves=leaves.chosen(order)))
 
 
 def test_leaves_that_fail_by_a_hair_are_cut(walled: Certificate) -> None:

@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.constraint import Constraint
 from nullpose.certificate.distance_tests import kept_out_holds
+from nullpose.certificate.interval import dot
 from nullpose.certificate.zones import forbidden, zone_alternatives
 from nullpose.errors import ScenarioError
-from nullpose.family import Family, build_family
+from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Airspace
 
 seeds = st.integers(0, 2**32 - 1)
@@ -62,8 +63,8 @@ def some_boxes(rng: np.random.Generator, family: Family, count: int) -> Boxes:
 
 def value_at(bound: Constraint, i: int, shift: np.ndarray) -> float:
     """Return an upper bound on a constraint at a position of the i-th of its boxes."""
-    value = bound.value[i] + sum(bound.slopes[i, m] * shift[m] for m in range(3))
-    return float(value.high) + float(bound.bend[i] @ shift**2)
+    value = bound.value[i] + dot(bound.slopes[:, i], shift)
+    return float(value.high) + float(bound.bend[:, i] @ shift**2)
 
 
 @settings(max_examples=40)
@@ -155,7 +156,7 @@ def test_balls_and_zones_are_counted_on(paper: Callable, make_leaves: Callable) 
         half=np.full((4, 3), 0.5),
     )
     leaves = make_leaves(4, point=np.array([0, 0, balls, balls]))
-    assert kept_out_holds(family, leaves, boxes).tolist() == [True, False, False, True]
+    assert kept_out_holds(family, AxisField.free(), leaves, boxes).tolist() == [True, False, False, True]
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -169,7 +170,7 @@ def test_constraints_are_of_the_walls(side: int, paper: Callable) -> None:
     centre = np.array([[10.0, 5.0, 20.0]]) if side else np.array([[5.0, 0.0, 9.0]])
     boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=centre, half=np.full((1, 3), 0.5))
     found = zone_alternatives(family, np.zeros(1, dtype=np.int64), boxes)
-    ways = [one.constraints[0].slopes.middle()[0] for one in found]
+    ways = [one.constraints[0].slopes.middle()[:, 0] for one in found]
     ways = sorted(tuple(way / np.linalg.norm(way)) for way in ways)
     out = (1.0, 0.0, 0.0) if side else (0.0, -1.0, 0.0)
     assert ways == sorted([out, (0.0, 0.0, 1.0 if side else -1.0)])

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-import nullpose.report.reproduce
+import nullpose.paper.reproduce
 
 Run = Callable[..., Result]
 
@@ -19,8 +19,8 @@ FILES = ["claims.json", "claims.md", "figure2.csv", "figure2.png", "figure2.svg"
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Makes the verb take one level per decade."""
     levels = [10.0**exponent for exponent in range(-3, 7)]
-    fewer = partial(nullpose.report.reproduce.reproduce, levels=levels, printed_levels=levels[::-8][::-1])
-    monkeypatch.setattr(nullpose.report.reproduce, "reproduce", fewer)
+    fewer = partial(nullpose.paper.reproduce.reproduce, levels=levels, printed_levels=levels[::-8][::-1])
+    monkeypatch.setattr(nullpose.paper.reproduce, "reproduce", fewer)
 
 
 @pytest.mark.usefixtures("coarse")

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import Result
 
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.gap_bar import GapBar
+from nullpose.cli.progress import GapBar
 from nullpose.schemes import Scheme
 
 Run = Callable[..., Result]
@@ -194,10 +194,10 @@ def test_an_interrupted_proof_prints_its_result(
 
 TOLD_AT_ONCE = """
 import sys
-import nullpose.cli.gap_bar as gap_bar
+import nullpose.cli.progress as progress
 from nullpose.cli.app import main
 
-gap_bar._QUIET_S = gap_bar._LOG_EVERY_S = 0.0
+progress._QUIET_S = progress._LOG_EVERY_S = 0.0
 sys.argv[0] = "nullpose"
 main()
 """

@@ -35,10 +35,10 @@ def test_statuses_are_counted() -> None:
 def test_complete_is_said_only_of_what_is() -> None:
     """Values are all certified only if there are some and each is."""
     assert Certainty.of([PROVED]).complete
-    assert Certainty.of([PROVED]).words() == "1 values, all certified; largest relative gap 9e-7"
+    assert Certainty.of([PROVED]).words() == "1 value, 1 certified; largest relative gap 9e-7"
     assert not Certainty.of([]).complete
     assert not Certainty.of([PROVED, SEARCHED]).complete
-    assert Certainty.of([SEARCHED]).words() == "1 values, 1 best found, with no bound"
+    assert Certainty.of([SEARCHED]).words() == "1 value, 1 best found, with no bound"
 
 
 def test_lines_name_the_curves_that_are_not_proved() -> None:

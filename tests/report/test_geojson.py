@@ -13,7 +13,7 @@ import pytest
 
 from nullpose import Pose, Solution, evaluate, solve
 from nullpose.errors import OutputError, UsageError
-from nullpose.report.export import require_origin, solution_geojson, write_geojson
+from nullpose.report.geojson import require_origin, solution_geojson, write_geojson
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.geodesy import enu_from_geodetic
 

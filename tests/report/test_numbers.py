@@ -2,7 +2,7 @@
 
 import math
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.numbers import count_of, escaped, listed, number, percent, with_interval
 
 RATE = Quantity.named("min_secrecy_rate")

@@ -13,8 +13,7 @@ from nullpose.scenario import Scenario
 from nullpose.schemes.zero_interference import ZERO_INTERFERENCE
 from nullpose.solve import Scheme, solve
 from nullpose.solve.by_scheme import solve_scheme
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 
 
 @pytest.fixture(scope="module")
@@ -89,12 +88,12 @@ def test_the_null_is_on_the_one_named(name: str, three_jammers: Scenario) -> Non
 def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
     """Another name is refused, with those there are."""
     with pytest.raises(UsageError, match="given 'X'; the scenario's jammers are M1, M2, M3"):
-        solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), "X")
+        solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "X")
 
 
 def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
     """The field's axis at the position found is the axis found, of the length of the way to the jammer."""
-    found = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), "M2").incumbent
+    found = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "M2").incumbent
     np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
     assert build_family(three_jammers).low_m[2] <= found.position_m[2]
 
@@ -118,12 +117,14 @@ def test_an_end_on_a_ball_and_the_floor_is_exact(seed: int, scene: Callable) -> 
 
 def test_every_jammer_s_null_is_proved(three_jammers: Scenario) -> None:
     """With no jammer named there is a proof for each, all of the same bound: that of the best."""
-    outcome = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(limits=Limits(gap=1e-6)), None)
+    outcome = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), None)
     assert outcome.reason == ""
     assert len(outcome.proofs) == 3
     assert outcome.nodes == sum(proof.nodes for proof in outcome.proofs)
     value = np.exp(outcome.incumbent.log_value)
     assert value <= outcome.upper_bound <= value * (1.0 + 1e-6)
-    alone = solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(limits=Limits(gap=1e-6)), "M2")
+    alone = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), "M2")
     assert len(alone.proofs) == 1
-    assert solve_scheme(three_jammers, ZERO_INTERFERENCE, Effort(), None).upper_bound is None
+    assert (
+        solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), None).upper_bound is None
+    )

@@ -14,9 +14,8 @@ import nullpose
 from nullpose.errors import ScenarioError, SolveError, UsageError
 from nullpose.physics.array import beam_sinr, digital_sinr, element_positions
 from nullpose.scenario import Array, Scenario
-from nullpose.solve import Status, solve
+from nullpose.solve import ArraySolution, Status, solve
 from nullpose.solve.array import COMBININGS, solve_array
-from nullpose.solve.array_solution import ArraySolution
 from nullpose.solve.array_task import ArrayTask
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -258,7 +257,7 @@ def test_impossible_arrays_are_refused(wrong: dict, paper: Callable) -> None:
 def test_other_objectives_are_refused() -> None:
     """An array listens; a scenario that asks for a secrecy rate is told so."""
     secret = nullpose.load(EXAMPLES / "eavesdropper.toml")
-    with pytest.raises(UsageError, match="allowed: min-sinr"):
+    with pytest.raises(UsageError, match="secrecy-rate"):
         solve_array(secret, elements=2, **HALF_WAVE)
 
 

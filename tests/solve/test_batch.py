@@ -6,8 +6,7 @@ import pytest
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve.batch import Batch, BatchOutcome, same_shape
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 
 
 def family_of(jammer_m: tuple[float, float, float], *, nodes: int = 2, ceiling_m: float = 30.0):
@@ -51,7 +50,7 @@ def test_settling_fills_what_is_known(certify: bool) -> None:
     """Poses with a finite value; bounds only if a proof was asked for."""
     batch = Batch([family_of((17.0, 15.0, 4.0)), family_of((-5.0, 20.0, 2.0))])
     known = BatchOutcome.blank(2, 2)
-    batch.solve_and_prove(AxisField.free(), Effort(limits=Limits(gap=1e-3) if certify else None), known)
+    batch.solve_and_prove(AxisField.free(), SolveOptions(gap=1e-3, certify=certify), known)
     assert np.all(np.isfinite(known.log_value))
     assert np.all(known.placed)
     assert np.all(known.certified == certify)

@@ -10,8 +10,8 @@ from nullpose.scenario import Scenario, apply_overrides, load
 from nullpose.solve.kernels import node
 from nullpose.solve.kernels.axis import best_axis
 from nullpose.solve.kernels.links import min_log_ratio
-from nullpose.solve.limits import Limits, default_gap
 from nullpose.solve.multistart import multistart
+from nullpose.solve.options import SolveOptions, default_gap
 from nullpose.solve.proof import Proof, prove
 
 PAPER = "examples/paper.toml"
@@ -20,7 +20,7 @@ PAPER = "examples/paper.toml"
 def proof_of(family: Family, axis_field: AxisField, **limits: float) -> Proof:
     """Return a proof from a multistart's incumbent."""
     found = multistart(family, axis_field, seed=1)
-    return prove(family, axis_field, found, Limits(**limits))
+    return prove(family, axis_field, found, SolveOptions(**limits))
 
 
 def boxes(proof: Proof) -> tuple[np.ndarray, np.ndarray]:
@@ -114,7 +114,7 @@ def test_a_poor_incumbent_is_improved() -> None:
     poor = type(best)(
         position_m=p, axis=axis, log_value=poor_value, multipliers=np.full(2, 0.5), starts=0, evaluations=0
     )
-    proof = prove(family, AxisField.free(), poor, Limits(gap=1e-6))
+    proof = prove(family, AxisField.free(), poor, SolveOptions(gap=1e-6))
     assert proof.reason == ""
     assert proof.incumbent.log_value == pytest.approx(best.log_value, rel=1e-6)
 
@@ -124,7 +124,12 @@ def test_progress_is_told(random_scene: Callable) -> None:
     seen: list[tuple[float, int]] = []
     family = build_family(random_scene(np.random.default_rng(7), 6, 2, 30.0))
     found = multistart(family, AxisField.free(), seed=1)
-    prove(family, AxisField.free(), found, Limits(gap=1e-3), on_progress=lambda gap, n: seen.append((gap, n)))
+    prove(
+        family,
+        AxisField.free(),
+        found,
+        SolveOptions(gap=1e-3, on_progress=lambda gap, n: seen.append((gap, n))),
+    )
     gaps, nodes = zip(*seen, strict=True)
     assert list(nodes) == sorted(nodes)
     assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(gaps))

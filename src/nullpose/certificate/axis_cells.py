@@ -6,8 +6,9 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.forms import PLACE
 from nullpose.certificate.interval import Interval
-from nullpose.family import AxisField
+from nullpose.family import AxisField, Family
 
 __all__ = ["cell_ends", "off_band_holds", "side_form"]
 
@@ -25,7 +26,7 @@ def cell_ends(cell: IntArray, side: int) -> tuple[FloatArray, FloatArray]:
 
 
 def side_form(cell: IntArray, side: int) -> Interval:
-    """Return the form ``(v - low a)(high a - v)`` of one side of each cell, (b, 3, 3), not negative inside.
+    """Return the form ``(v - low a)(high a - v)`` of one side of each cell, (6, b), not negative inside.
 
     Args:
         cell: (b, 5) as in :class:`Leaves`, each on a face.
@@ -34,37 +35,37 @@ def side_form(cell: IntArray, side: int) -> Interval:
     row, a = np.arange(len(cell)), cell[:, 0]
     v = (a + 1 + side) % 3
     low, high = cell_ends(cell, side)
-    least = np.zeros((len(cell), 3, 3))
-    least[row, v, v] = -1.0
-    least[row, a, v] = least[row, v, a] = 0.5 * (low + high)
+    least = np.zeros((6, len(cell)))
+    least[v, row] = -1.0
+    least[PLACE[a, v], row] = 0.5 * (low + high)
     most = least.copy()
     ends = -(Interval(low) * high)
-    least[row, a, a], most[row, a, a] = ends.low, ends.high
+    least[a, row], most[a, row] = ends.low, ends.high
     return Interval(least, most)
 
 
-def off_band_holds(field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes' leaves hold no axis of the band.
+def off_band_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Return which leaves hold no axis of the band, wherever their boxes are.
 
     With one coordinate at 1 and the squares of the two others in intervals, ``u_z^2 / |u|^2`` is largest
     where z is and x and y are not, and the other way round.
 
     Args:
+        family: of no effect.
         field: a free axis within a band.
         leaves: with cells.
-        boxes: to be tested.
+        boxes: of no effect.
     """
-    cell = leaves.cell[boxes.leaf]
-    row, on_face = np.arange(len(boxes)), cell[:, 0] >= 0
+    cell = leaves.cell
+    row, on_face = np.arange(len(cell)), cell[:, 0] >= 0
     face = np.maximum(cell[:, 0], 0)
-    least, most = np.ones((len(boxes), 3)), np.ones((len(boxes), 3))
+    least, most = np.ones((3, len(cell))), np.ones((3, len(cell)))
     for side in range(2):
-        low, high = cell_ends(cell, side)
-        square = Interval(low, high).squared()
+        square = Interval(*cell_ends(cell, side)).squared()
         v = (face + 1 + side) % 3
-        least[row, v], most[row, v] = square.low, square.high
+        least[v, row], most[v, row] = square.low, square.high
     lower, upper = field.band
     # c (x^2 + y^2 + z^2) - z^2 for the greatest z^2 and the least x^2 and y^2, and the other way round
-    below = (Interval(least[:, 0]) + least[:, 1] + most[:, 2]) * lower - most[:, 2]
-    above = (Interval(most[:, 0]) + most[:, 1] + least[:, 2]) * upper - least[:, 2]
+    below = (Interval(least[0]) + least[1] + most[2]) * lower - most[2]
+    above = (Interval(most[0]) + most[1] + least[2]) * upper - least[2]
     return np.asarray(on_face & ((below.low > 0.0) | (above.high < 0.0)))

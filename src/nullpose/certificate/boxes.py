@@ -8,14 +8,13 @@ import numpy as np
 
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval
-from nullpose.family import Family
 
-__all__ = ["Boxes", "boxes_of", "group_shares", "mix_slots", "parts"]
+__all__ = ["Boxes", "boxes_of", "parts"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Boxes:
-    """Boxes and what is needed to test them; several may belong to one leaf.
+    """Boxes of positions; several may belong to one leaf.
 
     Args:
         leaf: (b,) index of the leaf that each belongs to.
@@ -43,21 +42,31 @@ class Boxes:
         """Their lowest and highest corners, (b, 3)."""
         return Interval(self.centre) - self.half, Interval(self.centre) + self.half
 
+    @property
+    def hull(self) -> Interval:
+        """All positions of each, (3, b)."""
+        low, high = self.corners
+        return Interval(low.low.T, high.high.T)
+
     def nearest2(self, points: FloatArray) -> FloatArray:
         """Return lower bounds on the squared distance from points, (b, 3) or (3,), to the boxes."""
-        away = (Interval(points) - self.centre).low, (Interval(points) - self.centre).high
-        gap = np.maximum(np.maximum(away[0], -away[1]) - self.half, 0.0)
-        return Interval(np.maximum(np.nextafter(gap, -np.inf), 0.0)).squared().total().low
+        away = Interval(points) - self.centre
+        gap = np.maximum(np.maximum(away.low, -away.high) - self.half, 0.0)
+        return Interval(np.maximum(np.nextafter(gap, -np.inf), 0.0)).squared().T.total().low
+
+    def nearest(self, points: FloatArray) -> Interval:
+        """Return lower bounds on the distance from points, (b, 3), to the boxes, as exact numbers."""
+        return Interval(Interval(self.nearest2(points)).sqrt().low)
 
     def farthest2(self, points: FloatArray) -> FloatArray:
         """Return upper bounds on the squared distance from points, (b, 3) or (3,), to all of the boxes."""
         reach = Interval((Interval(points) - self.centre).magnitude()) + self.half
-        return reach.squared().total().high
+        return reach.squared().T.total().high
 
     @property
     def half2(self) -> Interval:
         """The squared half diagonals, (b,)."""
-        return Interval(self.half).squared().total()
+        return Interval(self.half.T).squared().total()
 
 
 def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
@@ -70,13 +79,10 @@ def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
     depth, index = leaves.box[:, 0::2], leaves.box[:, 1::2]
     side = Interval(root_m[1]) - root_m[0]
     # powers of two are exact; an index of more than 53 bits is not, and is enclosed
-    share = np.ldexp(1.0, -depth)
-    low_index, high_index = index.astype(float), (index + 1).astype(float)
-    start = Interval(np.nextafter(low_index, -np.inf), np.nextafter(low_index, np.inf)) * share
-    end = Interval(np.nextafter(high_index, -np.inf), np.nextafter(high_index, np.inf)) * share
-    low, high = (side * start + root_m[0]).low, (side * end + root_m[0]).high
-    centre = 0.5 * low + 0.5 * high
-    half = np.maximum((Interval(high) - centre).high, (Interval(centre) - low).high)
+    ends = [Interval(np.nextafter(i, -np.inf), np.nextafter(i, np.inf)) for i in (index, index + 1)]
+    low, high = (side * (end * np.ldexp(1.0, -depth)) + root_m[0] for end in ends)
+    centre = 0.5 * low.low + 0.5 * high.high
+    half = np.maximum((Interval(high.high) - centre).high, (Interval(centre) - low.low).high)
     return Boxes(leaf=np.arange(len(leaves)), centre=centre, half=np.maximum(half, 0.0))
 
 
@@ -88,38 +94,3 @@ def parts(boxes: Boxes) -> Boxes:
     # the step upwards counts where the slack is too small to be a number
     half = np.repeat(np.nextafter(0.5 * boxes.half + slack, np.inf), 8, axis=0)
     return Boxes(leaf=np.repeat(boxes.leaf, 8), centre=centre, half=half)
-
-
-def mix_slots(leaves: Leaves, boxes: Boxes) -> tuple[IntArray, FloatArray]:
-    """Return ratios and their weights for each box, (slots, b) each; unused slots have weight zero.
-
-    Args:
-        leaves: with their mixes.
-        boxes: which leaves.
-    """
-    slots = max((len(mix) for mix in leaves.mixes), default=0)
-    ratio = np.zeros((len(leaves.mixes) + 1, slots), dtype=np.int64)
-    weight = np.zeros((len(leaves.mixes) + 1, slots))
-    for row, mix in enumerate(leaves.mixes):
-        ratio[row, : len(mix)] = list(mix)
-        weight[row, : len(mix)] = list(mix.values())
-    chosen = leaves.mix[boxes.leaf]  # -1, without a mix, is the last row: all zero
-    return ratio[chosen].T, weight[chosen].T
-
-
-def group_shares(family: Family, ratio: IntArray, weight: FloatArray) -> list[Interval]:
-    """Return the sum of the weights of each denominator's ratios, (b,) each; exactly zero without any.
-
-    Args:
-        family: with the denominator of each ratio.
-        ratio: (slots, b) as :func:`mix_slots` returns them.
-        weight: (slots, b).
-    """
-    shares = []
-    for g in range(len(family.denominator_isotropic)):
-        share = Interval(np.zeros(weight.shape[1]))
-        for k, w in zip(ratio, weight, strict=True):
-            more, mine = share + w, (family.denominator_of[k] == g) & (w > 0.0)
-            share = Interval(np.where(mine, more.low, share.low), np.where(mine, more.high, share.high))
-        shares.append(share)
-    return shares

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,6 +15,7 @@ from nullpose.schemes import RECORDS
 
 __all__ = [
     "AFFINE",
+    "COLUMNS",
     "FAR",
     "KEPT_OUT",
     "OFF_BAND",
@@ -35,6 +36,20 @@ AFFINE = 2  # the axis that the position gives
 FAR = 3  # a node out of reach
 KEPT_OUT = 4  # inside a keep-out ball or a forbidden zone
 OFF_BAND = 5  # a cell of axes that the airframe does not reach
+
+COLUMNS: Mapping[str, tuple[type, tuple[int, ...]]] = {
+    "box": (int, (6,)),
+    "cell": (int, (5,)),
+    "test": (int, ()),
+    "point": (int, ()),
+    "level": (float, ()),
+    "mix": (int, ()),
+    "sides": (float, (2,)),
+    "band": (float, ()),
+    "ball": (int, ()),
+    "ball_multiplier": (float, ()),
+}
+"""What is known of each leaf: kind and shape of the entry, by the name of the column."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -72,6 +87,14 @@ class Leaves:
 
     def __len__(self) -> int:
         return len(self.box)
+
+    def chosen(self, rows: IntArray | np.ndarray) -> Leaves:
+        """Return some of the leaves.
+
+        Args:
+            rows: a mask or indices.
+        """
+        return replace(self, **{name: getattr(self, name)[rows] for name in COLUMNS})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

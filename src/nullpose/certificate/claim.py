@@ -8,18 +8,20 @@ from fractions import Fraction
 
 import numpy as np
 
-from nullpose.certificate.certificate import Certificate
+from nullpose.certificate.certificate import Certificate, FloatArray
 from nullpose.certificate.pose_value import (
+    Exact,
     antenna_axis,
     band_excess,
     body_axes,
+    exact,
     field_offset,
     sine_cosine,
     smallest_ratio,
 )
 from nullpose.family import AxisField, Family
-from nullpose.physics.quantity import Quantity
-from nullpose.scenario import Airframe
+from nullpose.objectives import Quantity
+from nullpose.scenario import Airframe, Scenario
 
 __all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]
 
@@ -68,11 +70,13 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     airframe = certificate.scenario.airframe
     if any(not abs(angle) <= _MOST_RAD for angle in attitude_rad):
         return f"pose: an angle beyond {_MOST_RAD:g} rad"
-    position = [Fraction(float(x)) for x in certificate.position_m]
+    position = exact(certificate.position_m)
     axis = antenna_axis(attitude_rad, 0.0 if airframe is None else airframe.mount_rad)
-    fault = _place_fault(certificate, family, position) or _axis_fault(fields, position, axis)
-    if not fault and airframe is not None:
-        fault = _tilt_fault(airframe, attitude_rad)
+    fault = (
+        _place_fault(certificate.scenario, certificate.position_m)
+        or _axis_fault(fields, position, axis)
+        or _tilt_fault(airframe, attitude_rad)
+    )
     if fault:
         return f"pose: {fault}"
     value = smallest_ratio(family, position, axis)
@@ -83,39 +87,36 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     return ""
 
 
-def _place_fault(certificate: Certificate, family: Family, position: list[Fraction]) -> str:
-    scenario, airspace = certificate.scenario, certificate.scenario.airspace
-    for i, name in enumerate("xyz"):
-        if not airspace.lower_m[i] <= certificate.position_m[i] <= airspace.upper_m[i]:
-            return f"{name} = {float(certificate.position_m[i])!r} m is outside the airspace"
-    if not airspace.allows(certificate.position_m):
+def _place_fault(scenario: Scenario, position_m: FloatArray) -> str:
+    airspace = scenario.airspace
+    outside = ~((airspace.lower_m <= position_m) & (position_m <= airspace.upper_m))
+    for i in np.flatnonzero(outside):
+        return f"{'xyz'[i]} = {float(position_m[i])!r} m is outside the airspace"
+    if not airspace.allows(position_m):
         return "outside the geofence or in a no-fly zone"
-    least = Fraction(family.keep_out_m) - Fraction(_EDGE_M)
-    points = np.vstack(
-        [scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m]
-    )
-    for point in points:
-        away2 = sum(
-            ((Fraction(float(q)) - x) ** 2 for q, x in zip(point, position, strict=True)), Fraction(0)
-        )
-        if least > 0 and away2 < least * least:
+    least = max(Fraction(airspace.keep_out_m) - Fraction(_EDGE_M), Fraction(0))
+    points = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
+    for point in np.vstack(points):
+        way = exact(point) - exact(position_m)
+        if way @ way < least**2:
             return f"closer than keep_out_m to the ground point {point.tolist()}"
     return ""
 
 
-def _tilt_fault(airframe: Airframe, attitude_rad: tuple[float, float, float]) -> str:
+def _tilt_fault(airframe: Airframe | None, attitude_rad: tuple[float, float, float]) -> str:
+    if airframe is None or airframe.tilt_max_rad >= math.pi:
+        return ""
     _, least = sine_cosine(Fraction(airframe.tilt_max_rad) + Fraction(_TILT_RAD))
-    if airframe.tilt_max_rad < math.pi and body_axes(attitude_rad)[1][2] < least:
-        return f"the vehicle tilts by more than {math.degrees(airframe.tilt_max_rad):.10g} degrees"
-    return ""
+    if body_axes(attitude_rad)[1][2] >= least:
+        return ""
+    return f"the vehicle tilts by more than {math.degrees(airframe.tilt_max_rad):.10g} degrees"
 
 
-def _axis_fault(fields: Mapping[str, AxisField], position: list[Fraction], axis: list[Fraction]) -> str:
-    affine = [field for field in fields.values() if not field.is_free]
-    most2 = Fraction(_AXIS_RAD) ** 2
-    if affine and not any(field_offset(field, position, axis) <= most2 for field in affine):
+def _axis_fault(fields: Mapping[str, AxisField], position: Exact, axis: Exact) -> str:
+    off = [field_offset(field, position, axis) for field in fields.values() if not field.is_free]
+    if off and min(off) > Fraction(_AXIS_RAD) ** 2:
         return "the antenna's axis is not one that the scheme allows"
-    free = [field for field in fields.values() if field.is_free]
-    if free and all(band_excess(field.band, axis) > Fraction(_BAND_RAD) for field in free):
+    missed = [band_excess(field.band, axis) for field in fields.values() if field.is_free]
+    if missed and min(missed) > Fraction(_BAND_RAD):
         return "the antenna's axis is not one that the airframe reaches"
     return ""

@@ -6,12 +6,13 @@ floating-point number on either side encloses the exact result. Nothing else is 
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FloatArray", "Interval", "dot", "stack"]
+__all__ = ["FloatArray", "Interval", "as_interval", "dot", "stack", "swapped", "where"]
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -39,8 +40,13 @@ class Interval:
         self.low: FloatArray = np.asarray(low, dtype=float)
         self.high: FloatArray = self.low if high is None else np.asarray(high, dtype=float)
 
+    @property
+    def ends(self) -> tuple[FloatArray, ...]:
+        """Lower and upper bounds; one array where the numbers are known exactly."""
+        return (self.low,) if self.low is self.high else (self.low, self.high)
+
     def __getitem__(self, index: Any) -> Interval:
-        return Interval(self.low[index], self.high[index])
+        return Interval(*(end[index] for end in self.ends))
 
     def __neg__(self) -> Interval:
         return Interval(-self.high, -self.low)
@@ -52,41 +58,32 @@ class Interval:
     __radd__ = __add__
 
     def __sub__(self, other: Interval | ArrayLike) -> Interval:
-        o = as_interval(other)
-        return Interval(_down(self.low - o.high), _up(self.high - o.low))
+        return self + -as_interval(other)
 
     def __rsub__(self, other: ArrayLike) -> Interval:
         return as_interval(other) - self
 
     def __mul__(self, other: Interval | ArrayLike) -> Interval:
-        o = as_interval(other)
-        if o.low is o.high and self.low is self.high:
-            product = self.low * o.low
-            return Interval(_down(product), _up(product))
-        a, b = self.low * o.low, self.low * o.high
-        c, d = self.high * o.low, self.high * o.high
-        low = np.minimum(np.minimum(a, b), np.minimum(c, d))
-        high = np.maximum(np.maximum(a, b), np.maximum(c, d))
-        return Interval(_down(low), _up(high))
+        products = [x * y for x in self.ends for y in as_interval(other).ends]
+        return Interval(_down(reduce(np.minimum, products)), _up(reduce(np.maximum, products)))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Interval | ArrayLike) -> Interval:
         o = as_interval(other)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            reciprocal = Interval(_down(1.0 / o.high), _up(1.0 / o.low))
-            unknown = (o.low <= 0.0) & (o.high >= 0.0)
-            low = np.where(unknown, -np.inf, reciprocal.low)
-            high = np.where(unknown, np.inf, reciprocal.high)
-            quotient = self * Interval(low, high)
-            # 0 times infinity: nothing is known
-            return Interval(
-                np.where(np.isnan(quotient.low), -np.inf, quotient.low),
-                np.where(np.isnan(quotient.high), np.inf, quotient.high),
-            )
+            known = (o.low > 0.0) | (o.high < 0.0)
+            quotient = self * where(known, Interval(_down(1.0 / o.high), _up(1.0 / o.low)), _ANY)
+        # 0 times infinity: nothing is known
+        return where(np.isnan(quotient.low) | np.isnan(quotient.high), _ANY, quotient)
 
     def __rtruediv__(self, other: ArrayLike) -> Interval:
         return as_interval(other) / self
+
+    @property
+    def T(self) -> Interval:  # noqa: N802 - as an array's
+        """The same numbers with the axes in the other order."""
+        return Interval(*(end.T for end in self.ends))
 
     def squared(self) -> Interval:
         """Return the squares, never below zero."""
@@ -104,6 +101,10 @@ class Interval:
         """Return upper bounds on the absolute values."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
+    def most(self) -> Interval:
+        """Return the upper bounds as exact numbers, infinite where nothing is known."""
+        return Interval(np.where(np.isnan(self.high), np.inf, self.high))
+
     def middle(self) -> FloatArray:
         """Return numbers inside, near the middle."""
         return np.clip(0.5 * self.low + 0.5 * self.high, self.low, self.high)
@@ -114,11 +115,14 @@ class Interval:
         return _up(np.maximum(self.high - middle, middle - self.low))
 
     def total(self) -> Interval:
-        """Return the sum over the last axis."""
-        result = self[..., 0]
-        for i in range(1, self.low.shape[-1]):
-            result = result + self[..., i]
+        """Return the sum over the first axis."""
+        result = self[0]
+        for i in range(1, len(self.low)):
+            result = result + self[i]
         return result
+
+
+_ANY = Interval(-np.inf, np.inf)
 
 
 def as_interval(value: Interval | ArrayLike) -> Interval:
@@ -127,10 +131,21 @@ def as_interval(value: Interval | ArrayLike) -> Interval:
 
 
 def dot(a: Interval, b: Interval | FloatArray) -> Interval:
-    """Return the inner product over the last axis."""
+    """Return the inner product over the first axis."""
     return (a * b).total()
 
 
 def stack(parts: list[Interval]) -> Interval:
-    """Return intervals of one shape along a new last axis."""
-    return Interval(np.stack([p.low for p in parts], -1), np.stack([p.high for p in parts], -1))
+    """Return intervals of one shape along a new first axis."""
+    return Interval(np.stack([p.low for p in parts]), np.stack([p.high for p in parts]))
+
+
+def swapped(x: Interval) -> Interval:
+    """Return an array with its first two axes in the other order."""
+    return Interval(*(end.swapaxes(0, 1) for end in x.ends))
+
+
+def where(mask: np.ndarray, a: Interval | ArrayLike, b: Interval | ArrayLike) -> Interval:
+    """Return a where the mask holds, else b."""
+    one, other = as_interval(a), as_interval(b)
+    return Interval(np.where(mask, one.low, other.low), np.where(mask, one.high, other.high))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -11,10 +12,14 @@ import numpy as np
 from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import Interval
 
-__all__ = ["Outline", "Rectangle", "may_meet"]
+__all__ = ["Outline", "Point", "clipped", "corners", "exact", "may_meet"]
 
-Point: TypeAlias = tuple[Fraction, Fraction]
-Rectangle: TypeAlias = tuple[Point, Point]
+Point: TypeAlias = tuple[Fraction, ...]
+
+
+def exact(numbers: Iterable[float]) -> Point:
+    """Return floating-point numbers as fractions."""
+    return tuple(Fraction(float(x)) for x in numbers)
 
 
 def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray:
@@ -45,7 +50,7 @@ class Outline:
         is_fence: whether it is the outside.
     """
 
-    edges: tuple[tuple[Fraction, Fraction, Fraction, Fraction], ...]
+    edges: tuple[Point, ...]
     is_fence: bool
 
     @classmethod
@@ -56,11 +61,7 @@ class Outline:
             edges: (e, 4).
             is_fence: whether the outside is forbidden.
         """
-        exact = (
-            (Fraction(float(a)), Fraction(float(b)), Fraction(float(c)), Fraction(float(d)))
-            for a, b, c, d in edges
-        )
-        return cls(tuple(exact), is_fence)
+        return cls(tuple(exact(edge) for edge in edges), is_fence)
 
     def allowance(self, edge: int, point: Point) -> Fraction:
         """Return a multiple of how far a point is on the allowed side of an edge's line.
@@ -69,8 +70,7 @@ class Outline:
             edge: which.
             point: the point.
         """
-        x1, y1, x2, y2 = self.edges[edge]
-        left = (x2 - x1) * (point[1] - y1) - (y2 - y1) * (point[0] - x1)
+        left = left_of(self.edges[edge], point)
         return left if self.is_fence else -left
 
     def forbids(self, point: Point) -> bool:
@@ -79,15 +79,14 @@ class Outline:
         Args:
             point: the point.
         """
-        x, y = point
         inside = False
-        for x1, y1, x2, y2 in self.edges:
-            if (y1 > y) != (y2 > y):
-                left = (x2 - x1) * (y - y1) - (y2 - y1) * (x - x1)
-                inside ^= (left > 0) == (y2 > y1)
+        for edge in self.edges:
+            upwards = edge[3] > point[1]
+            if (edge[1] > point[1]) != upwards:
+                inside ^= (left_of(edge, point) > 0) == upwards
         return inside != self.is_fence
 
-    def alternatives(self, met: list[int], rectangle: Rectangle) -> list[tuple[int, ...]]:
+    def alternatives(self, met: list[int], low: FloatArray, high: FloatArray) -> list[tuple[int, ...]]:
         """Return edges of which an allowed point of a rectangle is on the allowed side.
 
         Of one of the tuples it is, for all edges in it. An empty tuple says nothing; no tuple at all, that
@@ -95,45 +94,40 @@ class Outline:
 
         Args:
             met: every edge that may meet the rectangle.
-            rectangle: lower and upper corner.
+            low: (2,) its lower corner.
+            high: (2,) its upper corner.
         """
-        if not met:
-            return [] if self.forbids(rectangle[0]) else [()]
-        if len(met) == 1 and self._forbids_beyond(met[0], rectangle):
-            return [(met[0],)]
-        if len(met) == 2:
-            one, two = met
-            if self._keeps_to(one, two, rectangle) and self._keeps_to(two, one, rectangle):
-                if self._forbids_beyond(one, rectangle) and self._forbids_beyond(two, rectangle):
-                    return [(one, two)]
-            elif self._forbids_beyond_both(one, two, rectangle):
-                return [(one,), (two,)]
+        region = corners(exact(low), exact(high))
+        match met:
+            case []:
+                return [] if self.forbids(region[0]) else [()]
+            case [one]:
+                return [(one,)] if self._forbids_beyond(one, region) else [()]
+            case [one, two] if self._keeps_to(one, two, region) and self._keeps_to(two, one, region):
+                both = self._forbids_beyond(one, region) and self._forbids_beyond(two, region)
+                return [(one, two)] if both else [()]
+            case [one, two]:
+                return [(one,), (two,)] if self._forbids_beyond_both(one, two, region) else [()]
         return [()]
 
-    def _forbids_beyond(self, edge: int, rectangle: Rectangle) -> bool:
+    def _forbids_beyond(self, edge: int, region: list[Point]) -> bool:
         """Return whether all of a rectangle beyond an edge's line is forbidden, no other edge being there."""
-        worst = min(corners(rectangle), key=lambda corner: self.allowance(edge, corner))
+        worst = min(region, key=lambda corner: self.allowance(edge, corner))
         return self.allowance(edge, worst) >= 0 or self.forbids(worst)
 
-    def _keeps_to(self, one: int, two: int, rectangle: Rectangle) -> bool:
+    def _keeps_to(self, one: int, two: int, region: list[Point]) -> bool:
         """Return whether the part of an edge in a rectangle is on the allowed side of another's line."""
-        x1, y1, x2, y2 = self.edges[one]
-        if self.allowance(two, (x1, y1)) >= 0 and self.allowance(two, (x2, y2)) >= 0:
-            return True
-        return all(self.allowance(two, end) >= 0 for end in clipped(self.edges[one], rectangle))
+        return all(self.allowance(two, end) >= 0 for end in clipped(self.edges[one], region[0], region[2]))
 
-    def _forbids_beyond_both(self, one: int, two: int, rectangle: Rectangle) -> bool:
+    def _forbids_beyond_both(self, one: int, two: int, region: list[Point]) -> bool:
         """Return whether all of a rectangle beyond the lines of the two edges that meet it is forbidden."""
-        region = corners(rectangle)
         for edge in (one, two):
             region = self._beyond(edge, region)
         if not region:
             return True
         # the mean of its vertices is beyond a line if any of them is
-        mean = (_mean([x for x, _ in region]), _mean([y for _, y in region]))
-        if self.allowance(one, mean) >= 0 or self.allowance(two, mean) >= 0:
-            return True
-        return self.forbids(mean)
+        mean = tuple(sum(each, Fraction(0)) / len(region) for each in zip(*region, strict=True))
+        return self.allowance(one, mean) >= 0 or self.allowance(two, mean) >= 0 or self.forbids(mean)
 
     def _beyond(self, edge: int, region: list[Point]) -> list[Point]:
         """Return the vertices of a convex polygon's part beyond an edge's line, or on it."""
@@ -141,46 +135,35 @@ class Outline:
         values = [self.allowance(edge, point) for point in region]
         for i, (point, value) in enumerate(zip(region, values, strict=True)):
             before, other = values[i - 1], region[i - 1]
-            if (before < 0 < value) or (value < 0 < before):
+            if before * value < 0:
                 share = before / (before - value)
-                (x1, y1), (x2, y2) = other, point
-                part.append((x1 + share * (x2 - x1), y1 + share * (y2 - y1)))
+                part.append(tuple(a + share * (b - a) for a, b in zip(other, point, strict=True)))
             if value <= 0:
                 part.append(point)
         return part
 
 
-def _mean(numbers: list[Fraction]) -> Fraction:
-    return sum(numbers, Fraction(0)) / len(numbers)
+def left_of(edge: Point, point: Point) -> Fraction:
+    """Return a multiple of how far a point is to the left of an edge's line."""
+    x1, y1, x2, y2 = edge
+    return (x2 - x1) * (point[1] - y1) - (y2 - y1) * (point[0] - x1)
 
 
-def corners(rectangle: Rectangle) -> list[Point]:
-    """Return the corners of a rectangle in order around it.
-
-    Args:
-        rectangle: lower and upper corner.
-    """
-    (west, south), (east, north) = rectangle
-    return [(west, south), (east, south), (east, north), (west, north)]
+def corners(low: Point, high: Point) -> list[Point]:
+    """Return the corners of a rectangle in order around it, the lower one first."""
+    return [low, (high[0], low[1]), high, (low[0], high[1])]
 
 
-def clipped(edge: tuple[Fraction, Fraction, Fraction, Fraction], rectangle: Rectangle) -> list[Point]:
-    """Return the ends of the part of an edge in a rectangle, none if they do not meet.
-
-    Args:
-        edge: its ends.
-        rectangle: lower and upper corner.
-    """
+def clipped(edge: Point, low: Point, high: Point) -> list[Point]:
+    """Return the ends of the part of an edge in a rectangle, none if they do not meet."""
     first, last = Fraction(0), Fraction(1)
-    for i in range(2):
-        start, way = edge[i], edge[2 + i] - edge[i]
-        low, high = rectangle[0][i] - start, rectangle[1][i] - start
-        if way == 0:
-            if low > 0 or high < 0:
+    for start, end, least, most in zip(edge[:2], edge[2:], low, high, strict=True):
+        if start == end:
+            if not least <= start <= most:
                 return []
             continue
-        a, b = sorted((low / way, high / way))
-        first, last = max(first, a), min(last, b)
+        near, far = sorted(((least - start) / (end - start), (most - start) / (end - start)))
+        first, last = max(first, near), min(last, far)
     if first > last:
         return []
     x1, y1, x2, y2 = edge

@@ -3,20 +3,43 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import factorial, isqrt
-from typing import TypeAlias
+from math import isqrt
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from nullpose.family import AxisField, Family
 
-__all__ = ["antenna_axis", "band_excess", "body_axes", "field_offset", "sine_cosine", "smallest_ratio"]
+__all__ = [
+    "Exact",
+    "antenna_axis",
+    "band_excess",
+    "body_axes",
+    "exact",
+    "field_offset",
+    "sine_cosine",
+    "smallest_ratio",
+]
 
-Vector: TypeAlias = list[Fraction]
+Exact: TypeAlias = NDArray[Any]
+"""An array of fractions."""
 
 _TERMS = 24  # of the series: for |x| <= 4 the rest is below 4^48/48! < 1e-32
 _BITS = 160
 
 
-def antenna_axis(attitude_rad: tuple[float, float, float], mount_rad: float = 0.0) -> Vector:
+def exact(numbers: ArrayLike) -> Exact:
+    """Return floating-point numbers as fractions, in an array of the same shape.
+
+    Args:
+        numbers: of any shape.
+    """
+    plain = np.asarray(numbers, dtype=float)
+    return np.array([Fraction(x) for x in plain.ravel().tolist()], dtype=object).reshape(plain.shape)
+
+
+def antenna_axis(attitude_rad: tuple[float, float, float], mount_rad: float = 0.0) -> Exact:
     """Return the antenna's axis ``R (sin m, 0, cos m)``, right to thirty digits; m = 0 is paper eq. 1.1.
 
     Args:
@@ -25,20 +48,21 @@ def antenna_axis(attitude_rad: tuple[float, float, float], mount_rad: float = 0.
     """
     sine, cosine = sine_cosine(Fraction(mount_rad))
     forward, up = body_axes(attitude_rad)
-    return [x * sine + z * cosine for x, z in zip(forward, up, strict=True)]
+    return np.asarray(forward * sine + up * cosine)
 
 
-def body_axes(attitude_rad: tuple[float, float, float]) -> tuple[Vector, Vector]:
+def body_axes(attitude_rad: tuple[float, float, float]) -> tuple[Exact, Exact]:
     """Return the body's x and z axes in the world: columns of ``Rz(yaw) Ry(pitch) Rx(roll)``.
 
     Args:
         attitude_rad: roll, pitch and yaw, radians, each within four.
     """
     (sr, cr), (sp, cp), (sy, cy) = (sine_cosine(Fraction(angle)) for angle in attitude_rad)
-    return [cy * cp, sy * cp, -sp], [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
+    forward, up = [cy * cp, sy * cp, -sp], [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
+    return np.array(forward), np.array(up)
 
 
-def band_excess(band: tuple[float, float], axis: Vector) -> Fraction:
+def band_excess(band: tuple[float, float], axis: Exact) -> Fraction:
     """Return the sine of the angle by which an axis misses a band, at most zero within it.
 
     Right to thirty digits.
@@ -47,9 +71,10 @@ def band_excess(band: tuple[float, float], axis: Vector) -> Fraction:
         band: least and greatest ``u_z^2`` of a unit axis.
         axis: of any length but zero.
     """
-    upright2 = Fraction(axis[2] ** 2) / sum(x * x for x in axis)
-    cosine, sine = square_root(upright2), square_root(1 - upright2)
-    most, least = ((square_root(Fraction(end)), square_root(1 - Fraction(end))) for end in (band[1], band[0]))
+    upright2 = axis[2] ** 2 / (axis @ axis)
+    (cosine, sine), least, most = (
+        (square_root(x), square_root(1 - x)) for x in (upright2, Fraction(band[0]), Fraction(band[1]))
+    )
     # angles from the vertical: nearer than the upper end allows, or farther than the lower one
     return max(cosine * most[1] - sine * most[0], sine * least[0] - cosine * least[1])
 
@@ -61,9 +86,11 @@ def square_root(x: Fraction) -> Fraction:
 
 def sine_cosine(x: Fraction) -> tuple[Fraction, Fraction]:
     """Return sine and cosine of an angle within four, to thirty digits."""
-    sine = sum((x ** (2 * n + 1) * (-1) ** n / factorial(2 * n + 1) for n in range(_TERMS)), Fraction(0))
-    cosine = sum((x ** (2 * n) * (-1) ** n / factorial(2 * n) for n in range(_TERMS)), Fraction(0))
-    return rounded(sine), rounded(cosine)
+    powers, short = [Fraction(1)], rounded(x)
+    for n in range(1, 2 * _TERMS):
+        powers.append(rounded(powers[-1] * short / n))
+    signed = [power * (-1) ** (n // 2) for n, power in enumerate(powers)]
+    return sum(signed[1::2], Fraction(0)), sum(signed[0::2], Fraction(0))
 
 
 def rounded(x: Fraction) -> Fraction:
@@ -71,15 +98,19 @@ def rounded(x: Fraction) -> Fraction:
     return Fraction(round(x * 2**_BITS), 2**_BITS)
 
 
-def link(point: Vector, position: Vector, axis: Vector) -> Fraction:
+def sine2(x: Exact, y: Exact) -> Fraction:
+    """Return the squared sine of the angle between two vectors, exactly."""
+    cross = np.cross(x, y)
+    return Fraction(cross @ cross, (x @ x) * (y @ y))
+
+
+def link(point: Exact, position: Exact, axis: Exact) -> Fraction:
     """Return ``sin^2(gamma) / |r|^2`` of a link (paper eqs. 1.2 to 1.4), exactly."""
-    r = [q - p for q, p in zip(point, position, strict=True)]
-    cross = [r[(i + 1) % 3] * axis[(i + 2) % 3] - r[(i + 2) % 3] * axis[(i + 1) % 3] for i in range(3)]
-    r2, u2 = sum(x * x for x in r), sum(x * x for x in axis)
-    return Fraction(sum(x * x for x in cross)) / (u2 * r2 * r2)
+    r = point - position
+    return sine2(r, axis) / Fraction(r @ r)
 
 
-def smallest_ratio(family: Family, position: Vector, axis: Vector) -> Fraction:
+def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
     """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
 
     Args:
@@ -87,27 +118,18 @@ def smallest_ratio(family: Family, position: Vector, axis: Vector) -> Fraction:
         position: where, metres.
         axis: the antenna's axis, of any length.
     """
-    links = [link([Fraction(float(x)) for x in point], position, axis) for point in family.points_m]
-    denominators = []
-    for g, isotropic in enumerate(family.denominator_isotropic):
-        entries = range(family.denominator_start[g], family.denominator_start[g + 1])
-        sums = (
-            Fraction(float(family.denominator_weight[e])) * links[family.denominator_point[e]]
-            for e in entries
-        )
-        denominators.append(Fraction(float(isotropic)) + sum(sums, Fraction(0)))
-    ratios: list[Fraction] = [
-        (
-            Fraction(float(family.numerator_isotropic[k]))
-            + Fraction(float(family.numerator_weight[k])) * links[a]
-        )
-        / denominators[family.denominator_of[k]]
-        for k, a in enumerate(family.numerator_point)
-    ]
-    return min(ratios)
+    links = np.array([link(point, position, axis) for point in exact(family.points_m)])
+    entries = exact(family.denominator_weight) * links[family.denominator_point]
+    starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
+    denominators = np.array(
+        [sum(entries[a:b], below) for a, b, below in zip(starts, starts[1:], isotropic, strict=False)]
+    )
+    above = exact(family.numerator_weight) * links[family.numerator_point]
+    ratios = (exact(family.numerator_isotropic) + above) / denominators[family.denominator_of]
+    return Fraction(min(ratios))
 
 
-def field_offset(axis_field: AxisField, position: Vector, axis: Vector) -> Fraction:
+def field_offset(axis_field: AxisField, position: Exact, axis: Exact) -> Fraction:
     """Return the squared sine of the angle between an axis and the one that a field has at a position.
 
     Where the field vanishes, in line with both nodes, every axis across that line is a limit of its own.
@@ -117,19 +139,11 @@ def field_offset(axis_field: AxisField, position: Vector, axis: Vector) -> Fract
         position: where, metres.
         axis: the axis, of any length but zero.
     """
-    matrix = [[Fraction(float(x)) for x in row] for row in axis_field.matrix]
-    wanted = [
-        Fraction(float(axis_field.offset[m])) + sum(x * p for x, p in zip(matrix[m], position, strict=True))
-        for m in range(3)
-    ]
-    length2, size2 = sum(x * x for x in axis), sum(x * x for x in wanted)
-    if size2:
-        cross = [
-            wanted[(i + 1) % 3] * axis[(i + 2) % 3] - wanted[(i + 2) % 3] * axis[(i + 1) % 3]
-            for i in range(3)
-        ]
-        return Fraction(sum(x * x for x in cross)) / (size2 * length2)
-    turned = [sum(x * u for x, u in zip(row, axis, strict=True)) for row in matrix]
+    matrix = exact(axis_field.matrix)
+    wanted = exact(axis_field.offset) + matrix @ position
+    if np.any(wanted != 0):
+        return sine2(wanted, axis)
+    rotated = matrix @ axis
     # u -> w x u: |w x u|^2 = |w|^2 |u|^2 for u across w, and half the squares of the matrix sum to |w|^2
-    whole = Fraction(sum(x * x for row in matrix for x in row)) / 2
-    return abs(1 - Fraction(sum(x * x for x in turned)) / (whole * length2))
+    whole = np.sum(matrix * matrix) / 2
+    return abs(1 - Fraction(rotated @ rotated, whole * (axis @ axis)))

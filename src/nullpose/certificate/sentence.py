@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.schemes import RECORDS
 
 __all__ = ["sentence"]

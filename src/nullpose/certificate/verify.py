@@ -18,7 +18,7 @@ from nullpose.certificate.certificate import (
     TOWARDS,
     WORLD,
     Certificate,
-    FloatArray,
+    IntArray,
     Leaves,
     Tree,
     claimed_axes,
@@ -34,15 +34,7 @@ __all__ = ["Verdict", "verify"]
 
 _CHUNK = 4096
 _ROUNDS = 3  # boxes whose test fails by a hair are cut into eight, so many times
-
-_NAMES = {
-    WORLD: "free axis",
-    TOWARDS: "free axis, turning frame",
-    AFFINE: "given axis",
-    FAR: "distance",
-    KEPT_OUT: "keep-out",
-    OFF_BAND: "axes out of reach",
-}
+_DEEPEST = 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +50,37 @@ class Verdict:
     proved: bool
     message: str
     leaves: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Test:
+    """How leaves of a kind are tested.
+
+    Args:
+        name: for messages.
+        holds: which boxes, each with its leaf, are excluded under an axis field.
+        has_mix: whether the leaf has multipliers of ratios.
+        points: how many things of a family the leaf's point counts over, None if it has no point.
+    """
+
+    name: str
+    holds: Callable[[Family, AxisField, Leaves, Boxes], np.ndarray]
+    has_mix: bool = False
+    points: Callable[[Family], int] | None = None
+
+
+def _borders(family: Family) -> int:
+    return len(family.keep_out_points_m) + len(family.zone_kind)
+
+
+_TESTS = {
+    WORLD: _Test("free axis", free_holds, has_mix=True),
+    TOWARDS: _Test("free axis, turning frame", free_holds, has_mix=True, points=lambda f: len(f.points_m)),
+    AFFINE: _Test("given axis", affine_holds, has_mix=True),
+    FAR: _Test("distance", far_holds, points=lambda f: len(f.numerator_point)),
+    KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
+    OFF_BAND: _Test("axes out of reach", off_band_holds),
+}
 
 
 def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | None = None) -> Verdict:
@@ -77,12 +100,17 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
     reason = claim_fault(certificate, family, fields) or pose_fault(certificate, family, fields or {})
     done = 0
+
+    def checked(leaves: int) -> None:
+        if on_progress is not None:
+            on_progress(done + leaves, total)
+
     for tree in certificate.trees:
         if reason:
-            break
+            return Verdict(proved=False, message=f"rejected: {reason}", leaves=done)
         assert fields is not None
         with np.errstate(all="ignore"):  # infinities and undefined numbers fail their comparisons
-            reason = _tree_fault(certificate, family, fields[tree.axis], tree, done, total, on_progress)
+            reason = _tree_fault(family, fields[tree.axis], tree, certificate.upper_bound, checked)
         done += len(tree.leaves)
     if reason:
         return Verdict(proved=False, message=f"rejected: {reason}", leaves=done)
@@ -90,101 +118,94 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
 
 
 def _tree_fault(
-    certificate: Certificate,
-    family: Family,
-    field: AxisField,
-    tree: Tree,
-    before: int,
-    total: int,
-    on_progress: Callable[[int, int], None] | None,
+    family: Family, field: AxisField, tree: Tree, upper_bound: float, checked: Callable[[int], None]
 ) -> str:
-    leaves = tree.leaves
-    fault = _range_fault(family, field, tree, certificate.upper_bound) or root_holds(
-        family, tree.root_m, certificate.upper_bound
+    fault = (
+        _range_fault(family, field, tree, upper_bound)
+        or root_holds(family, tree.root_m, upper_bound)
+        or _hole(tree.leaves)
+        or _leaf_fault(family, field, tree, checked)
     )
-    if not fault and (missing := uncovered(leaves)):
-        fault = f"the leaves do not cover the root: {missing}"
-    if fault:
-        return f"tree {tree.axis!r}: {fault}"
-    boxes = boxes_of(tree.root_m, leaves)
+    return f"tree {tree.axis!r}: {fault}" if fault else ""
+
+
+def _hole(leaves: Leaves) -> str:
+    missing = uncovered(leaves)
+    return f"the leaves do not cover the root: {missing}" if missing else ""
+
+
+def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[[int], None]) -> str:
+    """Return the first leaf that its test does not exclude, or an empty string."""
+    leaves, boxes = tree.leaves, boxes_of(tree.root_m, tree.leaves)
     for start in range(0, len(leaves), _CHUNK):
         failed = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
         if len(failed):
-            low, high = boxes.corners
             one = int(failed[0])
-            where = ", ".join(f"{low.low[one, i]:.6g} to {high.high[one, i]:.6g}" for i in range(3))
-            test = _NAMES[int(leaves.test[one])]
-            return (
-                f"tree {tree.axis!r}: leaf {one} (x, y, z: {where} m) is not excluded at "
-                f"{leaves.level[one]:.12g} by its test ({test})"
+            hull = boxes.hull[:, one]
+            where = ", ".join(
+                f"{low:.6g} to {high:.6g}" for low, high in zip(hull.low, hull.high, strict=True)
             )
-        if on_progress is not None:
-            on_progress(before + min(start + _CHUNK, len(leaves)), total)
+            return (
+                f"leaf {one} (x, y, z: {where} m) is not excluded at {leaves.level[one]:.12g} "
+                f"by its test ({_TESTS[int(leaves.test[one])].name})"
+            )
+        checked(min(start + _CHUNK, len(leaves)))
     return ""
 
 
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
     """Return the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
-    leaves = tree.leaves
-    points, ratios = len(family.points_m), len(family.numerator_point)
-    borders = len(family.keep_out_points_m) + len(family.zone_kind)
-    limit = np.select(
-        [leaves.test == TOWARDS, leaves.test == FAR, leaves.test == KEPT_OUT],
-        [points, ratios, borders],
-        points + 1,
-    )
-    needs_point = np.isin(leaves.test, (TOWARDS, FAR, KEPT_OUT))
-    needs_mix = np.isin(leaves.test, (WORLD, TOWARDS, AFFINE))
+    leaves, ratios = tree.leaves, len(family.numerator_point)
+    no_point, no_mix = np.zeros((2, len(leaves)), dtype=bool)
+    for kind, test in _TESTS.items():
+        if test.points is not None:
+            no_point |= (leaves.test == kind) & _outside(leaves.point, test.points(family))
+        if test.has_mix:
+            no_mix |= (leaves.test == kind) & _outside(leaves.mix, len(leaves.mixes))
+    depth = np.concatenate([leaves.box[:, 0::2], leaves.cell[:, 1::2]], axis=1)
+    index = np.concatenate([leaves.box[:, 1::2], leaves.cell[:, 2::2]], axis=1)
     faults = {
         "its level is above the bound": leaves.level > upper_bound,
         "its level is not positive": ~(leaves.level > 0.0),
-        "its test is unknown": ~np.isin(leaves.test, list(_NAMES)),
+        "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
-        "its point does not exist": needs_point & ((leaves.point < 0) | (leaves.point >= limit)),
-        "its multipliers do not exist": needs_mix & ((leaves.mix < 0) | (leaves.mix >= len(leaves.mixes))),
-        "its keep-out ball or zone does not exist": leaves.ball >= borders,
+        "its point does not exist": no_point,
+        "its multipliers do not exist": no_mix,
+        "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
-        "its cell does not exist": (leaves.cell[:, 0] < -1) | (leaves.cell[:, 0] > 2),
+        "its cell does not exist": _outside(leaves.cell[:, 0] + 1, 4),
+        "its depth is out of range": np.any(_outside(depth, _DEEPEST + 1), axis=1),
+        "its index is out of range": np.any(_outside(index, 1 << np.clip(depth, 0, _DEEPEST)), axis=1),
     }
-    depth = np.concatenate([leaves.box[:, 0::2], leaves.cell[:, 1::2]], axis=1)
-    index = np.concatenate([leaves.box[:, 1::2], leaves.cell[:, 2::2]], axis=1)
-    deep = (depth < 0) | (depth > 50)
-    faults["its depth is out of range"] = np.any(deep, axis=1)
-    faults["its index is out of range"] = np.any((index < 0) | (index >= 1 << np.clip(depth, 0, 50)), axis=1)
     for words, mask in faults.items():
         if np.any(mask):
             return f"leaf {int(np.argmax(mask))}: {words}"
     for number, mix in enumerate(leaves.mixes):
-        if not mix or any(not 0 <= k < ratios for k in mix) or any(not w >= 0.0 for w in mix.values()):
+        if not mix or any(not (0 <= k < ratios and w >= 0.0) for k, w in mix.items()):
             return f"multipliers {number}: a ratio that does not exist, or a negative weight"
-    if not np.all(tree.root_m[0] <= tree.root_m[1]):
-        return "the root box is empty"
-    return ""
+    return "" if np.all(tree.root_m[0] <= tree.root_m[1]) else "the root box is empty"
 
 
-def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> FloatArray:
+def _outside(index: IntArray, count: int | IntArray) -> np.ndarray:
+    return (index < 0) | (index >= count)
+
+
+def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> IntArray:
     """Return the leaves of the boxes that are not excluded, cutting boxes that fail narrowly."""
-    for turn in range(_ROUNDS):
-        boxes = boxes.chosen(~_holds(family, field, leaves, boxes))
-        if not len(boxes) or turn == _ROUNDS - 1 or len(boxes) > _CHUNK:
+    for left in reversed(range(_ROUNDS)):
+        boxes = boxes.chosen(~_holds(family, field, leaves.chosen(boxes.leaf), boxes))
+        if not len(boxes) or len(boxes) > _CHUNK or not left:
             break
         boxes = parts(boxes)
     return np.unique(boxes.leaf)
 
 
 def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    test = leaves.test[boxes.leaf]
+    """Return which boxes, each with its leaf, are excluded."""
     holds = np.zeros(len(boxes), dtype=bool)
-    checks: tuple[tuple[tuple[int, ...], Callable[[Boxes], np.ndarray]], ...] = (
-        ((FAR,), lambda some: far_holds(family, leaves, some)),
-        ((KEPT_OUT,), lambda some: kept_out_holds(family, leaves, some)),
-        ((OFF_BAND,), lambda some: off_band_holds(field, leaves, some)),
-        ((WORLD, TOWARDS), lambda some: free_holds(family, field, leaves, some)),
-        ((AFFINE,), lambda some: affine_holds(family, field, leaves, some)),
-    )
-    for tests, check in checks:
-        mask = np.isin(test, tests)
+    for check in dict.fromkeys(test.holds for test in _TESTS.values()):
+        mask = np.isin(leaves.test, [kind for kind, test in _TESTS.items() if test.holds is check])
         if np.any(mask):
-            holds[mask] = check(boxes.chosen(mask))
+            holds[mask] = check(family, field, leaves.chosen(mask), boxes.chosen(mask))
     return holds

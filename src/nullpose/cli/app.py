@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from typing import Annotated
 
@@ -27,6 +28,7 @@ app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
@@ -49,7 +51,7 @@ def nullpose(
     """Find the best pose for a drone's antenna under jamming.
 
     A scenario file (TOML) states nodes, jammers, receiver and airspace. Start with
-    [bold]nullpose compare examples/paper.toml[/].
+    nullpose compare examples/paper.toml.
 
     Exit codes: 0 fine, 2 bad input or usage, 1 anything else (a rejected certificate, say), 130 interrupted.
     """
@@ -65,4 +67,6 @@ def main() -> None:
     """Run the command line and exit with its code."""
     # the kernels run no faster for LLVM's costlier passes, and compile a fifth longer
     os.environ.setdefault("NUMBA_OPT", "1")
+    # loading the libraries makes much that stays: to look through it for garbage takes a tenth of the start
+    gc.set_threshold(100_000)
     app(prog_name="nullpose")

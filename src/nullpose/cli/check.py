@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile
+from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile, read_scenario
 from nullpose.cli.output import show, show_json
 
 __all__ = ["check"]
@@ -16,15 +16,12 @@ def check(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a scenario file and show what it amounts to, without solving it."""
-    from nullpose.report.summary import summarise
-    from nullpose.scenario import apply_overrides, load
+    """Check a scenario file and show what it amounts to, unsolved."""
+    from nullpose.report.scenario import scenario_view, summarise
 
-    summary = summarise(apply_overrides(load(file, allow_outside=allow_outside), overrides or []))
+    scenario = read_scenario(file, overrides, allow_outside)
     if json_output:
-        show_json(summary.to_dict())
+        show_json(summarise(scenario))
         return
-    from nullpose.report.scenario_tables import scenario_view
-
-    show(scenario_view(summary))
+    show(scenario_view(scenario))
     typer.echo(f"{file}: no faults")

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.figure import prepare_outputs, write_figure
 from nullpose.cli.options import (
     AllowOutside,
     Fast,
+    FigureFile,
     Gap,
     JsonOutput,
     NodeLimit,
     Overrides,
     ScenarioFile,
     Seed,
+    SolveOptions,
     TimeLimit,
+    read_scenario,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
+from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from nullpose.study import AirframeComparison
+    from nullpose.scenario import Scenario
 
 __all__ = ["compare"]
 
@@ -42,15 +41,7 @@ def compare(
             help="Compare vehicles instead: level, tilting, omnidirectional, and level with an array.",
         ),
     ] = False,
-    figure: Annotated[
-        Path | None,
-        typer.Option(
-            "--figure",
-            metavar="FILE",
-            help="Draw the vehicles of --airframes as bars, into a file named .png or .svg.",
-            show_default=False,
-        ),
-    ] = None,
+    figure: FigureFile = None,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
@@ -58,68 +49,39 @@ def compare(
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve a scenario under all four schemes, or with several vehicles, side by side."""
+    """Solve under all four schemes, or with several vehicles."""
     from nullpose.errors import UsageError
-    from nullpose.scenario import apply_overrides, load
 
     if figure is not None and not airframes:
         raise UsageError("--figure: given without --airframes, which it draws; add it, or leave out --figure")
-    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    scenario = read_scenario(file, overrides, allow_outside)
+    options = SolveOptions(
+        gap=gap, time_limit_s=time_limit, node_limit=node_limit, certify=not fast, seed=seed
+    )
     if airframes:
-        from nullpose.study import compare_airframes
-
         prepare_outputs(file, figure=figure)
-        with compiling_announced(), Ticker("comparing vehicles") as ticker:
-            vehicles = compare_airframes(
-                scenario,
-                gap=gap,
-                time_limit_s=time_limit,
-                node_limit=node_limit,
-                certify=not fast,
-                seed=seed,
-                on_progress=ticker,
-            )
-        _show_airframes(vehicles, figure, json_output)
-        interrupted = vehicles.interrupted
-    else:
-        from nullpose.report.comparison import compare_all
+        _compare_airframes(scenario, options, figure, json_output)
+        return
+    from nullpose.report.comparison import compare_all, comparison_view
 
-        with compiling_announced(), Ticker("solving") as ticker:
-            comparison = compare_all(
-                scenario,
-                gap=gap,
-                time_limit_s=time_limit,
-                node_limit=node_limit,
-                certify=not fast,
-                seed=seed,
-                on_progress=ticker,
-            )
-        if json_output:
-            show_json(comparison.to_dict())
-        else:
-            from nullpose.report.comparison_tables import comparison_view
-
-            show(comparison_view(comparison))
-        interrupted = any(solution.interrupted for solution in comparison.solutions)
-    if interrupted:
-        raise typer.Exit(INTERRUPTED)
+    with compiling_announced(), Ticker("solving") as ticker:
+        comparison = compare_all(scenario, on_progress=ticker, **options.keywords())
+    tell(comparison, comparison_view, json_output)
 
 
-def _drawn(vehicles: AirframeComparison) -> Figure:
-    from nullpose.report.figures import draw_airframes
-
-    return draw_airframes(vehicles)
-
-
-def _show_airframes(vehicles: AirframeComparison, figure: Path | None, json_output: bool) -> None:
+def _compare_airframes(
+    scenario: Scenario, options: SolveOptions, figure: Path | None, json_output: bool
+) -> None:
     """Print what was found of each vehicle, and draw it if that was asked for."""
     from nullpose.report.airframes import airframes_view, answer_lines
+    from nullpose.study import compare_airframes
 
-    write_figure(figure, partial(_drawn, vehicles))
-    if json_output:
-        drawn = {} if figure is None else {"files": [str(figure)]}
-        show_json({**vehicles.to_dict(), "answer": answer_lines(vehicles), **drawn})
-        return
-    show(airframes_view(vehicles))
+    with compiling_announced(), Ticker("comparing vehicles") as ticker:
+        vehicles = compare_airframes(scenario, on_progress=ticker, **options.keywords())
+    write_figure(figure, "draw_airframes", vehicles)
+    more: dict[str, Any] = {"answer": answer_lines(vehicles)}
     if figure is not None:
+        more["files"] = [str(figure)]
+    tell(vehicles, airframes_view, json_output, **more)
+    if figure is not None and not json_output:
         typer.echo(f"Wrote {figure}")

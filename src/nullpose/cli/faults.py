@@ -6,15 +6,24 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
-from typing import Any, Self
+from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
 from nullpose.errors import NullposeError, SolveError
 
-__all__ = ["BAD_INPUT", "INTERNAL", "INTERRUPTED", "PIPE_CLOSED", "FaultReportingGroup"]
+__all__ = [
+    "BAD_INPUT",
+    "INTERNAL",
+    "INTERRUPTED",
+    "PIPE_CLOSED",
+    "FaultReportingGroup",
+    "signals_handled",
+]
 
 INTERNAL = 1
 BAD_INPUT = 2
@@ -31,61 +40,49 @@ class FaultReportingGroup(TyperGroup):
         Args:
             ctx: the parsed command line.
         """
-        with _Interrupts() as interrupts:
+        # the compiler of the kernels calls back from native code, where an interrupt becomes another error
+        pressed = threading.Event()
+
+        def note(number: int, frame: FrameType | None) -> None:
+            pressed.set()
+            signal.default_int_handler(number, frame)
+
+        with signals_handled(note, "SIGINT"):
             try:
                 result = super().invoke(ctx)
                 sys.stdout.flush()
             except NullposeError as error:
-                _say(f"error: {error}")
+                typer.echo(f"error: {error}", err=True)
                 raise typer.Exit(INTERNAL if isinstance(error, SolveError) else BAD_INPUT) from error
-            except KeyboardInterrupt as interrupt:
-                raise _interrupted() from interrupt
             except BrokenPipeError as closed:
                 # Whoever read our output has gone; the interpreter must not complain when it flushes at exit.
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
                 raise typer.Exit(PIPE_CLOSED) from closed
-            except Exception as error:
-                if interrupts.seen:
-                    raise _interrupted() from error
-                if not _belongs_to_typer(error):
+            except (KeyboardInterrupt, Exception) as error:
+                if pressed.is_set() or isinstance(error, KeyboardInterrupt):
+                    typer.echo("interrupted", err=True)
+                    raise typer.Exit(INTERRUPTED) from error
+                if type(error).__module__.split(".")[0] not in {"typer", "click"}:
                     error.add_note("This is a fault of nullpose, not of your input: please report it.")
                 raise
         return result
 
 
-class _Interrupts:
-    """Remembers that Ctrl-C was pressed.
+@contextmanager
+def signals_handled(handler: Callable[[int, FrameType | None], object], *names: str) -> Iterator[None]:
+    """Have signals handled by a function in the block; outside the main thread they stay as they are.
 
-    The compiler of the kernels calls back from native code, where an interrupt is lost and comes out as some
-    other error.
+    Args:
+        handler: called with a signal's number and the frame that it met.
+        names: of the signals; those that the system does not know are left out.
     """
-
-    def __init__(self) -> None:
-        self.seen = False
-        self._before: Any = None
-
-    def __enter__(self) -> Self:
-        if threading.current_thread() is threading.main_thread():
-            self._before = signal.signal(signal.SIGINT, self._note)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self.seen = True
-        signal.default_int_handler(number, frame)
-
-
-def _interrupted() -> typer.Exit:
-    _say("interrupted")
-    return typer.Exit(INTERRUPTED)
-
-
-def _belongs_to_typer(error: Exception) -> bool:
-    return type(error).__module__.split(".")[0] in {"typer", "click"}
-
-
-def _say(message: str) -> None:
-    typer.echo(message, err=True)
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, old in before.items():
+            signal.signal(number, old)

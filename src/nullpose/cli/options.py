@@ -1,25 +1,39 @@
-"""Options that several verbs share."""
+"""The options, each declared once, and what is made of those that several verbs share."""
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+if TYPE_CHECKING:
+    from nullpose.scenario import Scenario
+
 __all__ = [
     "AllowOutside",
+    "CertificateFile",
+    "Combining",
     "CombiningName",
     "Fast",
+    "FigureFile",
     "Gap",
+    "GeoJsonFile",
     "JsonOutput",
     "NodeLimit",
+    "NullJammer",
     "OutFolder",
     "Overrides",
+    "Robust",
     "ScenarioFile",
     "Seed",
+    "SolveOptions",
     "TimeLimit",
+    "Verified",
+    "read_scenario",
+    "refuse",
 ]
 
 
@@ -69,6 +83,64 @@ NodeLimit = Annotated[int, typer.Option("--node-limit", metavar="N", help="Boxes
 
 Fast = Annotated[bool, typer.Option("--fast", help="Search only, more thoroughly, and prove nothing.")]
 
+Robust = Annotated[
+    bool,
+    typer.Option("--robust", help="Maximise what is guaranteed under the errors that the scenario states."),
+]
+
+NullJammer = Annotated[
+    str | None,
+    typer.Option(
+        "--null-jammer",
+        metavar="NAME",
+        help="Zero interference: the jammer to point the null at. Without it each is tried.",
+        show_default=False,
+    ),
+]
+
+CertificateFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--certificate",
+        metavar="FILE",
+        help="Write the proof here, for `nullpose verify`; compressed if the name ends in .gz.",
+        show_default=False,
+    ),
+]
+
+Verified = Annotated[
+    bool, typer.Option("--verify", help="Check the proof in outward-rounded arithmetic, as `verify` does.")
+]
+
+GeoJsonFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--geojson",
+        metavar="FILE",
+        help="Write the pose, the nodes and the airspace here, for a map, as GeoJSON; needs an origin.",
+        show_default=False,
+    ),
+]
+
+Combining = Annotated[
+    CombiningName | None,
+    typer.Option(
+        "--combining",
+        help="With an [array]: weights for each node, or one beam for all.",
+        show_default="digital",
+    ),
+]
+
+FigureFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--figure",
+        metavar="FILE",
+        help="Draw what was found into a file named .png or .svg.",
+        show_default=False,
+    ),
+]
+
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 
 OutFolder = Annotated[
@@ -77,3 +149,56 @@ OutFolder = Annotated[
         "--out", metavar="DIR", help="Folder for the files; made if it is missing.", show_default=False
     ),
 ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolveOptions:
+    """How long and how far to search and prove, by the solver's names."""
+
+    gap: float | None
+    time_limit_s: float
+    node_limit: int
+    certify: bool
+    seed: int
+
+    def keywords(self, default_gap: float | None = None) -> dict[str, Any]:
+        """Return them as keyword arguments of the solver.
+
+        Args:
+            default_gap: the relative gap in place of none given.
+        """
+        return asdict(self) | {"gap": default_gap if self.gap is None else self.gap}
+
+
+def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) -> Scenario:
+    """Return the scenario of a file with some of its values changed.
+
+    Args:
+        file: TOML.
+        overrides: changes as ``PATH=VALUE``, or None.
+        allow_outside: whether it may name files outside its folder.
+
+    Raises:
+        ScenarioError: with every fault of the file or of the changes.
+    """
+    from nullpose.scenario import apply_overrides, load
+
+    return apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+
+
+def refuse(where: str, **given: object) -> None:
+    """Raise a UsageError if an option was given where it has no meaning.
+
+    Args:
+        where: the case that has no such option, as in "with --robust".
+        given: the options by their names, false or None where not given.
+
+    Raises:
+        UsageError: one of them was.
+    """
+    from nullpose.errors import UsageError
+
+    for name, value in given.items():
+        if value:
+            option = name.replace("_", "-")
+            raise UsageError(f"--{option}: given {where}, which has none; leave out one of the two")

@@ -1,24 +1,54 @@
-"""Where a verb's words go: results to standard output, everything else to standard error."""
+"""What every verb does with what it finds: results to standard output, notices to standard error, files."""
 
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
+from nullpose.cli.faults import INTERRUPTED
+from nullpose.errors import SolveError
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
-    from rich.progress import Progress, TaskID
 
-__all__ = ["Ticker", "compiling_announced", "show", "show_json"]
+__all__ = ["compiling_announced", "prepare_outputs", "show", "show_json", "tell", "write_figure"]
 
-_QUIET_S = 1.0  # work shorter than this shows no progress
-_LOG_EVERY_S = 10.0
+_BLAS = "scipy.linalg.cython_blas"
+
+
+def tell(
+    found: Any,
+    view: Callable[[Any], RenderableType],
+    json_output: bool,
+    *,
+    fault: str = "",
+    **more: object,
+) -> None:
+    """Print what was found, as JSON or as tables; end with the code of interrupts if one ended the work.
+
+    Args:
+        found: by the verb; has a ``to_dict``.
+        view: returns its tables.
+        json_output: whether JSON is wanted.
+        fault: what is wrong with it all the same; empty for nothing.
+        more: what else the JSON object holds.
+
+    Raises:
+        SolveError: there is a fault.
+    """
+    if json_output:
+        show_json(found.to_dict() | more)
+    else:
+        show(view(found))
+    if fault:
+        raise SolveError(fault)
+    if getattr(found, "interrupted", False):
+        raise typer.Exit(INTERRUPTED)
 
 
 def show(view: RenderableType) -> None:
@@ -50,6 +80,7 @@ def show_json(value: object) -> None:
 @contextmanager
 def compiling_announced() -> Iterator[None]:
     """Say so on standard error if the kernels have to be compiled in the block."""
+    _import_compiler()
     from nullpose.solve.compiling import announce_compiling
 
     with announce_compiling(
@@ -58,52 +89,51 @@ def compiling_announced() -> Iterator[None]:
         yield
 
 
-class Ticker:
-    """Progress on standard error: a bar on a terminal, a line now and then in a log, nothing for short work.
+def _import_compiler() -> None:
+    """Import numba without the BLAS that it looks for and no kernel uses: that takes a tenth of a second."""
+    sys.modules.setdefault(_BLAS, None)  # type: ignore[arg-type]
+    try:
+        import numba.np.arraymath  # noqa: F401
+    finally:
+        if sys.modules[_BLAS] is None:
+            del sys.modules[_BLAS]
+
+
+def prepare_outputs(file: Path, *, figure: Path | None, **others: Path | None) -> None:
+    """Make sure, before any work, that what was asked for can be written, and takes no other file's place.
 
     Args:
-        what: what is going on, in a word or two.
+        file: the scenario's.
+        figure: where to, or None if no figure was asked for.
+        others: further outputs by the names of their options.
+
+    Raises:
+        UsageError: the figure's name ends in neither .png nor .svg.
+        OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
+    from nullpose.files import check_outputs
+    from nullpose.scenario.loading import files_of
 
-    def __init__(self, what: str) -> None:
-        self._what = what
-        self._began = time.monotonic()
-        self._logged = self._began
-        self._bar: Progress | None = None
-        self._task: TaskID | None = None
+    if figure is not None:
+        from nullpose.report.figures.style import prepare_figure_file
 
-    def __enter__(self) -> Self:
-        return self
+        prepare_figure_file(figure)
+    check_outputs(files_of(file), {f"--{name}": path for name, path in {**others, "figure": figure}.items()})
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
 
-    def __call__(self, done: int, total: int) -> None:
-        """Take note of how many of how many steps are done."""
-        now = time.monotonic()
-        if now - self._began < _QUIET_S:
-            return
-        if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
-            self._draw(done, total)
-        elif now - self._logged >= _LOG_EVERY_S:
-            self._logged = now
-            typer.echo(f"{self._what}: {done} of {total} ({100 * done // total} %)", err=True)
+def write_figure(path: Path | None, drawing: str, found: object) -> None:
+    """Draw and write a figure if one was asked for.
 
-    def _draw(self, done: int, total: int) -> None:
-        if self._bar is None or self._task is None:
-            from rich.console import Console
-            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    Args:
+        path: where to, or None.
+        drawing: the function of ``nullpose.report.figures`` that draws it.
+        found: what to draw.
 
-            columns = (
-                TextColumn("{task.description}"),
-                BarColumn(),
-                MofNCompleteColumn(),
-                TimeRemainingColumn(),
-            )
-            self._bar = Progress(*columns, console=Console(stderr=True), transient=True)
-            self._task = self._bar.add_task(self._what, total=total)
-            self._bar.start()
-        self._bar.update(self._task, completed=done)
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    if path is not None:
+        from nullpose.report import figures
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(getattr(figures, drawing)(found), path)

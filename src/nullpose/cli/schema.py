@@ -8,7 +8,10 @@ __all__ = ["schema"]
 
 
 def schema() -> None:
-    """Print the JSON Schema of scenario files, for editors that complete and check them."""
+    """Print the JSON Schema of scenario files.
+
+    Editors complete and check them by it.
+    """
     from nullpose.scenario import json_schema
 
     show_json(json_schema())

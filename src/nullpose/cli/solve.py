@@ -1,39 +1,46 @@
-"""The verb ``solve``."""
+"""The verb ``solve``: of one dipole, of an array, or under errors."""
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nullpose.cli.array import refuse_with_array, solve_with_array
-from nullpose.cli.faults import INTERRUPTED
-from nullpose.cli.figure import prepare_outputs, write_figure
-from nullpose.cli.gap_bar import GapBar
 from nullpose.cli.options import (
     AllowOutside,
+    CertificateFile,
+    Combining,
     CombiningName,
     Fast,
+    FigureFile,
     Gap,
+    GeoJsonFile,
     JsonOutput,
     NodeLimit,
+    NullJammer,
     Overrides,
+    Robust,
     ScenarioFile,
     Seed,
+    SolveOptions,
     TimeLimit,
+    Verified,
+    read_scenario,
+    refuse,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
-from nullpose.cli.robust import refuse_with_robust, solve_robustly
+from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
+from nullpose.cli.progress import GapBar, Ticker
 from nullpose.schemes import Scheme
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from nullpose.solve import Solution
+    from nullpose.scenario import Scenario
+    from nullpose.solve import ArraySolution, Solution
+    from nullpose.solve.robust import RobustSolution
 
 __all__ = ["solve"]
+
+_REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
 
 
 def solve(
@@ -46,137 +53,118 @@ def solve(
     node_limit: NodeLimit = 10**9,
     fast: Fast = False,
     seed: Seed = 0,
-    robust: Annotated[
-        bool,
-        typer.Option(
-            "--robust", help="Maximise what is guaranteed under the errors that the scenario states."
-        ),
-    ] = False,
-    null_jammer: Annotated[
-        str | None,
-        typer.Option(
-            "--null-jammer",
-            metavar="NAME",
-            help="Zero interference: the jammer to point the null at. Without it each is tried.",
-            show_default=False,
-        ),
-    ] = None,
-    certificate: Annotated[
-        Path | None,
-        typer.Option(
-            "--certificate",
-            metavar="FILE",
-            help="Write the proof here, for `nullpose verify`; compressed if the name ends in .gz.",
-            show_default=False,
-        ),
-    ] = None,
-    verify: Annotated[
-        bool,
-        typer.Option("--verify", help="Check the proof in outward-rounded arithmetic, as `verify` does."),
-    ] = False,
-    geojson: Annotated[
-        Path | None,
-        typer.Option(
-            "--geojson",
-            metavar="FILE",
-            help="Write the pose, the nodes and the airspace here, for a map, as GeoJSON; needs an origin.",
-            show_default=False,
-        ),
-    ] = None,
-    combining: Annotated[
-        CombiningName | None,
-        typer.Option(
-            "--combining",
-            help="With an [array]: weights for each node, or one beam for all.",
-            show_default="digital",
-        ),
-    ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option(
-            "--figure",
-            metavar="FILE",
-            help="Draw what was found in its scene into a file named .png or .svg.",
-            show_default=False,
-        ),
-    ] = None,
+    robust: Robust = False,
+    null_jammer: NullJammer = None,
+    certificate: CertificateFile = None,
+    verify: Verified = False,
+    geojson: GeoJsonFile = None,
+    combining: Combining = None,
+    figure: FigureFile = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Find the best pose for a scenario, and prove how far from the best of all it can be."""
-    from nullpose.scenario import apply_overrides, load
+    """Find the best pose, and prove how good it is.
 
-    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    The proof bounds how far from the best of all it can be.
+    """
+    from nullpose.report.results import array_view, robust_view, solution_view
+
+    scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
-    special = {
-        "scheme": scheme if scheme is not Scheme.OPTIMUM else None,
+    options = SolveOptions(
+        gap=gap, time_limit_s=time_limit, node_limit=node_limit, certify=not fast, seed=seed
+    )
+    of_one_dipole = {
+        "scheme": scheme is not Scheme.OPTIMUM,
         "null_jammer": null_jammer,
         "certificate": certificate,
         "verify": verify,
         "geojson": geojson,
     }
-    common: dict[str, Any] = {"gap": gap, "certify": not fast, "seed": seed, "json_output": json_output}
-    common["figure"] = figure
     if robust:
-        refuse_with_robust(**special, combining=combining)
-        solve_robustly(scenario, time_limit_s=time_limit, node_limit=node_limit, **common)
-        return
-    if scenario.array is not None:
-        refuse_with_array(**special)
-        solve_with_array(scenario, (combining or CombiningName.DIGITAL).value, **common)
-        return
-    from nullpose.certificate import write_certificate
-    from nullpose.errors import SolveError, UsageError
-    from nullpose.report.export import require_origin, write_geojson
-    from nullpose.solve import Rigour, certificate_of, default_gap_of, require_certificate, verified
+        refuse("with --robust", combining=combining, **of_one_dipole)
+        guarded = _solve_robustly(scenario, options)
+        write_figure(figure, "draw_robust", guarded)
+        tell(guarded, robust_view, json_output)
+    elif scenario.array is not None:
+        refuse("for a scenario with an [array]", **of_one_dipole)
+        beam = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
+        write_figure(figure, "draw_array", beam)
+        tell(beam, array_view, json_output)
+    else:
+        refuse("for a scenario without an [array]", combining=combining)
+        refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
+        checked = verify or certificate is not None
+        solution = _solve_dipole(scenario, scheme, null_jammer, options, checked, geojson is not None)
+        rejected = checked and solution.rigour.value != "verified"
+        _write(solution, None if rejected else certificate, geojson)
+        write_figure(figure, "draw_pose", solution)
+        fault = _REJECTED.format(solution.reason) if rejected else ""
+        tell(solution, solution_view, json_output, fault=fault)
+
+
+def _solve_robustly(scenario: Scenario, options: SolveOptions) -> RobustSolution:
+    """Return the pose that guarantees most under the scenario's errors."""
+    from nullpose.errors import UsageError
+    from nullpose.solve.robust import ROBUST_GAP, solve_robust
+
+    if not scenario.is_uncertain:
+        raise UsageError(
+            "--robust: the scenario states no errors; add some, in the file or by --set: "
+            "receiver.attitude_error_deg, receiver.position_error_m, or uncertainty_m of a jammer or "
+            "an eavesdropper"
+        )
+    limits = options.keywords(ROBUST_GAP)
+    with compiling_announced(), GapBar(limits["gap"]) as bar:
+        return solve_robust(scenario, on_progress=bar, **limits)
+
+
+def _solve_array(scenario: Scenario, combining: CombiningName, options: SolveOptions) -> ArraySolution:
+    """Return where a scenario's array reaches most."""
+    from nullpose.solve import solve_array
+
+    with compiling_announced():
+        return solve_array(
+            scenario, combining.value, gap=options.gap, certify=options.certify, seed=options.seed
+        )
+
+
+def _solve_dipole(
+    scenario: Scenario,
+    scheme: Scheme,
+    null_jammer: str | None,
+    options: SolveOptions,
+    checked: bool,
+    on_map: bool,
+) -> Solution:
+    """Return where a scenario's dipole hears most, its proof checked if that is wanted.
+
+    Raises:
+        UsageError: before any work, there is no proof that could be checked, or no place on the map.
+    """
+    from nullpose.report.geojson import require_origin
+    from nullpose.solve import default_gap_of, require_certificate, verified
     from nullpose.solve import solve as solve_scenario
 
-    if combining is not None:
-        raise UsageError("--combining: given for a scenario without an [array]; add one, or leave it out")
-    checked = verify or certificate is not None
     if checked:
-        option = "--certificate" if certificate is not None else "--verify"
-        if fast:
-            raise UsageError(f"{option}: given with --fast, which proves nothing; leave out one of the two")
         require_certificate(scenario, scheme.value, null_jammer)
-    if geojson is not None:
+    if on_map:
         require_origin(scenario)
-    target = default_gap_of(scenario) if gap is None else gap
-    with compiling_announced(), GapBar(target) as bar:
-        solution = solve_scenario(
-            scenario,
-            scheme.value,
-            gap=target,
-            time_limit_s=time_limit,
-            node_limit=node_limit,
-            certify=not fast,
-            seed=seed,
-            null_jammer=null_jammer,
-            on_progress=bar,
-        )
-    if checked:
-        with Ticker("checking leaves") as ticker:
-            solution = verified(solution, ticker)
-    rejected = checked and solution.rigour is not Rigour.VERIFIED
-    if certificate is not None and not rejected:
+    limits = options.keywords(default_gap_of(scenario))
+    with compiling_announced(), GapBar(limits["gap"]) as bar:
+        solution = solve_scenario(scenario, scheme.value, null_jammer=null_jammer, on_progress=bar, **limits)
+    if not checked:
+        return solution
+    with Ticker("checking leaves") as ticker:
+        return verified(solution, ticker)
+
+
+def _write(solution: Solution, certificate: Path | None, geojson: Path | None) -> None:
+    """Write the files that were asked for."""
+    from nullpose.certificate import write_certificate
+    from nullpose.report.geojson import write_geojson
+    from nullpose.solve import certificate_of
+
+    if certificate is not None:
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:
         write_geojson(solution, geojson)
-    write_figure(figure, partial(_drawn, solution))
-    if json_output:
-        show_json(solution.to_dict())
-    else:
-        from nullpose.report.tables import solution_view
-
-        show(solution_view(solution))
-    if rejected:
-        raise SolveError(
-            f"{solution.reason}; this is a fault of nullpose: please report it with the scenario"
-        )
-    if solution.interrupted:
-        raise typer.Exit(INTERRUPTED)
-
-
-def _drawn(solution: Solution) -> Figure:
-    from nullpose.report.figures import draw_pose
-
-    return draw_pose(solution)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Annotated
+import threading
+from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import AllowOutside, Overrides, ScenarioFile
-
-if TYPE_CHECKING:
-    from threading import Event
+from nullpose.cli.faults import signals_handled
+from nullpose.cli.options import AllowOutside, Overrides, ScenarioFile, read_scenario
 
 __all__ = ["studio"]
 
@@ -27,13 +24,18 @@ def studio(
         str, typer.Option("--host", help="Address to listen at. 0.0.0.0 lets other machines in.")
     ] = _LOOPBACK,
 ) -> None:
-    """Open a scenario in the browser: drag what is on the ground, and see the proved best pose follow."""
-    from nullpose.scenario import apply_overrides, load
+    """Open a scenario in the browser.
 
-    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    Drag what is on the ground, and see the proved best pose follow.
+    """
+    scenario = read_scenario(file, overrides, allow_outside)
     from nullpose.studio.server import studio as running_studio
 
-    with _until_ended() as ended, running_studio(scenario, host=host, port=port) as running:
+    ended = threading.Event()
+    with (
+        signals_handled(lambda *_: ended.set(), "SIGINT", "SIGTERM", "SIGHUP"),
+        running_studio(scenario, host=host, port=port) as running,
+    ):
         _announce(host, running.address)
         while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
             pass
@@ -47,22 +49,3 @@ def _announce(host: str, address: str) -> None:
             f"listening at {host}: whoever has this address with its token can open the studio from another "
             "machine; what is sent is not encrypted"
         )
-
-
-@contextmanager
-def _until_ended() -> Iterator[Event]:
-    """Return an event that Ctrl-C, or the system's wish to end the process, sets: the usual end of it."""
-    import signal
-    import threading
-
-    ended = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield ended
-        return
-    signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    before = {number: signal.signal(number, lambda *_: ended.set()) for number in signals}
-    try:
-        yield ended
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

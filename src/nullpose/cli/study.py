@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.options import AllowOutside, JsonOutput, OutFolder
 from nullpose.cli.output import show_json
-from nullpose.cli.study_bar import StudyBar, words_of
+from nullpose.cli.progress import StudyBar
+
+if TYPE_CHECKING:
+    from nullpose.study.monte_carlo import StudyStatus
 
 __all__ = ["StudyFolder", "study"]
 
 study = typer.Typer(
     name="study",
     no_args_is_help=True,
-    help="Many random scenes, each solved in several cases, on this machine or a cluster.",
+    help="Many random scenes, each solved in several cases.",
 )
 
 StudyFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)]
@@ -54,7 +58,10 @@ def run(
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve the scenes of a study that its folder does not hold yet; ended in any way, it goes on."""
+    """Solve the scenes of a study that its folder does not hold yet.
+
+    It runs on this machine or a cluster. Ended in any way, the same command goes on.
+    """
     from nullpose.study.monte_carlo.extra import require_extra
 
     require_extra()
@@ -108,7 +115,7 @@ def show(
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Print a scene of a study as a scenario file, for solve or the studio."""
+    """Print a scene of a study as a scenario file."""
     from nullpose.errors import UsageError
     from nullpose.study.monte_carlo import draw_scene, scene_at, study_spec
 
@@ -122,3 +129,20 @@ def show(
         show_json(scenario.to_dict())
     else:
         typer.echo(scenario.to_toml(), nl=False)
+
+
+def words_of(status: StudyStatus) -> str:
+    """Return how far a study is, in a few lines."""
+    state = f"running: {status.running}" if status.running else "not running"
+    state = "complete" if status.complete else state
+    lines = [
+        *filter(None, [status.name]),
+        f"folder     {status.folder}",
+        f"scenes     {status.done} of {status.scenes} ({100 * status.done // status.scenes} %), {state}",
+        f"rows       {status.rows}, {status.failed} of them failures",
+        f"parts      {status.parts} of up to {status.chunk} scenes, {status.size / 1e6:.1f} MB",
+        f"work       {timedelta(seconds=round(status.worked_s))} on workers",
+    ]
+    if not status.complete and not status.running:
+        lines.append("nullpose study run with the same spec and folder goes on from there")
+    return "\n".join(lines)

@@ -49,7 +49,10 @@ def report(
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Write a study's report: its answer in words, figures and tables, as Markdown, HTML and CSV."""
+    """Write a study's answer in words, figures and tables.
+
+    As Markdown, HTML and CSV.
+    """
     from nullpose.report.study import report_study
 
     written = report_study(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -17,7 +18,8 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
 )
-from nullpose.cli.output import Ticker, compiling_announced, show, show_json
+from nullpose.cli.output import compiling_announced, tell
+from nullpose.cli.progress import Ticker
 from nullpose.schemes import Scheme
 
 __all__ = ["sweep"]
@@ -53,7 +55,10 @@ def sweep(
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve a scenario at many values of one setting; write a table (CSV) and a figure (PNG, SVG)."""
+    """Solve at many values of one setting.
+
+    A table (CSV) and a figure (PNG, SVG) are written.
+    """
     from nullpose.files import check_outputs
     from nullpose.scenario.loading import files_of, load
     from nullpose.study.plan import plan_sweep
@@ -82,7 +87,4 @@ def sweep(
     from nullpose.report.sweep import sweep_view, write_sweep
 
     files = write_sweep(table, plan.folder, log=log)
-    if json_output:
-        show_json({**table.to_dict(), "files": [str(path) for path in files]})
-    else:
-        show(sweep_view(table, files))
+    tell(table, partial(sweep_view, files=files), json_output, files=[str(path) for path in files])

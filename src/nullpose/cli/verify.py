@@ -9,7 +9,8 @@ import typer
 
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
-from nullpose.cli.output import Ticker, show, show_json
+from nullpose.cli.output import show, show_json
+from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
     from nullpose.certificate import Certificate, Verdict
@@ -33,7 +34,10 @@ def verify(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a certificate in outward-rounded arithmetic, by code that imports nothing from the solver."""
+    """Check a certificate.
+
+    In outward-rounded arithmetic, by code that imports nothing from the solver.
+    """
     from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
     from nullpose.scenario import load
@@ -57,10 +61,9 @@ def verify(
 
 def _show(verdict: Verdict, certificate: Certificate) -> None:
     from nullpose.certificate import subject
-    from nullpose.report.scenario_tables import scenario_view
-    from nullpose.report.summary import summarise
+    from nullpose.report.scenario import scenario_view
 
     typer.echo(verdict.message, err=not verdict.proved)
     if verdict.proved:
         typer.echo(f"case {certificate.scheme}, scenario SHA-256 {subject(certificate)['scenario_sha256']}\n")
-        show(scenario_view(summarise(certificate.scenario)))
+        show(scenario_view(certificate.scenario))

@@ -54,10 +54,10 @@ def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]:
         pose: where the drone is and how it is turned.
     """
     at = (scenario, pose.position_m, pose.antenna_axis)
-    secret = scenario.objective == "secrecy-rate"
-    ratios = node_snr(*at) if secret else sinr(*at)
+    record = scenario.objective_record
+    ratios = node_snr(*at) if record.transmits else sinr(*at)
     margins = margin(*at) if scenario.has_margins else None
-    rates = secrecy_rate(*at) if secret else None
+    rates = secrecy_rate(*at) if record.quantity(scenario).is_rate else None
     return tuple(
         Link(
             node=name,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.physics.secrecy import secrecy_rate
+from nullpose.physics.secrecy import node_snr, secrecy_rate
 from nullpose.physics.sinr import sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -33,7 +33,7 @@ def objective_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) 
     """Return what the scenario asks to be made as large as it can be, at every pose.
 
     The smallest margin over the nodes, which is the smallest SINR (paper eq. 2.2) where no node states a
-    weight or a requirement; or the smallest secrecy rate with objective "secrecy-rate".
+    weight or a requirement; or the smallest secrecy rate if that is asked for.
 
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one dipole, not an array.
@@ -43,5 +43,10 @@ def objective_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) 
     Returns:
         Array of shape ``(...)``: power ratios, or bits/s/Hz.
     """
-    of_nodes = secrecy_rate if scenario.objective == "secrecy-rate" else margin
-    return np.asarray(np.min(of_nodes(scenario, position_m, axis), axis=-1))
+    at = (scenario, position_m, axis)
+    record = scenario.objective_record
+    if record.quantity(scenario).is_rate:
+        of_nodes = secrecy_rate(*at)
+    else:
+        of_nodes = node_snr(*at) if record.transmits else margin(*at)
+    return np.asarray(np.min(of_nodes, axis=-1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -94,6 +95,15 @@ class Pose:
         forward = np.cos(self.roll_rad) * np.sin(self.pitch_rad)
         across = np.hypot(np.sin(self.roll_rad), forward)
         return float(np.arctan2(across, np.cos(self.roll_rad) * np.cos(self.pitch_rad)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the pose as plain data for JSON, angles in radians."""
+        angles = ("roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad")
+        return {
+            "position_m": [float(x) for x in self.position_m],
+            **{name: getattr(self, name) for name in angles},
+            "antenna_axis": [float(x) for x in self.antenna_axis],
+        }
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Pose):

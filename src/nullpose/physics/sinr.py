@@ -64,4 +64,4 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
     signal_w = received_power_w(position_m, axis, scenario.node_positions_m, scenario.node_powers_w, g0)
     jamming_w = received_power_w(position_m, axis, scenario.jammer_positions_m, scenario.jammer_powers_w, g0)
     interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
-    return np.asarray(signal_w / (interference_w + scenario.receiver.noise_power_w))
+    return np.asarray(signal_w / (interference_w + scenario.objective_record.noise_w(scenario)))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import document, head, table
-from nullpose.report.numbers import begun, fixed, share_text, short
-from nullpose.report.quantity import bound_text
+from nullpose.report.document import document, grouped, head, table
+from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["airframes_view", "answer_lines", "proof_lines"]
 
-_WITHIN = "1 %"  # the tolerance of the study, in words
 _STATUS = {
     Status.CERTIFIED: "certified",
     Status.GAP_NOT_REACHED: "bounded",
@@ -34,13 +33,13 @@ def airframes_view(comparison: AirframeComparison) -> RenderableType:
         comparison: what each vehicle makes of a scenario.
     """
     quantity = Quantity.of(comparison.scenario)
-    title = f"S{quantity.smallest[1:]} over the nodes ({quantity.unit})"
     rows = [_value_cells(comparison, quantity, result) for result in comparison.results]
     rows.insert(len(comparison.dipoles), {})
     guaranteed = []
     if comparison.scenario.is_uncertain:
         guaranteed = [_guaranteed_cells(comparison, quantity, result) for result in comparison.dipoles]
     bold = [] if comparison.stated is None else [comparison.stated.case.label]
+    title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(
         head(comparison.scenario.name),
         "",
@@ -56,15 +55,14 @@ def _value_cells(
     comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
 ) -> dict[str, str]:
     """Return a vehicle's ratio, value, bound, difference from the omnidirectional one, and status."""
-    objective, cells = result.objective, {"vehicle, dipole": result.case.label}
-    if not quantity.is_rate:
-        cells["ratio"] = "-" if objective is None else f"{objective.value:.5g}"
+    objective = result.objective
     value = math.nan if objective is None else quantity.in_unit(objective.value)
-    bound = "-" if objective is None or objective.upper_bound is None else bound_text(objective, 4)
+    ratio = "-" if objective is None else f"{objective.value:.5g}"
     return {
-        **cells,
-        "value": _number(value),
-        "at most": bound,
+        "vehicle, dipole": result.case.label,
+        **({} if quantity.is_rate else {"ratio": ratio}),
+        "value": _number(value, 4),
+        "at most": "-" if objective is None else bound_text(objective, 4),
         "difference": _number(value - quantity.in_unit(comparison.omnidirectional.value), 3),
         "status": _STATUS[result.status],
     }
@@ -74,22 +72,18 @@ def _guaranteed_cells(
     comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
 ) -> dict[str, str]:
     """Return what a dipole guarantees under the file's errors."""
-    found, best = result.guaranteed, comparison.omnidirectional.guaranteed
-    known = [None] * 3 if found is None else [found.nominal_pose, found.robust_pose, found.upper_bound]
-    whole = None if best is None else best.robust_pose
-    nominal, robust, bound, most = (
-        math.nan if value is None else quantity.in_unit(value) for value in (*known, whole)
+    of, best = result.guaranteed, comparison.omnidirectional.guaranteed
+    known: list[float | None] = (
+        [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
     )
-    return {
-        "vehicle, dipole": result.case.label,
-        "pose above": _number(nominal, 3),
-        "robust pose": _number(robust, 3),
-        "at most": _number(bound, 3),
-        "difference": _number(robust - most, 3),
-    }
+    known.append(None if best is None else best.robust_pose)
+    nominal, robust, bound, most = (math.nan if value is None else quantity.in_unit(value) for value in known)
+    numbers = {"pose above": nominal, "robust pose": robust, "at most": bound, "difference": robust - most}
+    cells = {heading: _number(value, 3) for heading, value in numbers.items()}
+    return {"vehicle, dipole": result.case.label, **cells}
 
 
-def _number(value: float, digits: int = 4) -> str:
+def _number(value: float, digits: int) -> str:
     if math.isnan(value):
         return "-"
     return fixed(value, digits) if math.isfinite(value) else "nothing"
@@ -101,49 +95,20 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     Args:
         comparison: what each vehicle makes of a scenario.
     """
-    dipoles = [result for result in comparison.dipoles if result.objective is not None]
-    certified = [result for result in dipoles if result.status is Status.CERTIFIED]
+    labelled = [(result.case.label, result) for result in comparison.results]
+    gaps = [each.objective.relative_gap for _, each in labelled if each.objective is not None]
+    widest = max((gap for gap in gaps if gap is not None), default=math.nan)
     lines = ["Difference: from the omnidirectional vehicle."]
-    if certified:
-        widest = short(max(each.objective.relative_gap or 0.0 for each in certified if each.objective))
-        names = ", ".join(result.case.label for result in certified)
-        who = "Every dipole's value is" if len(certified) == len(dipoles) else f"{names}:"
-        lines.append(f"{who} certified: proved to be within {widest} of the best that the vehicle can reach.")
-    lines += [f"{result.case.label}: {result.reason}" for result in comparison.dipoles if result.reason]
-    if any(result.status is Status.BEST_FOUND for result in dipoles):
-        lines.append("Without proofs each value is the best of a search.")
-    lines += _array_proof(comparison)
-    lines += rigour_lines((r.case.label, r.objective.rigour) for r in comparison.results if r.objective)
+    lines += dict.fromkeys(each.status.message for _, each in labelled if each.status is not None)
+    lines += grouped((label, each.reason) for label, each in labelled)
+    if not math.isnan(widest):
+        lines.append(f"The widest relative gap between value and bound is {short(widest)}.")
+    lines += rigour_lines((label, each.objective.rigour) for label, each in labelled if each.objective)
     if comparison.scenario.is_uncertain:
-        lines.append(_guaranteed_line(comparison))
-        lines += ["Nothing is guaranteed of arrays."] if comparison.arrays else []
+        lines.append(
+            "Guaranteed: proved to be reached whatever the errors do. Nothing is guaranteed of arrays."
+        )
     return lines
-
-
-def _array_proof(comparison: AirframeComparison) -> list[str]:
-    """Return how many values of arrays are certified, and why the others are not."""
-    arrays = [result for result in comparison.arrays if result.objective is not None]
-    others = [result for result in arrays if result.status is not Status.CERTIFIED]
-    if all(result.status is Status.BEST_FOUND for result in arrays):
-        return []  # without proofs, which is said of all values
-    if not others:
-        return ["The values of the arrays are certified as well."]
-    share = f"{len(arrays) - len(others)} of {len(arrays)}"
-    reasons = "; ".join(dict.fromkeys(result.reason for result in others if result.reason))
-    return [f"Arrays: {share} values are certified, the others the best found{reasons and f' ({reasons})'}."]
-
-
-def _guaranteed_line(comparison: AirframeComparison) -> str:
-    line = "Guaranteed: proved to be reached whatever the errors do."
-    found = [result.guaranteed for result in comparison.dipoles if result.guaranteed is not None]
-    gaps = [
-        one.upper_bound / one.robust_pose - 1.0
-        for one in found
-        if one.upper_bound is not None and one.robust_pose
-    ]
-    if not gaps or len(gaps) < len(found):
-        return line
-    return f"{line} No other pose guarantees over {short(100.0 * max(gaps))} % more than the robust one."
 
 
 def answer_lines(comparison: AirframeComparison) -> list[str]:
@@ -155,86 +120,55 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
     Args:
         comparison: what each vehicle makes of a scenario.
     """
-    least = comparison.least_sufficient
+    least, own, arrays = comparison.least_sufficient, comparison.stated, comparison.arrays
     if least is None:
         return ["No vehicle with one dipole gives every node anything here."]
-    lines, own = [_least_line(comparison, least)], comparison.stated
+    lesser = [result for result in comparison.dipoles if result is not comparison.omnidirectional]
+    lines = [_least_line(comparison, lesser)] if lesser else []
+    if least is comparison.omnidirectional:
+        lines.insert(0, "It takes an omnidirectional vehicle here.")
     if own is not None and own is not least:
-        enough = "suffices too" if comparison.suffices(own) else "does not suffice"
-        lines.append(f"{begun(own.case.phrase)} {enough}: it gives {_share(comparison, own)}.")
-    if comparison.arrays:
-        lines.append(_array_line(comparison))
+        verdict = "suffices too" if comparison.suffices(own) else "does not suffice"
+        lines.append(f"{begun(own.case.phrase)} {verdict}: it gives {_share(comparison, own)}.")
+    for combining in dict.fromkeys(result.case.combining for result in arrays):
+        alike = [result for result in arrays if result.case.combining == combining]
+        lines.append(_least_line(comparison, alike))
     if comparison.scenario.is_uncertain:
-        lines += _errors_lines(comparison)
+        lines.append(_errors_line(comparison))
     return lines
 
 
-def _least_line(comparison: AirframeComparison, least: AirframeResult) -> str:
-    if least is comparison.omnidirectional:
-        others = [result for result in comparison.dipoles if result is not least]
-        nearest = max(others, key=lambda result: result.value)
-        return (
-            f"It takes an omnidirectional vehicle here: none of the others comes within {_WITHIN} of it. "
-            f"{begun(nearest.case.phrase)} comes nearest, with {_share(comparison, nearest)} of its value."
-        )
-    rank = "the least of these that comes" if least is not comparison.results[0] else "it comes"
+def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
+    """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
+    best, verdict = max(results, key=lambda result: result.value), "none of its kind gives"
+    least = next((result for result in results if comparison.suffices(result)), None)
+    if least is not None:
+        best, verdict = least, "the least of its kind that gives"
     return (
-        f"{begun(least.case.phrase)} gives {_share(comparison, least)} of what an omnidirectional "
-        f"vehicle gives here: {rank} within {_WITHIN} of it."
+        f"{begun(best.case.phrase)} gives {_share(comparison, best)} of what an omnidirectional vehicle "
+        f"gives here: {verdict} {share_text(1.0 - comparison.tolerance)} or more."
     )
-
-
-def _array_line(comparison: AirframeComparison) -> str:
-    enough, short_of_it = [], []
-    for combining, words in (("digital", "digital combining"), ("analogue", "one analogue beam")):
-        arrays = [result for result in comparison.arrays if result.case.combining == combining]
-        least = next((result for result in arrays if comparison.suffices(result)), None)
-        if least is not None:
-            enough.append(f"with {_size(least)} elements and {words} ({_times(comparison, least)})")
-        elif arrays:
-            best = max(arrays, key=lambda result: result.value)
-            short_of_it.append(
-                f"with {words} none of up to {_size(arrays[-1])} elements was found to be enough "
-                f"({_share(comparison, best)} with {_size(best)})"
-            )
-    if not enough:
-        return f"An array on a level vehicle: {'; '.join(short_of_it)}."
-    lead = f"On a level vehicle an array is enough {' or '.join(enough)}"
-    return f"{'; '.join([lead, *short_of_it])}."
-
-
-def _times(comparison: AirframeComparison, result: AirframeResult) -> str:
-    share = comparison.share(result)
-    return _share(comparison, result) if share is None or share < 1.1 else f"{share:.3g} times as much"
-
-
-def _size(result: AirframeResult) -> int:
-    assert result.case.array is not None, "only arrays are asked for their size"
-    return result.case.array.elements
-
-
-def _errors_lines(comparison: AirframeComparison) -> list[str]:
-    """Return what of the answer is left under the errors that the scenario states."""
-    best = comparison.omnidirectional.guaranteed
-    if best is None or not best.robust_pose:
-        return ["Under the file's errors nothing is guaranteed, whatever the vehicle."]
-    shares = [
-        (result, result.guaranteed.robust_pose / best.robust_pose)
-        for result in comparison.dipoles
-        if result.guaranteed is not None and result.guaranteed.robust_pose is not None
-    ]
-    least, share = next(one for one in shares if one[1] >= 1.0 - comparison.tolerance)
-    who = least.case.phrase
-    kept = best.robust_pose / comparison.omnidirectional.value
-    line = (
-        "Under the file's errors an omnidirectional vehicle guarantees "
-        f"{share_text(kept)} of its value, at its robust pose"
-    )
-    if least is comparison.omnidirectional:
-        return [f"{line}; none of the others comes within {_WITHIN} of that."]
-    return [f"{line}; {who} guarantees {share_text(share)} of that, the least that comes within {_WITHIN}."]
 
 
 def _share(comparison: AirframeComparison, result: AirframeResult) -> str:
     share = comparison.share(result)
     return "nothing" if share is None else share_text(share)
+
+
+def _errors_line(comparison: AirframeComparison) -> str:
+    """Return what of the answer is left under the errors that the scenario states."""
+    whole = comparison.omnidirectional.guaranteed
+    if whole is None or not whole.robust_pose:
+        return "Under the file's errors nothing is guaranteed, whatever the vehicle."
+    shares = [
+        (result, result.guaranteed.robust_pose / whole.robust_pose)
+        for result in comparison.dipoles
+        if result.guaranteed is not None and result.guaranteed.robust_pose is not None
+    ]
+    least, share = next(one for one in shares if one[1] >= 1.0 - comparison.tolerance)
+    kept = whole.robust_pose / comparison.omnidirectional.value
+    return (
+        f"Under the file's errors an omnidirectional vehicle guarantees {share_text(kept)} of its value, at "
+        f"its robust pose; {least.case.phrase} guarantees {share_text(share)} of that: the least of its kind "
+        f"that guarantees {share_text(1.0 - comparison.tolerance)} or more."
+    )

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
 
-from nullpose.report.numbers import begun, short
-from nullpose.solve import Rigour, Scheme, Status
+from nullpose.report.document import grouped
+from nullpose.report.numbers import begun, count_of, short
+from nullpose.schemes import Scheme
+from nullpose.solve import Rigour, Status
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = [
-    "Certainty",
-    "certainty_by_scheme",
-    "certainty_lines",
-    "rigour_lines",
-    "short",
-]
-
-_PROVED = " (relative): each point is proved to be so close to its case's global optimum"
+__all__ = ["Certainty", "certainty_lines", "rigour_lines"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,12 +19,14 @@ class Certainty:
     """How many values there are of each status, and how wide the widest gap to an upper bound is.
 
     Args:
+        values: how many there are.
         certified: values with a bound within the gap asked for.
         gap_not_reached: values with a bound farther off.
         best_found: values with no bound.
         largest_relative_gap: of those with a bound; None if there are none.
     """
 
+    values: int
     certified: int
     gap_not_reached: int
     best_found: int
@@ -48,16 +43,12 @@ class Certainty:
         statuses = [row.status for row in rows]
         gaps = [row.relative_gap for row in rows if row.relative_gap is not None]
         return cls(
+            values=len(rows),
             certified=statuses.count(Status.CERTIFIED),
             gap_not_reached=statuses.count(Status.GAP_NOT_REACHED),
             best_found=statuses.count(Status.BEST_FOUND),
             largest_relative_gap=max(gaps, default=None),
         )
-
-    @property
-    def values(self) -> int:
-        """How many values there are."""
-        return self.certified + self.gap_not_reached + self.best_found
 
     @property
     def complete(self) -> bool:
@@ -66,35 +57,40 @@ class Certainty:
 
     def to_dict(self) -> dict[str, object]:
         """Return the counts as plain data."""
-        return {
-            "values": self.values,
-            "certified": self.certified,
-            "gap_not_reached": self.gap_not_reached,
-            "best_found": self.best_found,
-            "largest_relative_gap": self.largest_relative_gap,
-        }
+        return asdict(self)
 
     def words(self) -> str:
-        """Return the counts in words, as in ``436 values, all certified; largest relative gap 1e-6``."""
+        """Return the counts in words, as in ``436 values, 436 certified; largest relative gap 1e-6``."""
         counts = {
             "certified": self.certified,
             "with a bound farther off than asked for": self.gap_not_reached,
             "best found, with no bound": self.best_found,
         }
-        named = ", ".join(f"{count} {status}" for status, count in counts.items() if count)
-        shares = "all certified" if self.complete else named
+        named = [f"{count} {status}" for status, count in counts.items() if count]
         gap = self.largest_relative_gap
         widest = "" if gap is None else f"; largest relative gap {short(gap)}"
-        return f"{self.values} values, {shares}{widest}"
+        return f"{', '.join([count_of(self.values, 'value'), *named])}{widest}"
 
+    @property
+    def weakest(self) -> Status:
+        """What can be said of each of them."""
+        if self.best_found:
+            return Status.BEST_FOUND
+        return Status.GAP_NOT_REACHED if self.gap_not_reached else Status.CERTIFIED
 
-def certainty_by_scheme(table: SweepTable) -> dict[str, Certainty]:
-    """Return the certainty of each curve of a table.
-
-    Args:
-        table: a sweep.
-    """
-    return {scheme: Certainty.of(table.of(scheme)) for scheme in table.schemes}
+    @property
+    def sentence(self) -> str:
+        """The same in words, with the widest gap."""
+        gap = self.largest_relative_gap
+        widest = "none" if gap is None else short(gap)
+        if self.weakest is Status.BEST_FOUND:
+            return "best found by searching, nothing is proved"
+        if self.weakest is Status.GAP_NOT_REACHED:
+            return (
+                "no pose exceeds the bound, but the gap asked for is not reached at "
+                f"{self.gap_not_reached} of {self.values} points; relative gap up to {widest}"
+            )
+        return f"certified to {widest} (relative): each point is proved so close to its case's global optimum"
 
 
 def certainty_lines(table: SweepTable) -> list[str]:
@@ -103,26 +99,12 @@ def certainty_lines(table: SweepTable) -> list[str]:
     Args:
         table: a sweep.
     """
-    curves = certainty_by_scheme(table)
-    kinds: dict[str, list[str]] = {"proved": [], "open": [], "searched": []}
-    for scheme, certainty in curves.items():
-        kind = "searched" if certainty.best_found else "open" if certainty.gap_not_reached else "proved"
-        kinds[kind].append(scheme)
-    lines = []
-    if kinds["proved"]:
-        lines.append(
-            f"{_who(kinds['proved'], curves)}certified to {_widest(kinds['proved'], curves)}{_PROVED}"
-        )
-    if kinds["open"]:
-        missed = sum(curves[scheme].gap_not_reached for scheme in kinds["open"])
-        points = sum(curves[scheme].values for scheme in kinds["open"])
-        lines.append(
-            f"{_who(kinds['open'], curves)}no pose exceeds the bound, but the gap asked for is not reached "
-            f"at {missed} of {points} points; relative gap up to {_widest(kinds['open'], curves)}"
-        )
-    if kinds["searched"]:
-        lines.append(f"{_who(kinds['searched'], curves)}best found by searching, nothing is proved")
-    return [begun(line) for line in lines]
+    said: list[tuple[str, str]] = []
+    for status in Status:
+        schemes = [name for name in table.schemes if Certainty.of(table.of(name)).weakest is status]
+        together = Certainty.of(row for row in table.rows if row.scheme in schemes)
+        said += [(Scheme(name).label, together.sentence) for name in schemes]
+    return [begun(line) for line in grouped(said)]
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
@@ -131,18 +113,5 @@ def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
     Args:
         rigours: the label of each answer, and its rigour; labels may repeat.
     """
-    labels: dict[Rigour, dict[str, None]] = {}
-    for label, rigour in rigours:
-        labels.setdefault(rigour, {})[label] = None
-    who = {rigour: f"{', '.join(names)}: " if len(labels) > 1 else "" for rigour, names in labels.items()}
-    return [f"{who[rigour]}{rigour.message}." for rigour in labels if rigour is not Rigour.NONE]
-
-
-def _widest(schemes: Sequence[str], curves: Mapping[str, Certainty]) -> str:
-    gaps = (curves[scheme].largest_relative_gap for scheme in schemes)
-    return short(max((gap for gap in gaps if gap is not None), default=math.inf))
-
-
-def _who(schemes: Sequence[str], curves: Collection[str]) -> str:
-    labels = (Scheme(scheme).label.lower() for scheme in schemes)
-    return "" if len(schemes) == len(curves) else f"{', '.join(labels)}: "
+    said = [(label, "" if rigour is Rigour.NONE else f"{rigour.message}.") for label, rigour in rigours]
+    return grouped(said)

@@ -1,14 +1,27 @@
-"""All the paper's cases for one scenario, those that do not apply with their reason."""
+"""All the paper's cases for one scenario side by side, those that do not apply with their reason."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from nullpose.scenario import Scenario
-from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, Solution, compare
+from nullpose.objectives import Quantity
+from nullpose.report.certainty import rigour_lines
+from nullpose.report.document import beside, document, grouped, head, table
+from nullpose.report.geometry import null_angle_rad, tilt_rad
+from nullpose.report.numbers import bound_text, degrees_text, fixed
+from nullpose.report.results import azimuth_text, binding_nodes, work_words
+from nullpose.report.words import requirement_words
+from nullpose.scenario import Eavesdropper, Jammer, Scenario
+from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.solve import Result, compare
 
-__all__ = ["Comparison", "compare_all"]
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = ["Comparison", "compare_all", "comparison_view"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,16 +35,19 @@ class Comparison:
     """
 
     scenario: Scenario
-    solutions: tuple[Solution, ...]
+    solutions: tuple[Result, ...]
     left_out: tuple[tuple[Scheme, str], ...]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended a proof."""
+        return any(solution.interrupted for solution in self.solutions)
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""
-        cases: list[dict[str, object]] = []
-        for solution in self.solutions:
-            case = solution.to_dict()
+        cases = [solution.to_dict() for solution in self.solutions]
+        for case in cases:
             del case["scenario"]
-            cases.append(case)
         cases += [
             {"scheme": scheme.value, "status": "not-applicable", "reason": reason}
             for scheme, reason in self.left_out
@@ -43,38 +59,99 @@ class Comparison:
         }
 
 
-def compare_all(
-    scenario: Scenario,
-    *,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
-    on_progress: Callable[[int, int], None] | None = None,
-) -> Comparison:
+def compare_all(scenario: Scenario, **options: Any) -> Comparison:
     """Return the four cases of the paper for one scenario.
 
     Args:
         scenario: nodes, jammers, receiver and airspace.
-        gap: relative gap at which each proof is done; without it, by the number of nodes.
-        time_limit_s: seconds after which each proof stops.
-        node_limit: boxes after which each proof stops.
-        certify: whether to prove anything.
-        seed: the random seed of every solve.
-        on_progress: called after each solve with how many are done and how many there are.
+        options: of :func:`nullpose.solve.compare`.
     """
     reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in PAPER_SCHEMES]
-    return Comparison(
-        scenario=scenario,
-        solutions=compare(
-            scenario,
-            gap=gap,
-            time_limit_s=time_limit_s,
-            node_limit=node_limit,
-            certify=certify,
-            seed=seed,
-            on_progress=on_progress,
-        ),
-        left_out=tuple((scheme, reason) for scheme, reason in reasons if reason is not None),
+    left_out = tuple((scheme, reason) for scheme, reason in reasons if reason is not None)
+    return Comparison(scenario, tuple(compare(scenario, **options)), left_out)
+
+
+def comparison_view(comparison: Comparison) -> RenderableType:
+    """Return several schemes' solutions side by side, one column each.
+
+    Args:
+        comparison: what each scheme makes of a scenario.
+    """
+    scenario, solutions = comparison.scenario, comparison.solutions
+    quantity = Quantity.of(scenario)
+    best = max((quantity.in_unit(each.objective.value) for each in solutions), default=math.nan)
+    rows: list[Mapping[str, str]] = []
+    for cells in (_value_cells, _pose_cells, _link_cells):
+        rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
+    others = ""
+    if scenario.array is not None:
+        others = "These cases have one dipole. For the file's array: solve, or compare --airframes"
+    elif scenario.airframe is not None:
+        others = "Other vehicles in this scene: compare --airframes"
+    return document(
+        head(scenario.name),
+        table("", rows, bold=[f"smallest {quantity.short} ({quantity.unit})"]),
+        "\n".join([*_lines(comparison), f"* binding: the {quantity.smallest} is at this node", others]),
     )
+
+
+def _lines(comparison: Comparison) -> list[str]:
+    """Return what is said of the cases: notes, requirements, what does not apply, how sure each is."""
+    solutions = comparison.solutions
+    labelled = [(each.label, each) for each in solutions]
+    absent = [(scheme.label, f"not applicable: {reason}") for scheme, reason in comparison.left_out]
+    starts = sum(each.stats.starts for each in solutions)
+    boxes = sum(each.stats.boxes for each in solutions)
+    return [
+        *grouped((label, each.note) for label, each in labelled),
+        *grouped((label, requirement_words(each)) for label, each in labelled),
+        *grouped([*absent, *((label, "") for label, _ in labelled)]),
+        *grouped(
+            (label, f"{each.status.message}{each.reason and f': {each.reason}'}") for label, each in labelled
+        ),
+        *rigour_lines((label, each.rigour) for label, each in labelled),
+        f"{work_words(starts, boxes)} in all",
+    ]
+
+
+def _value_cells(solution: Result, best: float) -> dict[str, str]:
+    objective, quantity = solution.objective, solution.objective.quantity
+    value, smallest = quantity.in_unit(objective.value), f"smallest {quantity.short}"
+    return {
+        f"{smallest} ({quantity.unit})": f"{value:.7f}",
+        f"at most ({quantity.unit})": bound_text(objective, 7),
+        **({} if quantity.is_rate else {smallest: f"{objective.value:.7g}"}),
+        f"gap to the best ({quantity.unit})": fixed(best - value, 4),
+    }
+
+
+def _pose_cells(solution: Result, _: float) -> dict[str, str]:
+    """Return place and attitude, and how far the null is off what it is for."""
+    scenario, pose = solution.scenario, solution.pose
+    points: list[Jammer | Eavesdropper] = [*scenario.eavesdroppers]
+    if not solution.objective.quantity.is_rate:
+        points += scenario.jammers
+    angles = {
+        "roll (deg)": pose.roll_rad,
+        "pitch (deg)": pose.pitch_rad,
+        "yaw (deg)": pose.yaw_rad,
+        "vehicle's tilt (deg)": pose.tilt_rad,
+        "axis tilt (deg)": tilt_rad(pose),
+    }
+    return {
+        **{f"{axis} (m)": fixed(float(at), 3) for axis, at in zip("xyz", pose.position_m, strict=True)},
+        **{name: degrees_text(angle_rad) for name, angle_rad in angles.items()},
+        "axis azimuth (deg)": azimuth_text(pose),
+        **{f"axis to {p.name} (deg)": degrees_text(null_angle_rad(pose, p.position_m)) for p in points},
+    }
+
+
+def _link_cells(solution: Result, _: float) -> dict[str, str]:
+    """Return each node's SINR, margin or rate, and its ratio; a mark where the node binds."""
+    quantity, links, binding = solution.objective.quantity, solution.links, binding_nodes(solution)
+    cells = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
+    for link in links:
+        mark = "*" if link.node in binding else " "
+        value = f"{quantity.in_unit(quantity.at(link)):.4f}{mark}"
+        cells[f"{quantity.short} {link.node} ({quantity.unit})"] = value
+    return cells

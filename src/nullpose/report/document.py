@@ -1,17 +1,19 @@
-"""What a terminal shows: a head, tables of rows, pairs of names and words, notes.
+"""What is told: a head, tables of rows, pairs of names and words, notes.
 
 Every text is shown as it is given: what looks like markup is none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["beside", "document", "head", "pairs", "table"]
+__all__ = ["beside", "document", "grouped", "head", "markdown_table", "pairs", "rows", "table"]
+
+Row = Mapping[str, str]
 
 
 def document(*parts: RenderableType | None) -> RenderableType:
@@ -46,7 +48,7 @@ def head(name: str, label: str = "", value: str = "", lines: Sequence[str] = ())
 
 def table(
     title: str,
-    rows: Sequence[Mapping[str, str]],
+    rows: Sequence[Row],
     *,
     bold: Collection[str] = (),
     left: Collection[str] = (),
@@ -82,7 +84,31 @@ def table(
     return view
 
 
-def beside(columns: Mapping[str, Mapping[str, str]]) -> list[Mapping[str, str]]:
+def markdown_table(rows: Sequence[Row]) -> str:
+    """Return rows as a table in Markdown, its texts as they are.
+
+    Args:
+        rows: cells by heading, the first of which names the row; at least one.
+    """
+    rule = ["---", *("---:" for _ in list(rows[0])[1:])]
+    lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def rows(columns: Mapping[str, Sequence[str | None]]) -> list[Row]:
+    """Return columns as rows: a column in which nobody has a cell is left out, elsewhere one is a dash.
+
+    Args:
+        columns: cells by heading, equally many in each.
+    """
+    stated = {heading: cells for heading, cells in columns.items() if any(cell is not None for cell in cells)}
+    return [
+        {heading: "-" if cell is None else cell for heading, cell in zip(stated, cells, strict=True)}
+        for cells in zip(*stated.values(), strict=True)
+    ]
+
+
+def beside(columns: Mapping[str, Row]) -> list[Row]:
     """Return the rows of a table that has what is compared side by side.
 
     Args:
@@ -90,6 +116,24 @@ def beside(columns: Mapping[str, Mapping[str, str]]) -> list[Mapping[str, str]]:
     """
     labels = next(iter(columns.values()), {})
     return [{"": label} | {name: cells[label] for name, cells in columns.items()} for label in labels]
+
+
+def grouped(said: Iterable[tuple[str, str]]) -> list[str]:
+    """Return each sentence once, with the names of those whom it is said of; without, if it is of all.
+
+    Args:
+        said: names and sentences; an empty one says nothing of its name.
+    """
+    names: dict[str, dict[str, None]] = {}
+    everyone = set()
+    for name, sentence in said:
+        everyone.add(name)
+        names.setdefault(sentence, {})[name] = None
+    return [
+        sentence if len(of) == len(everyone) else f"{'; '.join(of)}: {sentence}"
+        for sentence, of in names.items()
+        if sentence
+    ]
 
 
 def pairs(title: str, rows: Sequence[tuple[str, str]]) -> RenderableType:
@@ -103,10 +147,9 @@ def pairs(title: str, rows: Sequence[tuple[str, str]]) -> RenderableType:
     from rich.table import Table
     from rich.text import Text
 
-    view = Table.grid(padding=(0, 2))
-    if title:
-        view = Table(box=box.SIMPLE, show_header=False, pad_edge=False, title=title, title_style="bold")
-        view.title_justify = "left"
+    look = box.SIMPLE if title else None
+    view = Table(title=title or None, box=look, title_justify="left", title_style="bold", show_header=False)
+    view.pad_edge = False
     for name, words in rows:
-        view.add_row(name, Text(words))
+        view.add_row(Text(name), Text(words))
     return view

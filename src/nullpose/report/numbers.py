@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
+
+if TYPE_CHECKING:
+    from nullpose.solve import Objective
 
 __all__ = [
     "MINUS",
@@ -14,8 +18,9 @@ __all__ = [
     "at_most",
     "axis_label",
     "begun",
+    "bound_text",
+    "bound_words",
     "count_of",
-    "count_words",
     "degrees_text",
     "escaped",
     "fixed",
@@ -26,6 +31,7 @@ __all__ = [
     "short",
     "span",
     "unit_of",
+    "value_words",
     "with_interval",
     "with_unit",
 ]
@@ -42,17 +48,6 @@ def begun(text: str) -> str:
         text: may be empty.
     """
     return text[:1].upper() + text[1:]
-
-
-def count_words(count: int, noun: str, nouns: str = "") -> str:
-    """Return a number of things in words, as in ``2 boxes``.
-
-    Args:
-        count: how many.
-        noun: the word for one.
-        nouns: the word for several, if it is not formed with an s.
-    """
-    return f"{count} {noun if count == 1 else nouns or noun + 's'}"
 
 
 def fixed(value: float, digits: int) -> str:
@@ -206,14 +201,57 @@ def share_text(share: float) -> str:
     return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
 
 
-def count_of(count: int, noun: str) -> str:
+def count_of(count: int, noun: str, nouns: str = "") -> str:
     """Return a count with its noun, thousands apart, as in "2,000 scenes".
 
     Args:
         count: how many.
         noun: of one.
+        nouns: of several, if it is not formed with an s.
     """
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
+
+
+def value_words(objective: Objective) -> str:
+    """Return the objective's value in words, as in ``0.98 dB (1.25)``.
+
+    Args:
+        objective: value and bound.
+    """
+    quantity, value = objective.quantity, objective.value
+    told = f"{quantity.in_unit(value):.7g} {quantity.unit}"
+    return told if quantity.is_rate else f"{told} ({value:.7g})"
+
+
+def bound_words(objective: Objective) -> str:
+    """Return the bound and the gap in words, empty if nothing is proved.
+
+    Args:
+        objective: value and bound.
+    """
+    if objective.upper_bound is None or objective.relative_gap is None:
+        return ""
+    unit = objective.quantity.unit
+    return f"at most {bound_text(objective)} {unit} (relative gap {objective.relative_gap:.1e})"
+
+
+def bound_text(objective: Objective, digits: int = 0) -> str:
+    """Return the bound in its unit, rounded up; a dash if nothing is proved.
+
+    Args:
+        objective: value and bound.
+        digits: decimals; 0 for as many as tell the bound from the value.
+    """
+    if objective.upper_bound is None:
+        return "-"
+    quantity = objective.quantity
+    bound = quantity.in_unit(objective.upper_bound)
+    if not math.isfinite(bound):
+        return number(bound, quantity)
+    if not digits:
+        apart = min(max(bound - quantity.in_unit(objective.value), 1e-12), 1.0)
+        digits = min(12, max(2, math.ceil(-math.log10(apart)) + 1))
+    return f"{math.ceil(bound * 10**digits) / 10**digits:.{digits}f}"
 
 
 def escaped(text: str) -> str:

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nullpose.report.certainty import certainty_lines, rigour_lines
-from nullpose.report.document import document
-from nullpose.report.document import table as rows_table
-from nullpose.report.figures.style import CURVES, write_figure
+from nullpose.report.document import document, grouped, table
+from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
-from nullpose.report.quantity import bound_text
-from nullpose.report.tables import not_applicable_lines
-from nullpose.solve import Scheme, Status
+from nullpose.report.numbers import begun, bound_text
+from nullpose.schemes import Scheme
+from nullpose.solve import Status
 from nullpose.study import SweepRow, SweepTable
 
 if TYPE_CHECKING:
@@ -24,48 +23,52 @@ __all__ = ["sweep_view", "write_sweep"]
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
 
 
-def write_sweep(table: SweepTable, folder: Path, *, log: bool = False) -> tuple[Path, ...]:
+def write_sweep(sweep: SweepTable, folder: Path, *, log: bool = False) -> tuple[Path, ...]:
     """Return the paths of a sweep's CSV, PNG and SVG files after writing them.
 
     Args:
-        table: what the sweep found.
+        sweep: what was found.
         folder: an existing folder.
         log: draw the swept setting on a logarithmic axis.
 
     Raises:
         OutputError: a file cannot be written.
     """
-    figure = draw_sweep(table, log=log)
-    return (table.write_csv(folder / "sweep.csv"), *write_figure(figure, folder, "sweep"))
+    figure = draw_sweep(sweep, log=log)
+    return (sweep.write_csv(folder / "sweep.csv"), *write_figure(figure, folder, "sweep"))
 
 
-def sweep_view(table: SweepTable, files: Sequence[Path]) -> RenderableType:
+def sweep_view(sweep: SweepTable, files: Sequence[Path]) -> RenderableType:
     """Return a sweep as a table of the objective, one column per scheme, and what is proved of it.
 
     Args:
-        table: what the sweep found.
+        sweep: what was found.
         files: what was written.
     """
-    quantity = quantity_of(table)
-    columns = {CURVES[scheme].label: table.of(scheme) for scheme in table.schemes}
-    step = -(-len(table.values) // _SHOWN)
-    rows = [
-        {table.path: f"{table.values[index]:.6g}"} | {name: _cell(of[index]) for name, of in columns.items()}
-        for index in range(0, len(table.values), step)
+    quantity = quantity_of(sweep)
+    step = -(-len(sweep.values) // _SHOWN)
+    rows: dict[float, dict[str, str]] = {
+        value: {sweep.path: f"{value:.6g}"} for value in sweep.values[::step]
+    }
+    for row in sweep.rows:
+        if row.value in rows:
+            rows[row.value][Scheme(row.scheme).record.curve.label] = _cell(row)
+    labelled = [(Scheme(row.scheme).label, row) for row in sweep.rows]
+    absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
+    lines = [
+        *grouped([*absent, *((label, "") for label, _ in labelled)]),
+        *([f"One row in {step} is shown."] if step > 1 else []),
+        *(f"{line}." for line in certainty_lines(sweep)),
+        *rigour_lines((label, row.objective.rigour) for label, row in labelled),
+        *grouped((label, row.reason) for label, row in labelled),
+        *(f"Wrote {path}" for path in files),
     ]
-    lines = not_applicable_lines((Scheme(scheme), reason) for scheme, reason in table.left_out.items())
-    lines += [f"One row in {step} is shown."] if step > 1 else []
-    lines += [f"{line}." for line in certainty_lines(table)]
-    lines += rigour_lines((Scheme(row.scheme).label, row.objective.rigour) for row in table.rows)
-    reasons = dict.fromkeys((row.scheme, row.reason) for row in table.rows if row.reason)  # each once
-    lines += [f"{Scheme(scheme).label}: {reason}" for scheme, reason in reasons]
-    lines += [f"Wrote {path}" for path in files]
-    title = f"S{quantity.smallest[1:]} over the nodes ({quantity.unit})"
-    return document(rows_table(title, rows), "\n".join(lines))
+    title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
+    return document(table(title, list(rows.values())), "\n".join(lines))
 
 
 def _cell(row: SweepRow) -> str:
     value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
-    if row.status != Status.GAP_NOT_REACHED or row.upper_bound is None:
+    if row.status != Status.GAP_NOT_REACHED:
         return value
     return f"{value}\nat most {bound_text(row.objective, 2)}"

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.array import Array
@@ -30,9 +31,7 @@ from nullpose.scenario.units import power_w
 
 __all__ = ["Scenario"]
 
-_Objective = Annotated[
-    Literal["min-sinr", "secrecy-rate"], Choice("an objective", ("min-sinr", "secrecy-rate"))
-]
+_Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 
 
 class Scenario(Section):
@@ -40,8 +39,7 @@ class Scenario(Section):
 
     Args:
         name: a title for tables and figures; may be empty.
-        objective: what is made as large as it can be: "min-sinr", the smallest SINR (or margin) of the nodes
-            that the drone hears; or "secrecy-rate", the smallest secrecy rate of the nodes that hear it.
+        objective: what is made as large as it can be: the name of a record in :mod:`nullpose.objectives`.
         origin: where on the Earth the frame's zero is, or None.
         airspace: where the vehicle may be.
         airframe: which antenna axes it reaches; None for all of them.
@@ -67,10 +65,11 @@ class Scenario(Section):
         examples=["Harbour, north quay"],
     )
     objective: _Objective = Field(
-        default="min-sinr",
-        description="What is made as large as it can be: min-sinr, the smallest SINR (or margin) of the "
-        "nodes that the drone hears, or secrecy-rate, the smallest secrecy rate of the nodes that hear it.",
-        examples=["secrecy-rate"],
+        default=USUAL,
+        description="What is made as large as it can be: "
+        + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
+        + ".",
+        examples=list(RECORDS),
     )
     nodes_from: FileOnly | None = Field(
         default=None,
@@ -129,6 +128,11 @@ class Scenario(Section):
     def to_toml(self) -> str:
         """Returns the text of a scenario file that loads as an equal scenario."""
         return toml_text(self.to_dict())
+
+    @property
+    def objective_record(self) -> ObjectiveRecord:
+        """What the objective states of itself."""
+        return RECORDS[self.objective]
 
     @property
     def node_names(self) -> tuple[str, ...]:

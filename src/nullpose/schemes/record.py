@@ -95,8 +95,8 @@ class SchemeRecord:
         Args:
             scenario: any.
         """
-        if scenario.objective == "secrecy-rate" and not self.any_objective:
-            return "the paper states it for a drone that receives, and here it transmits (secrecy rate)"
+        if scenario.objective_record.transmits and not self.any_objective:
+            return "the paper states it for a drone that receives, and here it transmits"
         if scenario.axis_band != (0.0, 1.0) and not self.any_airframe:
             return "it may ask for any antenna axis, and the airframe does not reach every one"
         return self.reason_against(scenario)

@@ -2,26 +2,41 @@
 
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.api import best_axis, compare, solve
-from nullpose.solve.array import solve_array
-from nullpose.solve.array_solution import ArraySolution, ArrayStats
+from nullpose.solve.array import ArrayDetails, solve_array
 from nullpose.solve.certificate_from_proof import certificate_of, require_certificate, verified
 from nullpose.solve.compiling import announce_compiling
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, default_gap, default_gap_of
 from nullpose.solve.many import ManySolutions, solve_many
+from nullpose.solve.options import (
+    NODE_LIMIT,
+    TIME_LIMIT_S,
+    SolveKeywords,
+    SolveOptions,
+    default_gap,
+    default_gap_of,
+)
+from nullpose.solve.result import Objective, Result, Stats, Status
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.solution import Objective, Solution, Stats, Status
+
+Solution = Result
+"""An older name of what a solve returns."""
+
+ArraySolution = Result
+"""Likewise, of an array."""
 
 __all__ = [
     "NODE_LIMIT",
     "PAPER_SCHEMES",
     "TIME_LIMIT_S",
+    "ArrayDetails",
     "ArraySolution",
-    "ArrayStats",
     "ManySolutions",
     "Objective",
+    "Result",
     "Rigour",
     "Scheme",
     "Solution",
+    "SolveKeywords",
+    "SolveOptions",
     "Stats",
     "Status",
     "announce_compiling",

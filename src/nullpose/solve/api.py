@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,17 +13,15 @@ from numpy.typing import ArrayLike
 from nullpose.certificate import claimed_axes
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
+from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
 from nullpose.scenario import Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
-from nullpose.solve.objective import objective_of
-from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
+from nullpose.solve.result import Result, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.solution import Solution, Stats, Status
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["best_axis", "compare", "solve"]
@@ -33,15 +31,10 @@ def solve(
     scenario: Scenario,
     scheme: Scheme | str = Scheme.OPTIMUM,
     *,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    threads: int | None = None,
-    certify: bool = True,
-    seed: int = 0,
     null_jammer: str | None = None,
     on_progress: Callable[[float, int], None] | None = None,
-) -> Solution:
+    **options: Unpack[SolveKeywords],
+) -> Result:
     """Return the best pose for a scenario under a scheme, and a bound that no pose exceeds.
 
     Maximises what the scenario asks for, the smallest SINR over the nodes (paper eq. 2.2), the smallest
@@ -53,17 +46,10 @@ def solve(
     Args:
         scenario: what to solve.
         scheme: one of :class:`Scheme`, or its name.
-        gap: relative gap between bound and value at which the proof is done; without it
-            :func:`default_gap` of the number of nodes, each counted once for every eavesdropper. A rate
-            below 1 bit/s/Hz is proved to so much of itself, one beyond to so many bits/s/Hz.
-        time_limit_s: seconds after which the proof stops.
-        node_limit: boxes after which the proof stops.
-        threads: of a long proof at most; None for one for each processor. With one, and no time limit in the
-            way, the answer is the same on every machine.
-        certify: whether to prove anything; without it the search alone is run, more thoroughly.
-        seed: seed of the multistart, a whole number of at least 0; equal seeds give equal answers.
         null_jammer: zero interference only: the jammer to null; without it, each is tried.
         on_progress: called now and then during the proof with the gap so far and the boxes examined.
+        options: those of :class:`SolveOptions`: ``gap``, ``time_limit_s``, ``node_limit``, ``threads``,
+            ``certify`` and ``seed``.
 
     Raises:
         UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
@@ -71,36 +57,25 @@ def solve(
     """
     scheme = as_scheme(scheme)
     scheme.require_applicable(scenario)
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise UsageError(f"seed: given {seed!r}; allowed: a whole number of at least 0")
     if null_jammer is not None and not scheme.record.nulls_a_jammer:
         nulling = ", ".join(each.value for each in Scheme if each.record.nulls_a_jammer)
         raise UsageError(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
-    target = default_gap_of(scenario) if gap is None else gap
-    limits = Limits(
-        gap=target,
-        time_limit_s=time_limit_s,
-        node_limit=node_limit,
-        threads=threads,
-        of_rate=scenario.objective == "secrecy-rate",
-    )
-    effort = Effort(seed=seed, limits=limits if certify else None, on_progress=on_progress)
+    asked = SolveOptions(**options, on_progress=on_progress).of(scenario)
     began = time.perf_counter()
-    outcome = solve_scheme(scenario, scheme.record, effort, null_jammer)
+    outcome = solve_scheme(scenario, scheme.record, asked, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
-    objective = objective_of(scenario, links, outcome.upper_bound)
-    if outcome.proofs and claimed_axes(scenario, scheme, null_jammer) is not None:
-        objective = replace(objective, rigour=Rigour.VERIFIABLE)
+    has_certificate = bool(outcome.proofs) and claimed_axes(scenario, scheme, null_jammer) is not None
+    rigour = Rigour.VERIFIABLE if has_certificate else Rigour.FLOATING_POINT
     status = _status(outcome)
-    return Solution(
+    return Result(
         scenario=scenario,
         scheme=scheme,
         status=status,
         reason=outcome.reason if status is not Status.CERTIFIED else "",
-        objective=objective,
+        objective=objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour),
         pose=pose,
         links=links,
         stats=Stats(
@@ -109,7 +84,7 @@ def solve(
             evaluations=outcome.incumbent.evaluations,
             boxes=outcome.nodes,
         ),
-        provenance=provenance(seed) | ({"gap": target} if certify else {}),
+        provenance=provenance(asked.seed) | asked.settings,
         note=outcome.incumbent.note,
         null_jammer=null_jammer,
         proofs=outcome.proofs,
@@ -120,13 +95,9 @@ def compare(
     scenario: Scenario,
     *,
     schemes: Sequence[Scheme | str] = PAPER_SCHEMES,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
-) -> tuple[Solution, ...]:
+    **options: Unpack[SolveKeywords],
+) -> tuple[Result, ...]:
     """Return the solutions of several schemes for one scenario, those without meaning here left out.
 
     After an interrupt during a proof the remaining schemes are solved without one.
@@ -134,12 +105,8 @@ def compare(
     Args:
         scenario: nodes, jammers, receiver and airspace.
         schemes: the schemes, in order.
-        gap: as for :func:`solve`.
-        time_limit_s: seconds after which each proof stops.
-        node_limit: boxes after which each proof stops.
-        certify: whether to prove anything.
-        seed: seed of each multistart.
         on_progress: called with how many are done and how many there are.
+        options: as for :func:`solve`.
 
     Raises:
         UsageError: an unknown scheme, a bad seed or limit.
@@ -148,17 +115,10 @@ def compare(
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
-        solution = solve(
-            scenario,
-            scheme,
-            gap=gap,
-            time_limit_s=time_limit_s,
-            node_limit=node_limit,
-            certify=certify,
-            seed=seed,
-        )
+        solution = solve(scenario, scheme, **options)
         solutions.append(solution)
-        certify = certify and solution.reason != INTERRUPT
+        if solution.interrupted:
+            options["certify"] = False
         if on_progress is not None:
             on_progress(done, len(applicable))
     return tuple(solutions)
@@ -196,8 +156,8 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         kernel(family.arrays, position, axis)
     else:
         here = replace(family, low_m=position, high_m=position, **_NO_BORDERS)
-        limits = Limits(gap=1e-8, node_limit=_AXIS_NODES)
-        axis = solve_and_prove(here, [AxisField.within(*band)], Effort(limits=limits)).incumbent.axis
+        options = SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
+        axis = solve_and_prove(here, [AxisField.within(*band)], options).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 
 

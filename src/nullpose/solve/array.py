@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Unpack, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
+from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, to_db
 from nullpose.physics.array import (
     analogue_sinr,
@@ -21,21 +23,68 @@ from nullpose.physics.array import (
 from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
 from nullpose.solve.array_hunt import ArrayHunt
-from nullpose.solve.array_solution import ArraySolution, ArrayStats, Combining
 from nullpose.solve.array_task import ArrayTask
-from nullpose.solve.limits import Limits, default_gap
-from nullpose.solve.objective import Objective, objective_of
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.solution import Status
+from nullpose.solve.result import Objective, Result, Stats, Status, objective_of
 
-__all__ = ["COMBININGS", "solve_array"]
+__all__ = ["COMBININGS", "ArrayDetails", "solve_array"]
 
 FloatArray = NDArray[np.float64]
 
-COMBININGS: tuple[Combining, ...] = ("digital", "analogue")
+Combining = Literal["digital", "analogue"]
+"""Each node with its own weights, or one beam of phase shifters for all nodes."""
+
+COMBININGS: tuple[Combining, ...] = get_args(Combining)
 """The ways to combine the elements."""
 
 _WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ArrayDetails:
+    """How an array's elements are placed and combined.
+
+    Args:
+        combining: ``"digital"`` (each node has its own weights) or ``"analogue"`` (one beam for all).
+        elements: number of dipoles.
+        layout: ``"linear"`` or ``"circular"``.
+        spacing_wavelengths: distance between neighbours, in wavelengths.
+        weights: what each element is multiplied by (its conjugate), of unit length: (n_nodes, K) digital,
+            (K,) analogue; complex, read-only.
+    """
+
+    combining: Combining
+    elements: int
+    layout: str
+    spacing_wavelengths: float
+    weights: NDArray[np.complex128]
+
+    def __post_init__(self) -> None:
+        weights = np.array(self.weights, dtype=complex)
+        weights.flags.writeable = False
+        object.__setattr__(self, "weights", weights)
+
+    @property
+    def label(self) -> str:
+        """The name of the case for tables, as in "array of 4, digital"."""
+        return f"array of {self.elements}, {self.combining}"
+
+    @property
+    def phases_rad(self) -> NDArray[np.float64]:
+        """The phases of the weights, shape as ``weights``, radians."""
+        return np.asarray(np.angle(self.weights))
+
+    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+        """Return the array as plain data for JSON; a weight is [real part, imaginary part].
+
+        Args:
+            objective: not needed here.
+        """
+        weights = np.stack([self.weights.real, self.weights.imag], axis=-1).tolist()
+        names = ("elements", "layout", "spacing_wavelengths", "combining")
+        stated = {name: getattr(self, name) for name in names}
+        return {"array": stated | {"weights": weights}}
 
 
 def solve_array(
@@ -45,10 +94,8 @@ def solve_array(
     elements: int | None = None,
     layout: str | None = None,
     spacing_wavelengths: float | None = None,
-    gap: float | None = None,
-    certify: bool = True,
-    seed: int = 0,
-) -> ArraySolution:
+    **options: Unpack[SolveKeywords],
+) -> Result:
     """Return the best position, yaw and combining of an array of upright dipoles on a level vehicle.
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Digital:
@@ -65,10 +112,7 @@ def solve_array(
         elements: number of dipoles; the scenario's if left out, as the next two.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
-        gap: relative gap between bound and value at which the proof is done; without it
-            :func:`nullpose.solve.default_gap` of the number of nodes.
-        certify: whether to prove anything; without it there are searches alone.
-        seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
+        options: as for :func:`nullpose.solve`; limits of time and boxes are not consulted.
 
     Raises:
         UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
@@ -77,37 +121,33 @@ def solve_array(
     """
     kind = _combining(combining)
     array = _array(scenario, elements, layout, spacing_wavelengths)
-    if scenario.objective != "min-sinr":
+    if scenario.objective_record.transmits:
         raise UsageError(
-            f"array: given a scenario with objective {scenario.objective!r}; allowed: min-sinr; "
-            "arrays are not there for other objectives"
+            f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
+            "under which the drone receives; arrays are not there for others"
         )
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise UsageError(f"seed: given {seed!r}; allowed: a whole number of at least 0")
-    target = default_gap(len(scenario.nodes)) if gap is None else Limits(gap=gap).gap
+    asked = SolveOptions(**options).of(scenario)
+    seed, target = asked.seed, asked.target
     began = time.perf_counter()
     task = ArrayTask.of(scenario, array, shared=kind == "analogue")
-    if not certify:
+    if not asked.certify:
         hunt, bound = _searched(ArrayHunt(task, seed)), None
     else:
         hunt, bound = _digital(task, target, seed) if kind == "digital" else _analogue(task, target, seed)
     state = hunt.state
     pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
     weights, links = _evaluated(scenario, array, kind, pose, state[4:])
-    objective = objective_of(scenario, links, None if bound is None else bound.value)
+    value = Quantity.of(scenario).least(links)
+    objective = objective_of(scenario, value, None if bound is None else bound.value)
     status = _status(objective, target)
-    return ArraySolution(
+    return Result(
         scenario=scenario,
-        combining=kind,
-        elements=array.elements,
-        layout=array.layout,
-        spacing_wavelengths=array.spacing_wavelengths,
+        scheme=f"array-{kind}",
         status=status,
         objective=objective,
         pose=pose,
-        weights=weights,
         links=links,
-        stats=ArrayStats(
+        stats=Stats(
             wall_s=time.perf_counter() - began,
             starts=hunt.starts,
             evaluations=hunt.evaluations,
@@ -115,8 +155,15 @@ def solve_array(
             searches=len(hunt.ends),
             agreeing=hunt.agreeing,
         ),
-        provenance=provenance(seed) | ({"gap": target} if certify else {}),
+        provenance=provenance(seed) | asked.settings,
         reason=_reason(kind) if status is Status.GAP_NOT_REACHED else "",
+        details=ArrayDetails(
+            combining=kind,
+            elements=array.elements,
+            layout=array.layout,
+            spacing_wavelengths=array.spacing_wavelengths,
+            weights=weights,
+        ),
     )
 
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField
 from nullpose.solve.array_task import ArrayTask, silent
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
 __all__ = ["ArrayBound", "array_bound"]
@@ -96,8 +95,8 @@ def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
     family = task.family
     if len(task.base) > 1:
         family = silent(family)
-    limits = Limits(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
-    outcome = solve_and_prove(family, [AxisField.vertical()], Effort(limits=limits))
+    options = SolveOptions(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
+    outcome = solve_and_prove(family, [AxisField.vertical()], options)
     assert outcome.upper_bound is not None, "a proof was asked for"
     value = len(task.base) * outcome.upper_bound * (1.0 + _ROUNDING)
     return ArrayBound(value=value, boxes=outcome.nodes)

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
-from nullpose.solve.effort import Effort
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.limits import Limits
-from nullpose.solve.multistart import landmarks, shift_of
+from nullpose.solve.multistart import landmarks, search_settings, shift_of
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import ready
 from nullpose.solve.proof import DIRECT_NODES, INSIDE, BudgetUsed, late_nodes, prove
 
@@ -141,17 +140,16 @@ class Batch:
         together.flags.writeable = False  # as a family's own, so that kernels have one type of it
         return together
 
-    def solve_and_prove(self, field: AxisField, effort: Effort, known: BatchOutcome) -> None:
-        """Find every family's best pose under an axis field, and prove it if the effort asks for a proof.
+    def solve_and_prove(self, field: AxisField, options: SolveOptions, known: BatchOutcome) -> None:
+        """Find every family's best pose under an axis field, and prove it if that is asked for.
 
         Args:
             field: the axes.
-            effort: what each family may cost.
+            options: what is asked for, and what each family may cost.
             known: what is known before; what is found is put there.
         """
         from nullpose.solve.kernels.many import solve_and_prove_many
 
-        limits = effort.limits
         ready(self.families[0], field)
         solve_and_prove_many(
             self._shape,
@@ -160,10 +158,10 @@ class Batch:
             self._keep_out,
             field.arrays,
             self._landmarks,
-            shift_of(effort.seed),
-            effort.search,
-            -1.0 if limits is None else INSIDE * limits.gap,
-            (1, 1, 1) if limits is None else self._budget(limits),
+            shift_of(options.seed),
+            search_settings(options.certify),
+            INSIDE * options.target if options.certify else -1.0,
+            self._budget(options) if options.certify else (1, 1, 1),
             known.position_m,
             known.axis,
             known.multipliers,
@@ -172,15 +170,15 @@ class Batch:
             known.boxes,
             known.code,
         )
-        if limits is not None:
+        if options.certify:
             for one in np.flatnonzero(known.code == _OPEN):
-                self._go_on(int(one), field, limits, known)
+                self._go_on(int(one), field, options, known)
 
-    def _budget(self, limits: Limits) -> tuple[int, int, int]:
+    def _budget(self, options: SolveOptions) -> tuple[int, int, int]:
         """Return the nodes of the two tries, and of all."""
-        return late_nodes(self.families[0]), DIRECT_NODES, limits.node_limit
+        return late_nodes(self.families[0]), DIRECT_NODES, options.node_limit
 
-    def _go_on(self, one: int, field: AxisField, limits: Limits, known: BatchOutcome) -> None:
+    def _go_on(self, one: int, field: AxisField, options: SolveOptions, known: BatchOutcome) -> None:
         """Give a proof that is longer than most its stages and its clock."""
         found = Incumbent(
             position_m=known.position_m[one].copy(),
@@ -191,7 +189,7 @@ class Batch:
             evaluations=0,
         )
         used = BudgetUsed(nodes=int(known.boxes[one]), direct=True)
-        proof = prove(self.families[one], field, found, limits, used=used)
+        proof = prove(self.families[one], field, found, options, used=used)
         known.position_m[one], known.axis[one] = proof.incumbent.position_m, proof.incumbent.axis
         known.multipliers[one], known.log_value[one] = proof.incumbent.multipliers, proof.incumbent.log_value
         known.bound[one] = min(known.bound[one], proof.upper_bound)

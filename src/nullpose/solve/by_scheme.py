@@ -12,8 +12,8 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.schemes import SchemeRecord
-from nullpose.solve.effort import Effort
 from nullpose.solve.incumbent import Incumbent
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.position_search import search_positions
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
@@ -23,14 +23,14 @@ FloatArray = NDArray[np.float64]
 
 
 def solve_scheme(
-    scenario: Scenario, record: SchemeRecord, effort: Effort, null_jammer: str | None
+    scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None
 ) -> Outcome:
-    """Return the best pose under a scheme, with a proof if the effort allows for one.
+    """Return the best pose under a scheme, with a proof if one is asked for.
 
     Args:
         scenario: what to solve; one in which the scheme has a meaning.
         record: what the scheme states of itself.
-        effort: what it may cost.
+        options: what is asked for.
         null_jammer: for a scheme that nulls a jammer: which; without it each is tried and the best kept.
 
     Raises:
@@ -42,18 +42,18 @@ def solve_scheme(
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
     family, fields = build_family(scenario), record.fields(scenario, null_jammer)
     outcome = (
-        _by_values(scenario, record, family, effort)
+        _by_values(scenario, record, family, options)
         if fields is None
-        else solve_and_prove(family, list(fields.values()), effort)
+        else solve_and_prove(family, list(fields.values()), options)
     )
     note = record.note(scenario, tuple(fields or ()), outcome.chosen)
     return replace(outcome, incumbent=replace(outcome.incumbent, note=note))
 
 
-def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, effort: Effort) -> Outcome:
+def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, options: SolveOptions) -> Outcome:
     """Return what a search by values finds, under the bound of a free axis if the scheme's poses have one."""
     axis_at, log_value = _measures(scenario, record, family)
-    position_m, value, starts, evaluations = search_positions(log_value, family, seed=effort.seed)
+    position_m, value, starts, evaluations = search_positions(log_value, family, seed=options.seed)
     ratios = len(family.numerator_point)
     found = Incumbent(
         position_m=position_m,
@@ -65,9 +65,9 @@ def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, effort:
     )
     if record.ratios_at is not None:
         return Outcome(incumbent=found, reason=record.unproved)
-    if effort.limits is None:
+    if not options.certify:
         return Outcome(incumbent=found)
-    relaxed = solve_and_prove(family, [AxisField.free()], effort)
+    relaxed = solve_and_prove(family, [AxisField.free()], options)
     reason = relaxed.reason or record.unproved  # an interrupt or a limit comes first
     return Outcome(incumbent=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=reason)
 

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
-from nullpose.certificate.pose_value import antenna_axis, smallest_ratio
+from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve.proof import Proof
+from nullpose.solve.result import Result
 from nullpose.solve.rigour import Rigour, bound_above
-from nullpose.solve.solution import Solution
 
 __all__ = ["certificate_of", "require_certificate", "verified"]
 
@@ -42,7 +41,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     return fields
 
 
-def certificate_of(solution: Solution) -> Certificate:
+def certificate_of(solution: Result) -> Certificate:
     """Return the certificate of a solution: everything that a verifier needs to check its bound.
 
     Args:
@@ -58,7 +57,7 @@ def certificate_of(solution: Solution) -> Certificate:
     value, bound = _ratios(solution)
     return Certificate(
         scenario=solution.scenario,
-        scheme=solution.scheme.value,
+        scheme=str(solution.scheme),
         null_jammer=solution.null_jammer,
         value=value,
         upper_bound=bound,
@@ -74,7 +73,7 @@ def certificate_of(solution: Solution) -> Certificate:
     )
 
 
-def verified(solution: Solution, on_progress: Callable[[int, int], None] | None = None) -> Solution:
+def verified(solution: Result, on_progress: Callable[[int, int], None] | None = None) -> Result:
     """Return a solution after the verifier has checked its certificate: its rigour is the verdict.
 
     It is ``verified``; or, should the verifier reject what the solver proved in floating point,
@@ -96,7 +95,7 @@ def verified(solution: Solution, on_progress: Callable[[int, int], None] | None 
     )
 
 
-def _ratios(solution: Solution) -> tuple[float, float]:
+def _ratios(solution: Result) -> tuple[float, float]:
     """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
     objective = solution.objective
     if not objective.quantity.is_rate:
@@ -104,8 +103,7 @@ def _ratios(solution: Solution) -> tuple[float, float]:
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
-    position = [Fraction(float(x)) for x in pose.position_m]
-    value = float(smallest_ratio(build_family(solution.scenario), position, axis))
+    value = float(smallest_ratio(build_family(solution.scenario), exact(pose.position_m), axis))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))
 
 

@@ -6,6 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,10 @@ from nullpose.family import AxisField, Family, build_family
 from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solve.batch import Batch, BatchOutcome, same_shape
-from nullpose.solve.effort import Effort
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits, default_gap_of
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.result import Status
 from nullpose.solve.rigour import Rigour, bound_above
-from nullpose.solve.solution import Status
 
 __all__ = ["NOWHERE", "ManySolutions", "solve_many"]
 
@@ -99,13 +99,8 @@ def solve_many(
     scenarios: Sequence[Scenario],
     *,
     airframes: Sequence[Airframe | None] | None = None,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    threads: int | None = None,
-    certify: bool = True,
-    seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
 ) -> ManySolutions:
     """Return the best poses of many scenes, each for one airframe or for several, with their bounds.
 
@@ -118,37 +113,27 @@ def solve_many(
         scenarios: what to solve; the smallest SINR or margin, not a secrecy rate, and one dipole each.
         airframes: the vehicles to try in every scene, None for an omnidirectional one; each scenario's own
             without them.
-        gap: as for :func:`solve`.
-        time_limit_s: seconds after which a long proof stops; proofs of the usual size are not interrupted.
-        node_limit: boxes after which each proof stops.
-        threads: of a long proof at most; None for one for each processor.
-        certify: whether to prove anything.
-        seed: seed of each multistart.
         on_progress: called now and then with how many scenes are done and how many there are.
+        options: as for :func:`solve`; proofs of the usual size are not interrupted by a time limit.
 
     Raises:
         UsageError: a scenario of another kind, no scenario, a bad seed or limit.
         KeyboardInterrupt: Ctrl-C; nothing is returned.
     """
-    _check(scenarios, seed)
+    asked = SolveOptions(**options)
+    _check(scenarios)
     if airframes is not None and not len(airframes):
         raise UsageError("airframes: given none; allowed: one or more")
     results = ManySolutions.blank(len(scenarios), 1 if airframes is None else len(airframes))
     done = 0
     for indices, families in _groups(scenarios, own=airframes is None):
         first = scenarios[indices[0]]
-        limits = Limits(
-            gap=default_gap_of(first) if gap is None else gap,
-            time_limit_s=time_limit_s,
-            node_limit=node_limit,
-            threads=threads,
-        )
-        effort = Effort(seed=seed, limits=limits if certify else None)
+        of_group = asked.of(first)
         vehicles = [first.airframe] if airframes is None else airframes
         for start in range(0, len(indices), _BLOCK):
             some = np.array(indices[start : start + _BLOCK])
             block = [scenarios[index] for index in some]
-            for column, known in _solved(families[start : start + _BLOCK], vehicles, effort):
+            for column, known in _solved(families[start : start + _BLOCK], vehicles, of_group):
                 _fill(block, some, vehicles[column], known, column, results)
             done += len(some)
             if on_progress is not None:
@@ -156,13 +141,11 @@ def solve_many(
     return results
 
 
-def _check(scenarios: Sequence[Scenario], seed: int) -> None:
+def _check(scenarios: Sequence[Scenario]) -> None:
     if not len(scenarios):
         raise UsageError("scenarios: given none; allowed: one or more")
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise UsageError(f"seed: given {seed!r}; allowed: a whole number of at least 0")
     for index, scenario in enumerate(scenarios):
-        if scenario.objective == "secrecy-rate" or scenario.array is not None:
+        if scenario.objective_record.transmits or scenario.array is not None:
             kind = "an array" if scenario.array is not None else "a secrecy rate"
             verb = "solve_array" if scenario.array is not None else "solve"
             raise UsageError(
@@ -183,7 +166,7 @@ def _groups(scenarios: Sequence[Scenario], *, own: bool) -> list[tuple[list[int]
 
 
 def _solved(
-    families: list[Family], vehicles: Sequence[Airframe | None], effort: Effort
+    families: list[Family], vehicles: Sequence[Airframe | None], options: SolveOptions
 ) -> Iterator[tuple[int, BatchOutcome]]:
     """Yield what each vehicle reaches in scenes of one shape, the one with most freedom first."""
     batch = Batch(families)
@@ -196,7 +179,7 @@ def _solved(
             for wider, larger in solved.items():
                 if wider[0] <= band[0] and band[1] <= wider[1]:
                     known.learn_from(larger, band)
-            batch.solve_and_prove(AxisField.within(*band), effort, known)
+            batch.solve_and_prove(AxisField.within(*band), options, known)
             if INTERRUPT in known.reason:
                 raise KeyboardInterrupt
             solved[band] = known

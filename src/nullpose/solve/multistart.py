@@ -23,6 +23,7 @@ __all__ = [
     "SearchSettings",
     "landmarks",
     "multistart",
+    "search_settings",
     "shift_of",
 ]
 
@@ -57,6 +58,15 @@ class SearchSettings(NamedTuple):
     polished: int = 24
     rounds: int = 12
     patience: int = 2
+
+
+def search_settings(proof_follows: bool) -> SearchSettings:
+    """Return how hard to try: lightly if a proof follows, which repairs what the search misses.
+
+    Args:
+        proof_follows: whether one does.
+    """
+    return SearchSettings(coarse=16, polished=2, rounds=2, patience=1) if proof_follows else SearchSettings()
 
 
 def landmarks(family: Family, most: int = 16) -> FloatArray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Task, WorkerPool, processors
 
@@ -83,15 +82,14 @@ class _Run:
         family: Family,
         axis_field: AxisField,
         incumbent: Incumbent,
-        limits: Limits,
-        on_progress: Callable[[float, int], None] | None,
+        limits: SolveOptions,
         used: BudgetUsed,
     ) -> None:
         from nullpose.solve.kernels import branch, node
 
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node = branch, node
-        self.incumbent, self.limits, self.on_progress = incumbent, limits, on_progress
+        self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
         self.deadline = time.perf_counter() + limits.time_limit_s - used.seconds
         self.node_limit = max(1, limits.node_limit - used.nodes)
         self.nodes = 0
@@ -246,9 +244,8 @@ def prove(
     family: Family,
     axis_field: AxisField,
     incumbent: Incumbent,
-    limits: Limits,
+    limits: SolveOptions,
     *,
-    on_progress: Callable[[float, int], None] | None = None,
     used: BudgetUsed | None = None,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
@@ -260,13 +257,12 @@ def prove(
         family: the ratios and their domain.
         axis_field: which axes are allowed.
         incumbent: the incumbent.
-        limits: target gap, time and nodes.
-        on_progress: called now and then with the gap proved so far and the nodes examined; a
-            KeyboardInterrupt during the run ends it with the bound reached.
+        limits: target gap, time, nodes and progress; a KeyboardInterrupt during the run ends it with the
+            bound reached.
         used: what was used of the limits before.
     """
     used = used or BudgetUsed()
-    run = _Run(family, axis_field, incumbent, limits, on_progress, used)
+    run = _Run(family, axis_field, incumbent, limits, used)
     root = run.root()
     leaves = run.by_distance(root)
     target = run.target

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from nullpose.family import AxisField, Family
-from nullpose.solve.effort import Effort
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.multistart import multistart
+from nullpose.solve.multistart import multistart, search_settings
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import ready
 from nullpose.solve.proof import BudgetUsed, Proof, prove
 
@@ -41,35 +41,38 @@ class Outcome:
         return sum(proof.nodes for proof in self.proofs)
 
 
-def solve_and_prove(family: Family, fields: Sequence[AxisField], effort: Effort) -> Outcome:
-    """Return the best pose over the axis fields, with a proof if the effort allows for one.
+def solve_and_prove(family: Family, fields: Sequence[AxisField], options: SolveOptions) -> Outcome:
+    """Return the best pose over the axis fields, with a proof if one is asked for.
 
     Every field is searched; then it is proved of each that it does not beat the best of all.
 
     Args:
         family: the ratios and their domain.
         fields: the axis fields, one or more.
-        effort: what it may cost.
+        options: what is asked for, its gap stated.
 
     Raises:
         SolveError: no pose reaches every node.
     """
-    if effort.limits is not None:
+    if options.certify:
         ready(family, fields[0])  # compiling must not count against the time limit
     began = time.perf_counter()
-    each = [multistart(family, field, seed=effort.seed, settings=effort.search) for field in fields]
+    each = [
+        multistart(family, field, seed=options.seed, settings=search_settings(options.certify))
+        for field in fields
+    ]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
     reason = ""
     for i, field in enumerate(fields):
-        if effort.limits is None:
+        if not options.certify:
             break
         # the level to exclude is that of the best of all; where to look for better poses is this field's
-        least = 0.0 if effort.limits.of_rate else -math.inf  # a rate is never below zero
+        least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
         start = replace(each[i], log_value=max(best.log_value, least))
         used = BudgetUsed(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
-        proof = prove(family, field, start, effort.limits, on_progress=effort.on_progress, used=used)
+        proof = prove(family, field, start, options, used=used)
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:

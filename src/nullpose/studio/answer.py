@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.report.numbers import short
 from nullpose.scenario import Scenario
 from nullpose.solve import Solution, Status

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import build_family
+from nullpose.objectives import Quantity
 from nullpose.physics import (
     antenna_gain,
     objective_value,
     to_db,
 )
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
 from nullpose.studio.events import Field, FieldMap

@@ -129,7 +129,7 @@ def _curve(version: int, rows: dict[tuple[float, str], SweepRow], *, complete: b
 def _row(value: float, solution: Solution) -> SweepRow:
     return SweepRow(
         value=value,
-        scheme=solution.scheme.value,
+        scheme=str(solution.scheme),
         status=solution.status.value,
         objective=solution.objective,
         pose=solution.pose,

@@ -7,7 +7,16 @@ from dataclasses import dataclass
 
 from nullpose.scenario import Airframe, Array, Scenario
 
-__all__ = ["AIRFRAME_CASES", "ARRAY_SIZES", "OMNIDIRECTIONAL", "STATED", "AirframeCase", "cases_of"]
+__all__ = [
+    "AIRFRAME_CASES",
+    "ARRAY_SIZES",
+    "OMNIDIRECTIONAL",
+    "STATED",
+    "AirframeCase",
+    "array_phrase",
+    "cases_of",
+    "mounted_phrase",
+]
 
 OMNIDIRECTIONAL = "omnidirectional"
 """Name of the case that the others are measured against."""
@@ -91,21 +100,44 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     )
 
 
+def mounted_phrase(airframe: Airframe) -> str:
+    """Return a vehicle in a sentence, as in "a 20 degree tilt with the dipole mounted at 45 degrees".
+
+    Args:
+        airframe: any.
+    """
+    tilt, mount = _degrees(airframe)
+    return f"a {tilt} degree tilt with the dipole mounted at {mount} degrees"
+
+
+def array_phrase(elements: int, combining: str) -> str:
+    """Return a vehicle with an array in a sentence.
+
+    Args:
+        elements: of the array.
+        combining: ``"digital"`` or ``"analogue"``.
+    """
+    return f"a level vehicle with an array of {elements} {_COMBINING[combining]}"
+
+
+def _degrees(airframe: Airframe) -> tuple[str, str]:
+    """Return the largest tilt and the angle of the mount."""
+    tilt, mount = (math.degrees(angle) for angle in (airframe.tilt_max_rad, airframe.mount_rad))
+    return f"{round(tilt, 6):g}", f"{round(mount, 6):g}"
+
+
 def _stated(own: Airframe) -> AirframeCase:
-    tilt, mount = (f"{round(math.degrees(angle), 6):g}" for angle in (own.tilt_max_rad, own.mount_rad))
-    return AirframeCase(
-        name=STATED,
-        label=f"file: tilt {tilt}, mount {mount}",
-        phrase=f"the file's vehicle (a {tilt} degree tilt, the dipole mounted at {mount} degrees)",
-        airframe=own,
-    )
+    tilt, mount = _degrees(own)
+    label = f"file: tilt {tilt}, mount {mount}"
+    phrase = f"the file's vehicle ({mounted_phrase(own)})"
+    return AirframeCase(name=STATED, label=label, phrase=phrase, airframe=own)
 
 
 def _array_case(array: Array, elements: int, combining: str) -> AirframeCase:
     return AirframeCase(
         name=f"array-{elements}-{combining}",
         label=f"array of {elements}, {combining}",
-        phrase=f"a level vehicle with an array of {elements} {_COMBINING[combining]}",
+        phrase=array_phrase(elements, combining),
         airframe=_LEVEL,
         array=array.model_copy(update={"elements": elements}),
         combining=combining,

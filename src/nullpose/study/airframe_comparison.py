@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 from nullpose.errors import SolveError
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve import (
     NODE_LIMIT,
@@ -22,7 +22,7 @@ from nullpose.solve import (
     solve,
     solve_array,
 )
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust import guarantee, solve_robust
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
@@ -249,7 +249,7 @@ def compare_airframes(
         SolveError: no pose of the omnidirectional vehicle reaches every node.
     """
     vehicles = cases_of(scenario) if cases is None else tuple(cases)
-    limits = Limits(
+    limits = SolveOptions(
         gap=default_gap_of(scenario) if gap is None else gap, time_limit_s=time_limit_s, node_limit=node_limit
     )
     results: list[AirframeResult] = []
@@ -263,7 +263,11 @@ def compare_airframes(
                 results.append(_dipole_result(case, solution, None if interrupted else limits, certify))
             else:
                 found = solve_array(
-                    case.on(scenario), case.combining, gap=limits.gap, certify=proved is not None, seed=seed
+                    case.on(scenario),
+                    case.combining,
+                    gap=limits.target,
+                    certify=proved is not None,
+                    seed=seed,
                 )
                 results.append(_array_result(case, found))
         except SolveError as error:
@@ -276,16 +280,16 @@ def compare_airframes(
         scenario=scenario,
         results=tuple(results),
         interrupted=interrupted,
-        provenance=provenance(seed) | ({"gap": limits.gap} if certify else {}),
+        provenance=provenance(seed) | ({"gap": limits.target} if certify else {}),
     )
 
 
-def _solved(case: AirframeCase, scenario: Scenario, limits: Limits | None, seed: int) -> Solution:
+def _solved(case: AirframeCase, scenario: Scenario, limits: SolveOptions | None, seed: int) -> Solution:
     if limits is None:
         return solve(case.on(scenario), certify=False, seed=seed)
     return solve(
         case.on(scenario),
-        gap=limits.gap,
+        gap=limits.target,
         time_limit_s=limits.time_limit_s,
         node_limit=limits.node_limit,
         seed=seed,
@@ -307,7 +311,7 @@ def _array_result(case: AirframeCase, solution: ArraySolution) -> AirframeResult
 
 
 def _dipole_result(
-    case: AirframeCase, solution: Solution, limits: Limits | None, certify: bool
+    case: AirframeCase, solution: Solution, limits: SolveOptions | None, certify: bool
 ) -> AirframeResult:
     return AirframeResult(
         case=case,
@@ -319,7 +323,7 @@ def _dipole_result(
     )
 
 
-def _guaranteed(solution: Solution, limits: Limits | None, certify: bool) -> Guaranteed:
+def _guaranteed(solution: Solution, limits: SolveOptions | None, certify: bool) -> Guaranteed:
     """Return what the pose that was found guarantees, and the robust pose unless the work was interrupted."""
     scenario, pose = solution.scenario, solution.pose
     nominal = Quantity.of(scenario).of_ratio(guarantee(scenario, pose.position_m, pose.antenna_axis).lower)

@@ -10,7 +10,7 @@ from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
 from nullpose.scenario import Scenario, apply_overrides
 from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap_of
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import scenarios_along, sweep
 from nullpose.study.table import SweepTable
@@ -38,7 +38,7 @@ class SweepPlan:
     schemes: tuple[Scheme, ...]
     folder: Path
     seed: int
-    limits: Limits | None
+    limits: SolveOptions | None
 
     def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
         """Return what the sweep finds.
@@ -52,7 +52,7 @@ class SweepPlan:
             self.path,
             self.values,
             schemes=self.schemes,
-            gap=None if limits is None else limits.gap,
+            gap=None if limits is None else limits.target,
             time_limit_s=TIME_LIMIT_S if limits is None else limits.time_limit_s,
             node_limit=NODE_LIMIT if limits is None else limits.node_limit,
             certify=limits is not None,
@@ -107,7 +107,7 @@ def plan_sweep(
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
     wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
     target = default_gap_of(base) if gap is None else gap
-    limits = Limits(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
+    limits = SolveOptions(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
     path = varied[0].strip()
     scenarios = scenarios_along(base, path, values)  # a fault shows before a folder is made
     if schemes is not None:

@@ -130,7 +130,7 @@ def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
 def _row(value: float, solution: Solution) -> SweepRow:
     return SweepRow(
         value=value,
-        scheme=solution.scheme.value,
+        scheme=str(solution.scheme),
         status=solution.status.value,
         objective=solution.objective,
         pose=solution.pose,

@@ -12,7 +12,7 @@ import pytest
 from benchmarks.mutations.changes import CLASSES, forged, spoiled
 from benchmarks.mutations.truth import Data
 
-from nullpose.certificate import Certificate, Leaves, certificate_text, parse_certificate, verify
+from nullpose.certificate import Certificate, certificate_text, parse_certificate, verify
 from nullpose.errors import CertificateError, ScenarioError
 from nullpose.scenario import Airframe, Airspace, Eavesdropper, Scenario, Transmitter
 
@@ -152,8 +152,7 @@ def test_leaves_are_needed_one_and_all(sound: dict[str, Certificate]) -> None:
         rng = np.random.default_rng(5)
         for row in rng.choice(len(tree.leaves), size=min(15, len(tree.leaves)), replace=False):
             kept = np.delete(np.arange(len(tree.leaves)), row)
-            columns = {name: getattr(tree.leaves, name)[kept] for name in Leaves.__slots__ if name != "mixes"}
-            leaves = Leaves(mixes=tree.leaves.mixes, **columns)
+            leaves = tree.leaves.chosen(kept)
             verdict = verify(replace(one, trees=(replace(tree, leaves=leaves), *one.trees[1:])))
             assert not verdict.proved
             assert "do not cover" in verdict.message

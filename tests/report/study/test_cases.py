@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from nullpose.report.study.cases import nominal_of, reference_of, report_cases, whole_of
+from nullpose.report.study.cases import report_cases
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.monte_carlo import StudySpec
 
@@ -87,25 +87,22 @@ def test_what_others_are_measured_against(specify: Specify) -> None:
         ((free, tilt, flat), "level-horizontal"),
         ((free, tilt), "free"),
     ):
-        cases = report_cases(specify(*given))
-        reference = reference_of(cases)
-        assert reference is not None
-        assert reference.name == expected
-        assert reference_of(cases, robust=True) is None
-        whole = whole_of(cases)
-        assert whole is not None
-        assert whole.name == "free"
+        sure = {"name": "sure", "airframe": "tilt-30", "robust": True}
+        *cases, robust = report_cases(specify(*given, sure))
+        assert {given[case.reference]["name"] for case in cases} == {expected}
+        assert {given[case.whole]["name"] for case in cases if case.whole is not None} == {"free"}
+        assert (robust.reference, robust.whole) == (robust.place, None)
 
 
 def test_robust_cases_have_their_nominal_ones(specify: Specify) -> None:
     """The same vehicle without errors; none where it was not solved, or only by another scheme."""
-    spec = specify(
-        {"name": "r", "robust": True},
-        {"name": "t", "airframe": "tilt-10", "robust": True},
-        {"name": "z", "scheme": "zero-interference"},
-        {"name": "n"},
+    cases = report_cases(
+        specify(
+            {"name": "r", "robust": True},
+            {"name": "t", "airframe": "tilt-10", "robust": True},
+            {"name": "z", "scheme": "zero-interference"},
+            {"name": "n"},
+        )
     )
-    cases = report_cases(spec)
-    found = [nominal_of(spec, cases, case) for case in cases]
-    assert [None if case is None else case.name for case in found] == ["n", None, None, None]
+    assert [case.nominal for case in cases] == [3, None, None, None]
     assert cases[0].robust

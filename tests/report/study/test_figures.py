@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 
 from nullpose.report.study.figures import figures_of
-from nullpose.report.study.figures.curves import draw_along, draw_effort
-from nullpose.report.study.figures.distributions import draw_distributions, draw_outage
+from nullpose.report.study.figures.curves import (
+    draw_along,
+    draw_distributions,
+    draw_effort,
+    draw_outage,
+    step_curve,
+)
 from nullpose.report.study.figures.intervals import draw_costs, draw_gains, draw_shares
-from nullpose.report.study.figures.panels import looks_of, step_curve
+from nullpose.report.study.figures.panels import looks_of
 from nullpose.report.study.statistics import band_half_width
 from nullpose.report.study.summary import Summary
 
@@ -123,6 +128,6 @@ def test_curves_of_very_many_scenes_are_thin() -> None:
     numbers = np.random.default_rng(1).normal(size=50_000)
     across, shares = step_curve(numbers)
     assert len(across) <= 1000
-    assert (across[0], across[-1], shares[-1]) == (numbers.min(), numbers.max(), 1.0)
-    assert list(across[:5]) == list(np.sort(numbers)[:5])
+    assert (across[0], across[-1], shares[0], shares[-1]) == (numbers.min(), numbers.max(), 0.0, 1.0)
+    assert list(across[1:6]) == list(np.sort(numbers)[:5])
     assert math.isclose(float(np.interp(0.0, across, shares)), 0.5, abs_tol=0.01)

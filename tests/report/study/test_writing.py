@@ -191,7 +191,7 @@ def test_solved_studies(tmp_path: Path) -> None:
     sure = report_study(tmp_path / "robust")
     assert (tmp_path / "robust" / "report" / "figures" / "robustness.png").exists()
     assert (sure.summary.frame["cost_median"].dropna() > 0.0).all()
-    assert any("2 of which nothing is proved" in note for note in sure.notes)
+    assert any("2 best found" in note for note in sure.notes)
     rate = report_study(tmp_path / "secret", requirement_bps_hz=0.5)
     assert "bits/s/Hz" in rate.answer
     assert "value_db" not in pd.read_csv(tmp_path / "secret" / "report" / "study.csv").columns

@@ -7,9 +7,8 @@ import numpy as np
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve.batch import Batch, BatchOutcome
-from nullpose.solve.effort import Effort
 from nullpose.solve.kernels.many import OPEN, PROVED
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
 
@@ -32,7 +31,7 @@ def some_families(count: int):
 
 def test_the_loop_is_the_run_for_each() -> None:
     """The same pose, value, bound and number of boxes, to the last digit."""
-    families, effort = some_families(6), Effort(limits=Limits(gap=1e-4, threads=1))
+    families, effort = some_families(6), SolveOptions(gap=1e-4, threads=1)
     for field in (AxisField.free(), AxisField.within(0.0, 0.0), AxisField.within(0.0, 0.1)):
         known = BatchOutcome.blank(6, 2)
         Batch(families).solve_and_prove(field, effort, known)
@@ -48,7 +47,7 @@ def test_the_loop_is_the_run_for_each() -> None:
 def test_what_is_settled_is_left_alone() -> None:
     """Proved families are not touched, and a known bound close enough proves without a box."""
     families = some_families(3)
-    effort = Effort(limits=Limits(gap=1e-3))
+    effort = SolveOptions(gap=1e-3)
     known = BatchOutcome.blank(3, 2)
     known.code[0] = PROVED
     batch = Batch(families)

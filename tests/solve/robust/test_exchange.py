@@ -12,7 +12,7 @@ from nullpose.family import AxisField
 from nullpose.family.robust import BindingCase
 from nullpose.physics.error_case import ErrorCase, ratios_under
 from nullpose.scenario import Scenario
-from nullpose.solve.limits import Limits
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.robust.exchange import Exchange
 from nullpose.solve.robust.inner import Inner
 
@@ -20,7 +20,7 @@ from nullpose.solve.robust.inner import Inner
 @pytest.fixture(scope="module")
 def exchange(strong: Scenario) -> Exchange:
     """Returns an exchange whose search has ended."""
-    exchange = Exchange(Inner(strong), AxisField.free(), 0, Limits(gap=1e-2))
+    exchange = Exchange(Inner(strong), AxisField.free(), SolveOptions(gap=1e-2))
     exchange.search(time.perf_counter() + 60.0)
     return exchange
 
@@ -85,7 +85,7 @@ def test_a_general_solver_finds_no_better_promise(strong: Scenario, exchange: Ex
 def test_cases_are_kept_once(paper: Callable) -> None:
     """A case that is in the family already is not added again."""
     scene = paper(1.0)
-    exchange = Exchange(Inner(scene), AxisField.free(), 0, Limits(gap=1e-2))
+    exchange = Exchange(Inner(scene), AxisField.free(), SolveOptions(gap=1e-2))
     none = ErrorCase.none(scene)
     assert not exchange.add([BindingCase(0, none), BindingCase(1, none)])
     assert len(exchange.cases) == 2
@@ -94,10 +94,10 @@ def test_cases_are_kept_once(paper: Callable) -> None:
 def test_levels_of_power_ratios_and_of_rates(paper: Callable) -> None:
     """A level is the gap above a ratio; of rates, above the rate, and for a rate of zero by a little."""
     inner = Inner(paper(1.0))
-    of_ratio = Exchange(inner, AxisField.free(), 0, Limits(gap=1e-2))
+    of_ratio = Exchange(inner, AxisField.free(), SolveOptions(gap=1e-2))
     assert of_ratio.level(0.25) == pytest.approx(0.2525, rel=1e-14)
     assert of_ratio.level(0.25, 0.5) == pytest.approx(0.25125, rel=1e-14)
-    of_rate = Exchange(inner, AxisField.free(), 0, Limits(gap=1e-2, of_rate=True))
+    of_rate = Exchange(inner, AxisField.free(), SolveOptions(gap=1e-2, of_rate=True))
     assert math.log2(of_rate.level(2.0**0.5)) == pytest.approx(0.5 * 1.01, rel=1e-12)
     assert math.log2(of_rate.level(8.0)) == pytest.approx(3.01, rel=1e-12)
     assert math.log2(of_rate.level(0.5)) == pytest.approx(1e-5, rel=1e-9)

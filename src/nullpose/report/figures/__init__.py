@@ -2,14 +2,12 @@
 
 from nullpose.report.figures.airframes import draw_airframes
 from nullpose.report.figures.arrays import draw_array
-from nullpose.report.figures.figure2 import draw_figure2
 from nullpose.report.figures.poses import draw_pose, draw_poses, draw_robust
 from nullpose.report.figures.sweep import draw_sweep
 
 __all__ = [
     "draw_airframes",
     "draw_array",
-    "draw_figure2",
     "draw_pose",
     "draw_poses",
     "draw_robust",

@@ -6,7 +6,7 @@ import math
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.airframes import answer_lines
 from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
 from nullpose.report.numbers import share_text

@@ -7,8 +7,8 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
 from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.scene import (
     ALONE,
@@ -24,7 +24,7 @@ from nullpose.report.figures.scene import (
 from nullpose.report.figures.style import house_style
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS
-from nullpose.report.robust import error_words
+from nullpose.report.words import error_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Solution
 from nullpose.solve.robust import GuardedPose, RobustSolution

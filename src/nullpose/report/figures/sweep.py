@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, Curve, house_style
+from nullpose.report.figures.style import CURVES, GREY, house_style
 from nullpose.report.numbers import axis_label
 from nullpose.study import SweepRow, SweepTable
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_bounds", "draw_caption", "draw_curve", "draw_sweep", "quantity_of"]
+__all__ = ["draw_caption", "draw_curves", "draw_sweep", "quantity_of"]
 
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
 _ROOM = 3.0  # at least so many dB above the curves are shown
@@ -36,37 +36,43 @@ def quantity_of(table: SweepTable) -> Quantity:
     Args:
         table: the sweep, with at least one row.
     """
-    return Quantity.named(table.rows[0].objective.name)
+    return table.rows[0].objective.quantity
 
 
-def _values(rows: Iterable[SweepRow]) -> FloatArray:
-    return _in_unit((row, row.objective.value) for row in rows)
-
-
-def _bounds(rows: Iterable[SweepRow]) -> FloatArray:
-    return _in_unit((row, row.objective.upper_bound) for row in rows)
-
-
-def _in_unit(numbers: Iterable[tuple[SweepRow, float | None]]) -> FloatArray:
-    """Return numbers in dB, or rates as they are; NaN, which Matplotlib draws as a gap, for no number."""
-    found = [math.nan if value is None else row.objective.quantity.in_unit(value) for row, value in numbers]
+def _in_unit(rows: Iterable[SweepRow], name: str) -> FloatArray:
+    """Return values or bounds in their unit; NaN, which Matplotlib draws as a gap, for no number."""
+    numbers = [(row.objective.quantity, getattr(row.objective, name)) for row in rows]
+    found = [math.nan if number is None else quantity.in_unit(number) for quantity, number in numbers]
     return np.where(np.isfinite(found), found, math.nan)
 
 
-def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:
-    """Return the look of one scheme's curve after drawing it.
+def draw_curves(axes: Axes, table: SweepTable) -> bool:
+    """Return whether bounds can be seen apart from their values, after drawing curves and bounds.
 
     Args:
         axes: where to draw.
         table: the sweep.
-        scheme: one of the table's schemes.
     """
-    curve = CURVES[scheme]
-    rows = table.of(scheme)
+    apart = _VISIBLE
+    if quantity_of(table).is_rate:
+        apart = 0.01 * float(np.max(_in_unit(table.rows, "value")))
+    for scheme in table.schemes:
+        _draw_curve(axes, table, scheme, apart)
+    return bool(np.any(_in_unit(table.rows, "upper_bound") - _in_unit(table.rows, "value") > apart))
+
+
+def _draw_curve(axes: Axes, table: SweepTable, scheme: str, apart: float) -> None:
+    """Draw a curve, the band up to its bounds, and marks at bounds that lie apart."""
+    curve, rows = CURVES[scheme], table.of(scheme)
+    levels, values, bounds = (
+        [row.value for row in rows],
+        _in_unit(rows, "value"),
+        _in_unit(rows, "upper_bound"),
+    )
     first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
     axes.plot(
-        [row.value for row in rows],
-        _values(rows),
+        levels,
+        values,
         color=curve.colour,
         linestyle=curve.line,
         linewidth=curve.width,
@@ -77,26 +83,12 @@ def draw_curve(axes: Axes, table: SweepTable, scheme: str) -> Curve:
         zorder=curve.order,
         label=curve.label,
     )
-    return curve
-
-
-def draw_bounds(axes: Axes, table: SweepTable, scheme: str) -> None:
-    """Draw the band between one scheme's values and their upper bounds, where it is wider than a line.
-
-    Args:
-        axes: where to draw.
-        table: the sweep.
-        scheme: one of the table's schemes.
-    """
-    curve = CURVES[scheme]
-    rows = [row for row in table.of(scheme) if row.upper_bound is not None]
-    if not rows:
+    if np.all(np.isnan(bounds)):
         return
-    levels, values, bounds = [row.value for row in rows], _values(rows), _bounds(rows)
     axes.fill_between(
         levels, values, bounds, color=curve.colour, alpha=0.10, linewidth=0.0, zorder=curve.order - 2.0
     )
-    seen = np.where(bounds - values > _visible(table), bounds, math.nan)
+    seen = np.where(bounds - values > apart, bounds, math.nan)
     if not np.all(np.isnan(seen)):
         axes.plot(
             levels,
@@ -111,8 +103,8 @@ def draw_bounds(axes: Axes, table: SweepTable, scheme: str) -> None:
         )
 
 
-def draw_caption(figure: Figure, lines: list[str]) -> None:
-    """Write what is proved of the curves under the axes, broken into lines.
+def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
+    """Write sentences in small letters under the axes, broken into lines.
 
     Args:
         figure: with its axes.
@@ -122,23 +114,9 @@ def draw_caption(figure: Figure, lines: list[str]) -> None:
     figure.supxlabel(text, x=0.01, ha="left", fontsize=7.5, color=GREY, linespacing=1.35)
 
 
-def _caption(table: SweepTable) -> list[str]:
-    lines = [f"{line}." for line in certainty_lines(table)]
-    if np.any(_bounds(table.rows) - _values(table.rows) > _visible(table)):
-        lines.append(
-            "Bands reach from the value found up to the bound, a small triangle above which no pose is."
-        )
-    return lines
-
-
-def _visible(table: SweepTable) -> float:
-    """Return the gap that is wider than a line: of a rate, a hundredth of the greatest."""
-    return 0.01 * float(np.max(_values(table.rows))) if quantity_of(table).is_rate else _VISIBLE
-
-
 def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
-    values, bounds = _values(table.rows), _bounds(table.rows)
+    values, bounds = _in_unit(table.rows, "value"), _in_unit(table.rows, "upper_bound")
     if np.all(np.isnan(values)) or np.all(np.isnan(bounds)):
         return
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
@@ -157,19 +135,16 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
     """
     from matplotlib.figure import Figure
 
+    quantity, lines = quantity_of(table), [f"{line}." for line in certainty_lines(table)]
     with house_style():
         figure = Figure(figsize=(7.0, 4.6), layout="constrained")
         axes = figure.add_subplot()
-        for scheme in table.schemes:
-            draw_curve(axes, table, scheme)
-            draw_bounds(axes, table, scheme)
+        if draw_curves(axes, table):
+            lines.append("Bands reach up to the bound, a small triangle above which no pose is.")
         _keep_curves_large(axes, table)
-        if log:
-            axes.set_xscale("log")
-        axes.set_xlabel(axis_label(table.path))
-        quantity = quantity_of(table)
+        axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
         axes.set_ylabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
         axes.margins(x=0.02)
         figure.legend(loc="outside upper center", ncols=4, frameon=False, handlelength=3.2, columnspacing=1.4)
-        draw_caption(figure, _caption(table))
+        draw_caption(figure, lines)
     return figure

@@ -2,19 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
-from nullpose.report.numbers import count_of, escaped, percent
-from nullpose.report.study import tables
-from nullpose.report.study.answer import answer_of
-from nullpose.report.study.cases import reference_of
-from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
-from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, replicates_of
-from nullpose.report.study.summary import Summary
+import numpy as np
 
-__all__ = ["report_text", "title_of"]
+from nullpose.report.document import markdown_table
+from nullpose.report.numbers import NONE, begun, count_of, escaped, number, percent, with_interval
+from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.cases import ReportCase
+from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, quantile, replicates_of
+from nullpose.report.study.summary import Summary, three_of
+from nullpose.report.study.values import STATUSES
+
+__all__ = ["gain_tables", "report_text", "title_of"]
 
 _SURE = percent(CONFIDENCE)
+_MOST_REASONS = 12
+_LONGEST_REASON = 300  # letters
+
+Rows = Sequence[Mapping[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A part of a report, which is told if it has a figure or a table.
+
+    Args:
+        heading: above it.
+        words: what is shown.
+        figure: its name.
+        caption: of the figure.
+        tables: rows by what stands above them; those without rows are left out.
+    """
+
+    heading: str
+    words: str
+    figure: str
+    caption: str
+    tables: Mapping[str, Rows] = field(default_factory=dict)
+
+    def blocks(self, figures: Collection[str]) -> Iterator[str]:
+        """Yield the paragraphs of the part, given which figures were drawn."""
+        tables = {title: rows for title, rows in self.tables.items() if rows}
+        if self.figure not in figures and not tables:
+            return
+        yield f"## {self.heading}"
+        yield self.words
+        if self.figure in figures:
+            caption = escaped(self.caption)
+            yield f"![{caption}](figures/{self.figure}.png)"
+            yield f"*{caption}*"
+        for title, rows in tables.items():
+            yield f"**{title}**"
+            yield markdown_table(rows)
 
 
 def title_of(summary: Summary) -> str:
@@ -38,8 +81,8 @@ def report_text(summary: Summary, figures: Collection[str]) -> str:
     blocks += map(escaped, (answer_of(summary), outage_words(summary), certainty_of(summary)))
     if summary.values.scenes:
         blocks.append(_definitions(summary))
-        for part in (_levels, _gains, _sweep, _best, _outage, _robustness, _effort):
-            blocks += part(summary, figures)
+        for part in (_reached, _gained, _swept, _best, _outage, _robustness, _proofs):
+            blocks += part(summary).blocks(figures)
     return "\n\n".join(filter(None, [*blocks, *_data(summary)])) + "\n"
 
 
@@ -53,139 +96,200 @@ def _definitions(summary: Summary) -> str:
     )
 
 
-def _figure(name: str, figures: Collection[str], caption: str) -> list[str]:
-    words = escaped(caption)
-    return [f"![{words}](figures/{name}.png)", f"*{words}*"] if name in figures else []
-
-
-def _tabled(heading: str, table: str) -> list[str]:
-    return [f"**{heading}**", table] if table else []
-
-
-def _levels(summary: Summary, figures: Collection[str]) -> list[str]:
+def _reached(summary: Summary) -> _Part:
     quantity = summary.quantity
     shown, count = len(summary.points.shown), len(summary.spec.points)
-    few = f"{shown} of {count:,} combinations of swept values are shown; `summary.csv` has all."
-    robust = " Of robust cases it is what is guaranteed under the errors stated."
-    caption = (
+    words = f"The {quantity.smallest} over the nodes at each case's pose, as it is distributed over scenes."
+    if summary.has_robust:
+        words += " Of robust cases it is what is guaranteed under the errors stated."
+    if shown < count:
+        words += f" {shown} of {count:,} combinations of swept values are shown; `summary.csv` has all."
+    return _Part(
+        begun(quantity.smallest),
+        words,
+        "distribution",
         f"Share of scenes whose {quantity.smallest} is no more than what is across. Each band holds a whole "
-        f"true curve with {_SURE} confidence; it is drawn as far as there are numbers."
+        f"true curve with {_SURE} confidence; it is drawn as far as there are numbers.",
+        {
+            f"Median, {quantity.unit}": _intervals(summary, summary.cases, "median"),
+            f"Worst tenth (10th percentile), {quantity.unit}": _intervals(
+                summary, summary.cases, "worst_tenth"
+            ),
+        },
     )
-    return [
-        f"## {quantity.smallest.capitalize().replace('sinr', 'SINR')}",
-        f"The {quantity.smallest} over the nodes at each case's pose, as it is distributed over scenes."
-        f"{robust if summary.has_robust else ''}",
-        *_figure("distribution", figures, caption),
-        few if shown < count else "",
-        *_tabled(f"Median, {quantity.unit}", tables.level_table(summary, "median")),
-        *_tabled(
-            f"Worst tenth (10th percentile), {quantity.unit}", tables.level_table(summary, "worst_tenth")
-        ),
-    ]
 
 
-def _gains(summary: Summary, figures: Collection[str]) -> list[str]:
-    table = tables.gain_table(summary, "gain_median")
-    if not table:
-        return []
-    references = [
-        f"{of_what} is measured against {escaped(f'{one.phrase} ({one.name})')} on the same scenes."
-        for robust, of_what in ((False, "Each case"), (True, "What is guaranteed"))
-        if (one := reference_of(summary.cases, robust=robust, against=summary.against)) is not None
+def _gained(summary: Summary) -> _Part:
+    first = summary.cases[summary.cases[0].reference]
+    references = {case.robust: summary.cases[case.reference] for case in summary.cases}
+    words = [
+        f"{'What is guaranteed' if robust else 'Each case'} is measured against "
+        f"{escaped(f'{reference.phrase} ({reference.name})')} on the same scenes."
+        for robust, reference in references.items()
     ]
-    first = summary.reference(summary.cases[0])
-    level = " over the level vehicle" if first is not None and first.tilt_deg == 0.0 else ""
-    unit = summary.quantity.unit
-    caption = (
+    return _Part(
+        "Gain over the level vehicle" if first.tilt_deg == 0.0 else "Gain",
+        " ".join(words),
+        "gain",
         "Disc: median of the gains on the same scenes; diamond: gain of the worst tenth; lines: their "
-        f"{_SURE} confidence intervals; bar: from what nine scenes in ten gain to what one in ten does."
+        f"{_SURE} confidence intervals; bar: from what nine scenes in ten gain to what one in ten does.",
+        gain_tables(summary),
     )
-    return [
-        f"## Gain{level}",
-        " ".join(references),
-        *_figure("gain", figures, caption),
-        *_tabled(f"Median of the gains, {unit}", table),
-        *_tabled(
-            f"Gain of the worst tenth (difference of the 10th percentiles), {unit}",
-            tables.gain_table(summary, "shift_worst_tenth"),
-        ),
-        *_tabled(
-            f"10th percentile of the gains (nine scenes in ten gain this or more), {unit}",
-            tables.gain_table(summary, "gain_worst_tenth"),
-        ),
-        *_tabled(
-            "Share of the omnidirectional vehicle's median gain, %",
-            tables.share_table(summary, "share_of_median"),
-        ),
-        *_tabled(
-            "Share of its gain in the worst tenth, %", tables.share_table(summary, "share_of_worst_tenth")
-        ),
-    ]
 
 
-def _sweep(summary: Summary, figures: Collection[str]) -> list[str]:
-    if "sweep" not in figures:
-        return []
+def gain_tables(summary: Summary) -> dict[str, Rows]:
+    """Return the gains and their shares of the omnidirectional vehicle's, by what stands above each table.
+
+    Args:
+        summary: of the study.
+    """
+    compared, unit = summary.compared, summary.quantity.unit
+    partial = [case for case in compared if case.whole not in (None, case.place, case.reference)]
+    return {
+        f"Median of the gains, {unit}": _intervals(summary, compared, "gain_median"),
+        f"Gain of the worst tenth (difference of the 10th percentiles), {unit}": _intervals(
+            summary, compared, "shift_worst_tenth"
+        ),
+        f"10th percentile of the gains (nine scenes in ten gain this or more), {unit}": _intervals(
+            summary, compared, "gain_worst_tenth"
+        ),
+        "Share of the omnidirectional vehicle's median gain, %": _shares(summary, partial, "share_of_median"),
+        "Share of its gain in the worst tenth, %": _shares(summary, partial, "share_of_worst_tenth"),
+    }
+
+
+def _swept(summary: Summary) -> _Part:
     caption = f"Median and worst tenth of the {summary.quantity.smallest} along the sweep."
-    return ["## Along the sweep", *_figure("sweep", figures, caption)]
+    return _Part("Along the sweep", "", "sweep", caption)
 
 
-def _best(summary: Summary, figures: Collection[str]) -> list[str]:
-    if len(summary.cases) < 2:
-        return []
+def _best(summary: Summary) -> _Part:
     robust = " Robust cases are compared with one another only." if summary.has_robust else ""
-    return [
-        "## How often each case is the best",
+    cases = summary.cases if len(summary.cases) > 1 else ()
+    return _Part(
+        "How often each case is the best",
         "A case counts in a scene if no other reaches more than its own bound: it is the best as far as its "
         "certified gap tells. Without a certificate its value alone counts. Cases that tie count each, so "
         f"that shares add up to more than 100 %.{robust}",
-        *_figure("best", figures, "Share of scenes in which no other case is better; ties count for each."),
-        *_tabled("Share of scenes, %", tables.best_table(summary)),
-    ]
+        "best",
+        "Share of scenes in which no other case is better; ties count for each.",
+        {"Share of scenes, %": _shares(summary, cases, "best_share", 1)},
+    )
 
 
-def _outage(summary: Summary, figures: Collection[str]) -> list[str]:
-    if "outage" not in figures:
-        return []
+def _outage(summary: Summary) -> _Part:
     quantity = summary.quantity
     option = "--requirement-bps-hz" if quantity.is_rate else "--requirement-db"
-    words = (
+    cases = () if summary.requirement is None else summary.cases
+    return _Part(
+        "Outage",
         f"The share of scenes whose {quantity.smallest} falls short of what is required. A requirement is "
-        f"set by `nullpose study report {option}`."
+        f"set by `nullpose study report {option}`.",
+        "outage",
+        f"Outage probability against the required {quantity.noun}.",
+        {"Share of scenes that miss the requirement, %": _shares(summary, cases, "outage", 1)},
     )
-    return [
-        "## Outage",
-        words,
-        *_figure("outage", figures, f"Outage probability against the required {quantity.noun}."),
-        *_tabled("Share of scenes that miss the requirement, %", tables.outage_table(summary)),
-    ]
 
 
-def _robustness(summary: Summary, figures: Collection[str]) -> list[str]:
-    table = tables.cost_table(summary)
-    if not table:
-        return []
-    caption = "What robust cases give up of what the same vehicle reaches if everything is as stated."
-    return [
-        "## Cost of robustness",
+def _robustness(summary: Summary) -> _Part:
+    def cell(row: Any) -> str:
+        worst = number(float(row["cost_worst_tenth"]), summary.quantity)
+        return f"{with_interval(*three_of(row, 'cost_median'), summary.quantity)}; {worst}"
+
+    title = f"Median; what one scene in ten exceeds, {summary.quantity.unit}"
+    return _Part(
+        "Cost of robustness",
         f"The {summary.quantity.smallest} of the same vehicle's best pose if everything is as stated, less "
         "what its robust pose guarantees under the errors, on the same scene.",
-        *_figure("robustness", figures, caption),
-        *_tabled(f"Median; what one scene in ten exceeds, {summary.quantity.unit}", table),
+        "robustness",
+        "What robust cases give up of what the same vehicle reaches if everything is as stated.",
+        {title: _by_point(summary, summary.paired, cell)},
+    )
+
+
+def _proofs(summary: Summary) -> _Part:
+    return _Part(
+        "Proofs, gaps and time",
+        "*Certified*: no pose exceeds the value by more than the gap asked for. *Gap not reached*: a limit "
+        "ended the proof. *Best found*: nothing is proved. *Failed*: there is no pose, and the row is in no "
+        "distribution. The rigour of all bounds is *floating-point*: a study keeps no certificates.",
+        "effort",
+        "Time of a solve, and relative gap between bound and value.",
+        {
+            "Rows of all combinations by status": _status_rows(summary),
+            "Relative gap, and time of a solve": _effort_rows(summary),
+            "Why rows failed or were not certified": _reason_rows(summary),
+        },
+    )
+
+
+def _status_rows(summary: Summary) -> Rows:
+    sums = summary.frame.groupby("case", sort=False)[[name.replace("-", "_") for name in STATUSES]].sum()
+    return [
+        {"case": escaped(str(case))}
+        | {name.replace("_", " "): f"{count:,}" for name, count in counts.items()}
+        for case, counts in sums.to_dict(orient="index").items()
     ]
 
 
-def _effort(summary: Summary, figures: Collection[str]) -> list[str]:
+def _effort_rows(summary: Summary) -> Rows:
+    rows = []
+    shares = {"median": 0.5, "95 %": 0.95, "worst": 1.0}
+    for case in summary.cases:
+        gap, seconds = (
+            each[:, :, case.place].astype(float).ravel()
+            for each in (summary.values.gap, summary.values.seconds)
+        )
+        row = {"case": escaped(case.name)}
+        row |= {f"gap: {name}": f"{quantile(gap, share):.1e}" for name, share in shares.items()}
+        row |= {f"seconds: {name}": f"{quantile(seconds, share):.3g}" for name, share in shares.items()}
+        row["seconds: sum"] = f"{np.nansum(seconds):.3g}"
+        rows.append({name: NONE if cell == "nan" else cell for name, cell in row.items()})
+    return rows
+
+
+def _reason_rows(summary: Summary) -> Rows:
+    """Return why rows failed or were not certified, the most frequent first."""
+    reasons = summary.values.reasons
+    found = reasons.most_common(_MOST_REASONS)
+    told = [(*about, count) for about, count in found]
+    if len(reasons) > len(found):
+        others = f"{len(reasons) - len(found):,} other reasons"
+        told.append(("others", "", others, reasons.total() - sum(count for _, count in found)))
     return [
-        "## Proofs, gaps and time",
-        "Rows of all combinations by status. *Certified*: no pose exceeds the value by more than the gap "
-        "asked for. *Gap not reached*: a limit ended the proof. *Best found*: nothing is proved. *Failed*: "
-        "there is no pose, and the row is in no distribution. The rigour of all bounds is *floating-point*: "
-        "a study keeps no certificates.",
-        tables.status_table(summary),
-        *_figure("effort", figures, "Time of a solve, and relative gap between bound and value."),
-        tables.effort_table(summary),
-        *_tabled("Why rows failed or were not certified", tables.reasons_table(summary)),
+        {
+            "case": escaped(case),
+            "status": status.replace("-", " "),
+            "rows": f"{count:,}",
+            "reason": escaped(
+                reason if len(reason) <= _LONGEST_REASON else f"{reason[:_LONGEST_REASON]} ..."
+            ),
+        }
+        for case, status, reason, count in told
+    ]
+
+
+def _intervals(summary: Summary, cases: Sequence[ReportCase], name: str) -> Rows:
+    return _by_point(summary, cases, lambda row: with_interval(*three_of(row, name), summary.quantity))
+
+
+def _shares(summary: Summary, cases: Sequence[ReportCase], name: str, digits: int = 0) -> Rows:
+    """Return shares and their intervals in per cent, without the sign, which the heading has."""
+
+    def cell(row: Any) -> str:
+        share, *ends = three_of(row, name)
+        whole, low, high = (percent(each, digits).removesuffix(" %") for each in (share, *ends))
+        return whole if math.isnan(share + sum(ends)) else f"{whole} ({low} to {high})"
+
+    return _by_point(summary, cases, cell)
+
+
+def _by_point(summary: Summary, cases: Sequence[ReportCase], cell: Callable[[Any], str]) -> Rows:
+    """Return a row for each case with a cell for each combination shown."""
+    heads = {point: escaped(summary.points.words(point)) or "value" for point in summary.points.shown}
+    return [
+        {"case": escaped(case.name)} | {head: cell(summary.row(point, case)) for point, head in heads.items()}
+        for case in cases
     ]
 
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
 
-from nullpose.physics import from_db
 from nullpose.report.numbers import axis_label, unit_of
+from nullpose.scenario.units import power_w
 from nullpose.study.monte_carlo import StudySpec
 
 __all__ = ["MOST_SHOWN", "SweptPoints"]
 
-MOST_SHOWN = 6
-"""At most so many combinations have a panel or a column; the tables on disk have all."""
+MOST_SHOWN = 6  # combinations that have a panel or a column; the tables on disk have all
 
 _JAMMING = re.compile(r"jammers(\.[^.\[\]]+|\[0\])?\.power_w")
 
@@ -80,7 +78,11 @@ class SweptPoints:
         Args:
             point: the combination's number.
         """
-        return ", ".join(self._one(point, path) for path in self.spec.swept)
+        told = []
+        for path in self.spec.swept:
+            name, unit = ("P_M/P", "") if self._is_ratio(path) else (path, unit_of(path))
+            told.append(f"{name} = {self.number(point, path):.6g} {unit}".rstrip())
+        return ", ".join(told)
 
     def axis_label(self, path: str) -> str:
         """Return what an axis of a swept path is labelled.
@@ -88,15 +90,7 @@ class SweptPoints:
         Args:
             path: one of the swept paths.
         """
-        if self._is_ratio(path):
-            return r"$P_M / P$  (jammer's power over a node's)"
-        return axis_label(path)
-
-    def _one(self, point: int, path: str) -> str:
-        number = f"{self.number(point, path):.6g}"
-        if self._is_ratio(path):
-            return f"P_M/P = {number}"
-        return f"{path} = {number} {unit_of(path)}".rstrip()
+        return r"$P_M / P$  (jammer's power over a node's)" if self._is_ratio(path) else axis_label(path)
 
     def _is_ratio(self, path: str) -> bool:
         return self.node_power_w > 0.0 and _JAMMING.fullmatch(path) is not None
@@ -105,7 +99,7 @@ class SweptPoints:
 def _has_one_jammer(spec: StudySpec) -> bool:
     if spec.jammers is not None:
         return not spec.jammers.may_be_several and spec.jammers.count == (1, 1)
-    return all(len(spec.scene.tables(index).get("jammers", ())) == 1 for index in range(spec.scene.size))
+    return all(len(scene.jammers) == 1 for scene in spec.scene.scenarios or (spec.scene,))
 
 
 def _node_power_w(spec: StudySpec) -> float:
@@ -114,15 +108,7 @@ def _node_power_w(spec: StudySpec) -> float:
         return 0.0
     if spec.nodes is not None:
         watts, dbm = spec.nodes.power_w, spec.nodes.power_dbm
-        if watts is not None:
-            return watts.fixed or 0.0
-        return 0.0 if dbm is None or dbm.fixed is None else float(from_db(dbm.fixed - 30.0))
-    tables = [spec.scene.tables(index) for index in range(spec.scene.size)]
-    powers = {_power_w(node) for each in tables for node in each.get("nodes", ())}
+        return power_w(None if watts is None else watts.fixed, None if dbm is None else dbm.fixed) or 0.0
+    scenes = spec.scene.scenarios or (spec.scene,)
+    powers = {node.transmit_power_w for scene in scenes for node in scene.nodes}
     return powers.pop() if len(powers) == 1 else 0.0
-
-
-def _power_w(node: dict[str, Any]) -> float:
-    if "power_dbm" in node:
-        return float(from_db(node["power_dbm"] - 30.0))
-    return float(node.get("power_w", 0.0))

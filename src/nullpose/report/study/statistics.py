@@ -26,13 +26,11 @@ __all__ = [
     "share_interval",
 ]
 
-CONFIDENCE = 0.95
-"""Of every band and interval."""
-
+CONFIDENCE = 0.95  # of every band and interval
 MEDIAN, WORST_TENTH = 0.5, 0.1
 
+# With fewer scenes the 10th percentile has no lower end at this confidence, and nothing is resampled.
 FEW_SCENES = 36
-"""With fewer scenes the 10th percentile has no lower end at this confidence, and nothing is resampled."""
 
 _SEED = 0  # of the bootstrap: the same study gives the same report
 _MOST_REPLICATES, _FEWEST_REPLICATES = 1000, 200

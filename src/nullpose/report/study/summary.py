@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.study.cases import ReportCase, nominal_of, reference_of, report_cases, whole_of
+from nullpose.report.study.cases import ReportCase, report_cases
 from nullpose.report.study.points import SweptPoints
 from nullpose.report.study.statistics import (
     FEW_SCENES,
@@ -34,6 +36,8 @@ __all__ = ["Summary", "summarise", "three_of"]
 
 Cells = dict[str, Any]
 
+_RESAMPLED = ("shift_worst_tenth", "share_of_median", "share_of_worst_tenth")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
@@ -45,7 +49,6 @@ class Summary:
         quantity: what was made as large as it can be.
         cases: in the spec's order.
         points: the combinations of swept values.
-        against: name of the case that was asked to be measured against; None for the usual one.
         requirement: the smallest number that will do, in the quantity's unit; None if none is set.
         frame: the statistics, a row for each combination and case.
     """
@@ -55,7 +58,6 @@ class Summary:
     quantity: Quantity
     cases: tuple[ReportCase, ...]
     points: SweptPoints
-    against: str | None
     requirement: float | None
     frame: pd.DataFrame
 
@@ -72,20 +74,12 @@ class Summary:
     @property
     def compared(self) -> list[ReportCase]:
         """The cases that are measured against another."""
-        return [case for case in self.cases if self.reference(case) is not case]
+        return [case for case in self.cases if case.reference != case.place]
 
     @property
     def paired(self) -> list[ReportCase]:
         """The robust cases of which there is a nominal one."""
-        return [case for case in self.cases if nominal_of(self.spec, self.cases, case) is not None]
-
-    def reference(self, case: ReportCase) -> ReportCase | None:
-        """Return what a case is measured against: what is guaranteed only against what is guaranteed.
-
-        Args:
-            case: one of the cases.
-        """
-        return reference_of(self.cases, robust=case.robust, against=self.against)
+        return [case for case in self.cases if case.nominal is not None]
 
     def row(self, point: int, case: ReportCase) -> Any:
         """Return the statistics of a case at a combination of swept values, by name.
@@ -133,59 +127,62 @@ def summarise(
     """
     import pandas as pd
 
-    spec, cases = table.spec, report_cases(table.spec)
-    reference_of(cases, against=against)  # a wrong name is told before the work
+    spec, cases = table.spec, report_cases(table.spec, against)
     rows: list[Cells] = []
     for point, swept in enumerate(spec.points):
-        bootstrapped = _bootstrapped(cases, values.value[:, point], against)
-        for case in cases:
-            cells: Cells = {"point": point, **swept, "case": case.name}
-            cells |= _statuses(values, point, case) | _level(values.value[:, point, case.place])
-            cells |= _gain(cases, values, point, case, against) | bootstrapped[case.place]
-            cells |= _best(cases, values, point, case) | _outage(values, point, case, requirement)
-            cells |= _cost(spec, cases, values, point, case) | _effort(values, point, case)
-            rows.append(cells)
+        bootstrapped = _bootstrapped(cases, values.value[:, point])
+        rows += [
+            {"point": point, **swept, "case": case.name}
+            | _reached(values, point, case)
+            | _gained(cases, values, point, case)
+            | bootstrapped[case.place]
+            | _best(cases, values, point, case)
+            | ({} if requirement is None else _outage(values, point, case, requirement))
+            | (_cost(cases, values, point, case) if any(each.robust for each in cases) else {})
+            | _proofs(values, point, case)
+            for case in cases
+        ]
     return Summary(
         spec=spec,
         values=values,
         quantity=quantity_of(table),
         cases=cases,
         points=SweptPoints.of(spec),
-        against=against,
         requirement=requirement,
         frame=pd.DataFrame(rows),
     )
 
 
-def _statuses(values: StudyValues, point: int, case: ReportCase) -> Cells:
-    status = values.status[:, point, case.place]
-    counts = {name.replace("-", "_"): int(np.sum(status == code)) for code, name in enumerate(STATUSES)}
-    return {"scenes": len(status), **counts}
+def _with_ends(name: str, value: float, ends: tuple[float, float]) -> Cells:
+    return {name: value, f"{name}_low": ends[0], f"{name}_high": ends[1]}
 
 
 def _quantiles(name: str, numbers: FloatArray, share: float) -> Cells:
-    low, high = quantile_interval(numbers, share)
-    return {name: quantile(numbers, share), f"{name}_low": low, f"{name}_high": high}
+    return _with_ends(name, quantile(numbers, share), quantile_interval(numbers, share))
 
 
-def _level(numbers: FloatArray) -> Cells:
+def _shares(name: str, hits: int, count: int) -> Cells:
+    return _with_ends(name, hits / count if count else math.nan, share_interval(hits, count))
+
+
+def _reached(values: StudyValues, point: int, case: ReportCase) -> Cells:
+    """Return how many rows have which status, and the quantiles of what is reached."""
+    status, numbers = values.status[:, point, case.place], values.value[:, point, case.place]
+    counts = {name.replace("-", "_"): int(np.sum(status == code)) for code, name in enumerate(STATUSES)}
     return {
+        "scenes": len(status),
+        **counts,
         **_quantiles("worst_tenth", numbers, WORST_TENTH),
         **_quantiles("median", numbers, MEDIAN),
         "best_tenth": quantile(numbers, 1.0 - WORST_TENTH),
     }
 
 
-def _gain(
-    cases: tuple[ReportCase, ...], values: StudyValues, point: int, case: ReportCase, against: str | None
-) -> Cells:
+def _gained(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
     """Return the statistics of the differences from the reference on the same scenes."""
-    reference = reference_of(cases, robust=case.robust, against=against)
-    assert reference is not None, "a case's own group is never empty"
-    value = values.value[:, point]
-    gains = difference(value[:, case.place], value[:, reference.place])
+    gains = difference(values.value[:, point, case.place], values.value[:, point, case.reference])
     return {
-        "against": reference.name,
+        "against": cases[case.reference].name,
         "pairs": int(np.sum(~np.isnan(gains))),
         **_quantiles("gain_worst_tenth", gains, WORST_TENTH),
         **_quantiles("gain_median", gains, MEDIAN),
@@ -193,37 +190,27 @@ def _gain(
     }
 
 
-def _bootstrapped(cases: tuple[ReportCase, ...], value: FloatArray, against: str | None) -> list[Cells]:
+def _bootstrapped(cases: Sequence[ReportCase], value: FloatArray) -> list[Cells]:
     """Return for each case what the worst tenth gains, and the shares of what is gained by all of tilt."""
-    references = [_place(reference_of(cases, robust=case.robust, against=against)) for case in cases]
-    wholes = [_place(whole_of(cases, robust=case.robust)) for case in cases]
-    gains = np.stack([difference(value[:, at], value[:, of]) for at, of in enumerate(references)], axis=1)
-    tenths, medians = resampled(value, WORST_TENTH), resampled(gains, MEDIAN)
+    references = [case.reference for case in cases]
+    wholes = [case.reference if case.whole is None else case.whole for case in cases]  # itself: no share
+    tenths = resampled(value, WORST_TENTH)
+    medians = resampled(difference(value, value[:, references]), MEDIAN)
 
-    def statistics(times: Any) -> FloatArray:
+    def statistics(times: NDArray[np.int64]) -> FloatArray:
         tenth, median = tenths(times), medians(times)
         shift = difference(tenth, tenth[references])
-        whole = [-1 if at is None else at for at in wholes]
-        return np.stack([shift, _ratio(median, median[whole]), _ratio(shift, shift[whole])])
+        return np.stack([shift, _ratio(median, median[wholes]), _ratio(shift, shift[wholes])])
 
     count = value.shape[0]
-    found = statistics(np.ones(count, dtype=np.int64)) if count else np.full((3, len(cases)), math.nan)
+    found = statistics(np.ones(count, dtype=np.int64))
     drawn = draws(count) if count >= FEW_SCENES else ()
     many = np.array([statistics(times) for times in drawn]).reshape(-1, 3, len(cases))
-    cells: list[Cells] = []
-    for at, whole in enumerate(wholes):
-        row: Cells = {}
-        for kind, name in enumerate(("shift_worst_tenth", "share_of_median", "share_of_worst_tenth")):
-            known = kind == 0 or (whole is not None and whole != references[at])
-            low, high = interval_of(many[:, kind, at]) if known else (math.nan, math.nan)
-            row |= {name: float(found[kind, at]) if known else math.nan, f"{name}_low": low}
-            row[f"{name}_high"] = high
-        cells.append(row)
-    return cells
-
-
-def _place(case: ReportCase | None) -> Any:
-    return None if case is None else case.place
+    rows: list[Cells] = [{} for _ in cases]
+    for place, row in enumerate(rows):
+        for kind, name in enumerate(_RESAMPLED):
+            row |= _with_ends(name, float(found[kind, place]), interval_of(many[:, kind, place]))
+    return rows
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
@@ -232,59 +219,44 @@ def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
     return np.asarray(np.divide(part, whole, out=np.full_like(part, math.nan), where=sound))
 
 
-def _best(cases: tuple[ReportCase, ...], values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _best(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
     """Return in how many scenes a case is as good as the best, as far as its proof tells."""
-    group = [each.place for each in cases if each.robust is case.robust]
-    value = values.value[:, point]
-    known = ~np.all(np.isnan(value[:, group]), axis=1)
-    best = np.max(np.nan_to_num(value[:, group], nan=-np.inf, neginf=-np.inf), axis=1)
-    own, bound = value[:, case.place], values.bound[:, point, case.place]
-    certified = values.status[:, point, case.place] == STATUSES.index("certified")
-    reach = np.where(certified & ~np.isnan(bound), np.fmax(bound, own), own)
+    group = values.value[:, point, [each.place for each in cases if each.robust is case.robust]]
+    known = ~np.all(np.isnan(group), axis=1)
+    best = np.max(np.nan_to_num(group, nan=-np.inf, neginf=-np.inf), axis=1)
+    own, bound, status = (each[:, point, case.place] for each in (values.value, values.bound, values.status))
+    reach = np.where(status == STATUSES.index("certified"), np.fmax(bound, own), own)
     hits = int(np.sum(known & (reach >= best)))
     return {"best_in": hits, **_shares("best_share", hits, int(np.sum(known)))}
 
 
-def _shares(name: str, hits: int, count: int) -> Cells:
-    low, high = share_interval(hits, count)
-    return {name: hits / count if count else math.nan, f"{name}_low": low, f"{name}_high": high}
-
-
-def _outage(values: StudyValues, point: int, case: ReportCase, requirement: float | None) -> Cells:
+def _outage(values: StudyValues, point: int, case: ReportCase, requirement: float) -> Cells:
     """Return in what share of scenes a requirement is missed, and is proved to be missed by any pose."""
-    if requirement is None:
-        return {}
     value, bound = (each[:, point, case.place] for each in (values.value, values.bound))
     known = ~np.isnan(value)
     count, proved = int(np.sum(known)), int(np.sum(bound[known] < requirement))
-    cells = _shares("outage", int(np.sum(value[known] < requirement)), count)
-    return {**cells, "outage_proved": proved / count if count else math.nan}
+    missed = _shares("outage", int(np.sum(value[known] < requirement)), count)
+    return {**missed, "outage_proved": proved / count if count else math.nan}
 
 
-def _cost(
-    spec: StudySpec, cases: tuple[ReportCase, ...], values: StudyValues, point: int, case: ReportCase
-) -> Cells:
+def _cost(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
     """Return what a robust case gives up of what the same vehicle reaches if everything is as stated."""
-    nominal = nominal_of(spec, cases, case)
-    if not any(each.robust for each in cases):
-        return {}
-    value = values.value[:, point]
-    costs = np.full(len(value), math.nan)
-    if nominal is not None:
-        costs = difference(value[:, nominal.place], value[:, case.place])
+    robust = values.value[:, point, case.place]
+    unknown = np.full(len(robust), math.nan)
+    nominal = unknown if case.nominal is None else values.value[:, point, case.nominal]
+    costs = difference(nominal, robust)
     return {
-        "nominal": "" if nominal is None else nominal.name,
+        "nominal": "" if case.nominal is None else cases[case.nominal].name,
         **_quantiles("cost_median", costs, MEDIAN),
         "cost_worst_tenth": quantile(costs, 1.0 - WORST_TENTH),
     }
 
 
-def _effort(values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _proofs(values: StudyValues, point: int, case: ReportCase) -> Cells:
     """Return the gaps that were reached and the seconds that were needed, failures left out."""
-    gap, seconds = values.effort(case.place, point)
+    gap, seconds = (each[:, point, case.place].astype(float) for each in (values.gap, values.seconds))
     cells: Cells = {"proved": int(np.sum(~np.isnan(gap)))}
     for name, numbers in (("gap", gap), ("seconds", seconds)):
         for suffix, share in (("median", 0.5), ("p95", 0.95), ("worst", 1.0)):
             cells[f"{name}_{suffix}"] = quantile(numbers, share)
-    cells["seconds_total"] = float(np.nansum(seconds))
-    return cells
+    return {**cells, "seconds_total": float(np.nansum(seconds))}

@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.objectives import Quantity
 from nullpose.physics import to_db
-from nullpose.physics.quantity import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.study.monte_carlo import StudyTable
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["STATUSES", "StudyValues", "gather", "quantity_of"]
+__all__ = ["FAILED", "STATUSES", "StudyValues", "gather", "quantity_of"]
 
-STATUSES = ("certified", "gap-not-reached", "best-found", "failed")
-"""The statuses of rows, in the order of their codes."""
+STATUSES = ("certified", "gap-not-reached", "best-found", "failed")  # a status is kept as its place here
+FAILED = STATUSES.index("failed")
 
 _MOST_REASONS = 10_000  # reasons may quote numbers, so that each row has its own
 
@@ -35,7 +35,7 @@ class StudyValues:
         bound: no pose exceeds it, likewise; NaN if nothing is proved.
         gap: relative gap; NaN if nothing is proved.
         status: places in ``STATUSES``.
-        seconds: how long each took.
+        seconds: how long each took; NaN of a failure.
         reasons: how often each case failed, or kept from its gap, for which reason, by case, status, reason.
     """
 
@@ -50,18 +50,6 @@ class StudyValues:
     def scenes(self) -> int:
         """How many scenes there are rows of."""
         return int(self.value.shape[0])
-
-    def effort(self, place: int, point: int | None = None) -> tuple[FloatArray, FloatArray]:
-        """Return the gaps and the seconds of a case, NaN where nothing is proved and where a row failed.
-
-        Args:
-            place: of the case.
-            point: number of a combination of swept values; None for all of them.
-        """
-        at = (slice(None), slice(None) if point is None else point, place)
-        failed = self.status[at] == STATUSES.index("failed")
-        seconds = np.where(failed, np.nan, self.seconds[at].astype(float))
-        return self.gap[at].astype(float).ravel(), seconds.ravel()
 
     def counts(self) -> dict[str, int]:
         """Return how many rows have each status."""
@@ -91,45 +79,28 @@ def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], None] | None = 
     spec, quantity = table.spec, quantity_of(table)
     inner = (len(spec.points), len(spec.cases))
     shape = (table.scenes_done, *inner)
-    found = StudyValues(
-        value=np.full(shape, np.nan),
-        bound=np.full(shape, np.nan),
-        gap=np.full(shape, np.nan, np.float32),
-        status=np.zeros(shape, np.uint8),
-        seconds=np.zeros(shape, np.float32),
-        reasons=Counter(),
-    )
+    kinds = {"value": float, "bound": float, "gap": np.float32, "status": np.uint8, "seconds": np.float32}
+    arrays = {name: np.zeros(shape, kind) for name, kind in kinds.items()}
+    reasons: Counter[tuple[str, str, str]] = Counter()
     done = 0
     for batch in table.batches():
         end = done + len(batch) // spec.rows_per_scene
-        columns = _columns(batch, quantity)
-        for name, numbers in columns.items():
-            getattr(found, name)[done:end] = numbers.reshape(-1, *inner)
-        _count_reasons(found.reasons, batch)
+        columns = batch.assign(
+            status=batch["status"].map(STATUSES.index),
+            seconds=batch["seconds"].mask(batch["status"] == STATUSES[FAILED]),
+        )
+        if not quantity.is_rate:
+            place = batch.columns.get_loc("gap")
+            for name in ("bound", "value"):
+                columns[name] = to_db(batch[name].to_numpy(float, na_value=np.nan))
+                batch.insert(place, f"{name}_db", columns[name])
+        for name, kind in kinds.items():
+            arrays[name][done:end] = columns[name].to_numpy(kind).reshape(-1, *inner)
+        _count_reasons(reasons, batch)
         if on_batch is not None:
-            on_batch(_with_decibels(batch, columns, quantity))
+            on_batch(batch)
         done = end
-    return found
-
-
-def _columns(batch: pd.DataFrame, quantity: Quantity) -> dict[str, NDArray[Any]]:
-    value, bound, gap, seconds = (
-        batch[name].to_numpy(float, na_value=np.nan) for name in ("value", "bound", "gap", "seconds")
-    )
-    if not quantity.is_rate:
-        value, bound = to_db(value), to_db(bound)
-    codes = {name: code for code, name in enumerate(STATUSES)}
-    status = batch["status"].map(codes).to_numpy(np.uint8)
-    return {"value": value, "bound": bound, "gap": gap, "status": status, "seconds": seconds}
-
-
-def _with_decibels(batch: pd.DataFrame, columns: dict[str, Any], quantity: Quantity) -> pd.DataFrame:
-    if quantity.is_rate:
-        return batch
-    place = batch.columns.get_loc("gap")
-    batch.insert(place, "value_db", columns["value"])
-    batch.insert(place + 1, "bound_db", columns["bound"])
-    return batch
+    return StudyValues(**arrays, reasons=reasons)
 
 
 def _count_reasons(reasons: Counter[tuple[str, str, str]], batch: pd.DataFrame) -> None:

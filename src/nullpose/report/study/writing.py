@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
-from nullpose.physics.quantity import Quantity
+from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
-from nullpose.report.study.answer import answer_of
+from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of
-from nullpose.report.study.notes import certainty_of, outage_words, unfinished_note
 from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather, quantity_of
 from nullpose.study.monte_carlo import read_study
@@ -53,7 +52,7 @@ class StudyReport:
             "scenes_done": self.summary.values.scenes,
             "answer": self.answer,
             "notes": list(self.notes),
-            "summary": [{str(key): _plain(value) for key, value in row.items()} for row in rows],
+            "summary": rows,
             "files": [str(path) for path in self.files],
         }
 
@@ -143,7 +142,3 @@ def _writing(path: Path) -> Iterator[TextIO]:
 def _append(file: TextIO, frame: pd.DataFrame) -> None:
     """Write rows to a file, with a header if they are its first."""
     frame.to_csv(file, index=False, header=file.tell() == 0, lineterminator="\n")
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if hasattr(value, "item") else value

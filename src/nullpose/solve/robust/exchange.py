@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,8 +14,8 @@ from nullpose.family import AxisField, Family
 from nullpose.family.robust import BindingCase, build_robust_family
 from nullpose.physics.error_case import ErrorCase
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.limits import Limits
-from nullpose.solve.multistart import SearchSettings, multistart
+from nullpose.solve.multistart import SearchSettings, multistart, search_settings
+from nullpose.solve.options import SolveOptions
 from nullpose.solve.proof import BudgetUsed, prove
 from nullpose.solve.robust.inner import Inner
 
@@ -23,8 +23,6 @@ __all__ = ["Exchange", "Visited"]
 
 FloatArray = NDArray[np.float64]
 
-_LIGHT = SearchSettings(coarse=16, polished=2, rounds=2, patience=1)
-_THOROUGH = SearchSettings()
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
@@ -59,12 +57,11 @@ class Exchange:
     Args:
         inner: the scenario, prepared.
         axis_field: the axes that the airframe reaches.
-        seed: seed of the searches.
         limits: the gap between bound and guarantee that is aimed at, and what all proofs may cost.
     """
 
-    def __init__(self, inner: Inner, axis_field: AxisField, seed: int, limits: Limits) -> None:
-        self.inner, self.axis_field, self.seed, self.limits = inner, axis_field, seed, limits
+    def __init__(self, inner: Inner, axis_field: AxisField, limits: SolveOptions) -> None:
+        self.inner, self.axis_field, self.limits = inner, axis_field, limits
         blank = ErrorCase.none(inner.scenario)
         self.cases: list[BindingCase] = []
         self.add([BindingCase(ratio, blank) for ratio in range(inner.n_ratios)])
@@ -99,7 +96,7 @@ class Exchange:
         """
         if self.limits.of_rate:
             ratio = max(1.0, ratio)
-        return ratio * (1.0 + replace(self.limits, gap=share * self.limits.gap).ratio_gap(ratio))
+        return ratio * (1.0 + replace(self.limits, gap=share * self.limits.target).ratio_gap(ratio))
 
     @property
     def family(self) -> Family:
@@ -129,17 +126,18 @@ class Exchange:
         Args:
             deadline: when to stop in any case, on the clock of ``time.perf_counter``.
         """
-        settings = _LIGHT
+        light, thorough = search_settings(True), search_settings(False)
+        settings = light
         for _ in range(_MOST_ROUNDS):
             found = self._search_once(settings)
             self.incumbent, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             assert self.best is not None
             close = promised <= self.level(self.best.worst, _SHARE)
-            if time.perf_counter() > deadline or (close and settings is _THOROUGH):
+            if time.perf_counter() > deadline or (close and settings is thorough):
                 return  # the family stays the one that was searched
             if close:
-                settings = _THOROUGH
+                settings = thorough
             elif not self.add(new):
                 return
 
@@ -150,7 +148,7 @@ class Exchange:
         family, field = self.family, self.axis_field
         self.rounds += 1
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
-            found = multistart(family, field, seed=self.seed, settings=settings)
+            found = multistart(family, field, seed=self.limits.seed, settings=settings)
         if self.best is not None:
             p, u = self.best.position_m.copy(), self.best.axis.copy()
             multipliers = np.empty(len(family.numerator_point))
@@ -165,13 +163,12 @@ class Exchange:
         self.evaluations += found.evaluations
         return found
 
-    def prove(self, level: float, began: float, on_progress: Callable[[float, int], None] | None) -> bool:
+    def prove(self, level: float, began: float) -> bool:
         """Bound the finite family by a level; return whether to search on, since a better pose turned up.
 
         Args:
             level: the ratio that no pose is to exceed.
             began: when the clock of the limits began.
-            on_progress: called now and then with the gap proved so far and the boxes examined.
         """
         assert self.incumbent is not None
         start = self.incumbent
@@ -183,7 +180,7 @@ class Exchange:
         if not gap > _LEAST_GAP:  # the search was cut short
             gap = self.limits.ratio_gap(value)
         target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
-        proof = prove(self.family, self.axis_field, start, target, on_progress=on_progress, used=used)
+        proof = prove(self.family, self.axis_field, start, target, used=used)
         self.boxes += proof.nodes
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)

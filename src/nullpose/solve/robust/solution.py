@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.quantity import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve.limits import LEAST_RATE_BPS_HZ
-from nullpose.solve.proof import INTERRUPT
-from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
-from nullpose.solve.solution import Stats, Status
 
-__all__ = ["GuardedPose", "RobustSolution"]
+__all__ = ["GuardedPose", "RobustDetails"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,11 +60,7 @@ class GuardedPose:
     def to_dict(self) -> dict[str, Any]:
         """Return the pose and its values as plain data for JSON."""
         return {
-            "position_m": [float(x) for x in self.pose.position_m],
-            "roll_rad": self.pose.roll_rad,
-            "pitch_rad": self.pose.pitch_rad,
-            "yaw_rad": self.pose.yaw_rad,
-            "antenna_axis": [float(x) for x in self.pose.antenna_axis],
+            **self.pose.to_dict(),
             "nominal": self.nominal,
             "guaranteed": self.guaranteed,
             "worst_found": self.worst,
@@ -91,56 +81,18 @@ class GuardedPose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RobustSolution:
-    """The pose with the largest guaranteed objective, and how good any could be.
+class RobustDetails:
+    """What the pose that guarantees most guarantees, beside the nominal one.
 
     Args:
-        scenario: what was solved.
-        status: how the solve ended.
         robust: the pose that guarantees most.
         nominal: the pose that is best where all is as stated.
-        upper_bound: no pose guarantees more than this; None if nothing is proved about others.
-        reason: why the gap was not reached, or not aimed at; empty if it was.
         cases: error cases that the bound rests on.
-        stats: time and counts.
-        provenance: versions, seed and settings that produced it.
     """
 
-    scenario: Scenario
-    status: Status
     robust: GuardedPose
     nominal: GuardedPose
-    upper_bound: float | None
-    reason: str
     cases: int
-    stats: Stats
-    provenance: Mapping[str, Any]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
-
-    @property
-    def relative_gap(self) -> float | None:
-        """``(upper_bound - guaranteed) / guaranteed``, a rate below 1e-3 bits/s/Hz counting as so much.
-
-        Infinite where no power ratio is guaranteed; None without a bound.
-        """
-        if self.upper_bound is None:
-            return None
-        guaranteed = self.robust.guaranteed
-        if Quantity.of(self.scenario).is_rate:
-            return (self.upper_bound - guaranteed) / max(guaranteed, LEAST_RATE_BPS_HZ)
-        return self.upper_bound / guaranteed - 1.0 if guaranteed > 0.0 else math.inf
-
-    @property
-    def rigour(self) -> Rigour:
-        """How sure the guarantee and the bound are: robust poses have no certificates."""
-        return Rigour.FLOATING_POINT
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether Ctrl-C ended its search or its proof."""
-        return self.reason == INTERRUPT
 
     @property
     def gain(self) -> float:
@@ -148,27 +100,19 @@ class RobustSolution:
         guaranteed = self.nominal.guaranteed
         return self.robust.guaranteed / guaranteed if guaranteed > 0.0 else math.inf
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the solution as plain data for JSON; a number that JSON cannot hold becomes None."""
-        gap = self.relative_gap
+    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+        """Return both poses as plain data for JSON, over the keys of a result.
+
+        Args:
+            objective: what is guaranteed and the bound on it, as plain data.
+        """
         return {
-            "scenario": self.scenario.to_dict(),
-            "objective": self.scenario.objective,
-            "status": self.status.value,
-            "rigour": self.rigour.value,
-            "reason": self.reason,
+            "objective": self.robust.scenario.objective,
             "robust": self.robust.to_dict(),
             "nominal": self.nominal.to_dict(),
-            "upper_bound": self.upper_bound,
-            "relative_gap": gap if gap is not None and math.isfinite(gap) else None,
+            "upper_bound": objective["upper_bound"],
+            "relative_gap": objective["relative_gap"],
             "error_cases": self.cases,
-            "stats": {
-                "wall_s": self.stats.wall_s,
-                "starts": self.stats.starts,
-                "evaluations": self.stats.evaluations,
-                "boxes": self.stats.boxes,
-            },
-            "provenance": dict(self.provenance),
         }
 
 

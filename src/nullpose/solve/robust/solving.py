@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Unpack
 
 from nullpose.family import AxisField
-from nullpose.physics import Pose
-from nullpose.physics.quantity import Quantity
+from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
-from nullpose.solve.limits import NODE_LIMIT, TIME_LIMIT_S, Limits
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.precompile import ready
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
+from nullpose.solve.result import Objective, Result, Stats, Status, objective_of
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.exchange import Exchange
 from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
 from nullpose.solve.robust.inner import Inner
-from nullpose.solve.robust.solution import GuardedPose, RobustSolution
-from nullpose.solve.solution import Stats, Status
+from nullpose.solve.robust.solution import GuardedPose, RobustDetails
 
 __all__ = ["ROBUST_GAP", "solve_robust"]
 
@@ -29,13 +31,9 @@ ROBUST_GAP = 1e-2
 def solve_robust(
     scenario: Scenario,
     *,
-    gap: float = ROBUST_GAP,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
     on_progress: Callable[[float, int], None] | None = None,
-) -> RobustSolution:
+    **options: Unpack[SolveKeywords],
+) -> Result:
     """Return the pose whose objective is largest when the scenario's errors do their worst.
 
     Maximises the smallest margin or secrecy rate over all errors together: an actual axis within
@@ -45,30 +43,21 @@ def solve_robust(
 
     Args:
         scenario: with errors or without, which makes the guaranteed value the nominal one.
-        gap: relative gap between bound and guaranteed value that is aimed at.
-        time_limit_s: seconds after which the search and the proof stop.
-        node_limit: boxes after which the proof stops.
-        certify: whether to bound what any pose guarantees.
-        seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
         on_progress: called now and then during the proof with the gap so far and the boxes examined.
+        options: as for :func:`nullpose.solve`; the gap is ``ROBUST_GAP`` unless another is asked for.
 
     Raises:
         UsageError: an array in place of the dipole, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
-    limits = Limits(
-        gap=gap,
-        time_limit_s=time_limit_s,
-        node_limit=node_limit,
-        of_rate=scenario.objective == "secrecy-rate",
-    )
+    limits = SolveOptions(**options, on_progress=on_progress).of(scenario, ROBUST_GAP)
     inner = Inner(require_dipole(scenario))
     began = time.perf_counter()
-    nominal = solve(scenario, certify=False, seed=seed).pose
+    nominal = solve(scenario, certify=False, seed=limits.seed).pose
     field = AxisField.within(*scenario.axis_band)
-    exchange = Exchange(inner, field, seed, limits)
+    exchange = Exchange(inner, field, limits)
     exchange.add(exchange.visit(nominal.position_m, nominal.antenna_axis))
-    if certify:
+    if limits.certify:
         ready(exchange.family, field)  # compiling must not count against the time limit
     clock = time.perf_counter()
     try:
@@ -76,30 +65,33 @@ def solve_robust(
         while again:
             exchange.search(clock + limits.time_limit_s)
             level = exchange.level(_best(exchange).guarantee.lower)
-            again = certify and exchange.prove(level, clock, on_progress)
+            again = limits.certify and exchange.prove(level, clock)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
     robust = _best(exchange)
-    upper_bound = (
-        None if exchange.upper_bound is None else Quantity.of(scenario).of_ratio(exchange.upper_bound)
-    )
     status, reason = _status(exchange, robust.guarantee.lower)
-    return RobustSolution(
+    return Result(
         scenario=scenario,
+        scheme="robust",
         status=status,
-        robust=robust,
-        nominal=_guarded(exchange, nominal),
-        upper_bound=upper_bound,
+        objective=_objective(scenario, robust.guaranteed, exchange.upper_bound),
+        pose=robust.pose,
+        links=evaluate(scenario, robust.pose),
         reason=reason,
-        cases=len(exchange.cases),
         stats=Stats(
             wall_s=time.perf_counter() - began,
             starts=exchange.starts,
             evaluations=exchange.evaluations,
             boxes=exchange.boxes,
         ),
-        provenance=provenance(seed) | {"gap": gap},
+        provenance=provenance(limits.seed) | {"gap": limits.target},
+        details=RobustDetails(robust=robust, nominal=_guarded(exchange, nominal), cases=len(exchange.cases)),
     )
+
+
+def _objective(scenario: Scenario, guaranteed: float, ratio_bound: float | None) -> Objective:
+    """Return what is guaranteed and the bound on it, both of which rest on floating-point proofs."""
+    return replace(objective_of(scenario, guaranteed, ratio_bound), rigour=Rigour.FLOATING_POINT)
 
 
 def _best(exchange: Exchange) -> GuardedPose:

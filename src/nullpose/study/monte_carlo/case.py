@@ -210,6 +210,12 @@ class StudyCase(Section):
                 if data.get(key) is not None:
                     yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
 
+    @property
+    def is_best_pose(self) -> bool:
+        """Whether the best pose of a vehicle with one dipole is asked for, everything being as stated."""
+        searched = not self.robust and self.array is None and self.pose is None
+        return searched and self.scheme in (None, Scheme.OPTIMUM)
+
     def on(self, scenario: Scenario) -> Scenario:
         """Return the scene with this case's vehicle in place of its own.
 

@@ -7,11 +7,11 @@ import time
 from typing import Any
 
 from nullpose.errors import NullposeError
+from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve import NODE_LIMIT, Status, solve, solve_array
-from nullpose.solve.objective import objective_of
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.robust import solve_robust
 from nullpose.study.monte_carlo.case import StudyCase
@@ -62,9 +62,10 @@ def reason_of(error: Exception) -> str:
 def _solved(spec: StudySpec, case: StudyCase, scene: Scenario) -> dict[str, Any]:
     if case.pose is not None:
         pose = case.pose.on(scene)
-        objective = objective_of(scene, links := evaluate(scene, pose), None)
+        links = evaluate(scene, pose)
+        value = Quantity.of(scene).least(links)
         deciding = min(links, key=lambda link: _deciding(link.sinr, link.margin, link.secrecy_rate_bps_hz))
-        return _row(Status.BEST_FOUND, GIVEN_POSE, objective.value, None, None, pose, deciding.node, 0)
+        return _row(Status.BEST_FOUND, GIVEN_POSE, value, None, None, pose, deciding.node, 0)
     if case.robust:
         limits = limits_of(spec, case)
         del limits["threads"]

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from nullpose.report.study.figures.curves import draw_along, draw_effort
-from nullpose.report.study.figures.distributions import draw_distributions, draw_outage
+from nullpose.report.study.figures.curves import draw_along, draw_distributions, draw_effort, draw_outage
 from nullpose.report.study.figures.intervals import draw_costs, draw_gains, draw_shares
 from nullpose.report.study.summary import Summary
 
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FIGURES", "figures_of"]
 
+# What draws each figure, in the order of the report; None where there is nothing to draw.
 FIGURES: dict[str, Callable[[Summary], Figure | None]] = {
     "distribution": draw_distributions,
     "gain": draw_gains,
@@ -24,14 +24,13 @@ FIGURES: dict[str, Callable[[Summary], Figure | None]] = {
     "robustness": draw_costs,
     "effort": draw_effort,
 }
-"""What draws each figure, in the order of the report; None where there is nothing to draw."""
 
 
 def figures_of(summary: Summary) -> Iterator[tuple[str, Figure]]:
     """Yield the figures that a study has something for, each with the name of its file.
 
     Args:
-        summary: of the study.
+        summary: of a study.
     """
     for name, draw in FIGURES.items():
         figure = draw(summary)

@@ -1,15 +1,15 @@
-"""Small multiples that a report's figures share: a panel for each combination of swept values."""
+"""What a report's figures share: panels side by side with a legend above, and how cases are drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, VEHICLES, Curve
+from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.summary import Summary
 
@@ -17,15 +17,40 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["finish", "looks_of", "new_panels", "points_with", "row_axis", "step_curve", "style_of"]
+__all__ = [
+    "QUARTERS",
+    "Labels",
+    "draw_curve",
+    "handles_of",
+    "looks_of",
+    "panel_titles",
+    "points_with",
+    "side_by_side",
+]
+
+QUARTERS = ([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])  # ticks of an axis of shares
 
 _WIDTH = 7.0  # inches: the text of a page
 _LETTERS = 92  # of a legend's row, a handle being as wide as six
-_STEPS = 500  # of a curve, about; more are not seen, and make a heavy file
 
 _FALLBACK = ("#d55e00", "#000000", "#8c564b", "#7f7f00", "#6a3d9a", "#8c8c8c")
 _LINES: tuple[Any, ...] = ("-", (0, (5, 1.6)), (0, (3, 1.2, 1, 1.2)), (0, (1.2, 1.2)))
 _MARKERS = ("X", "P", "h", "<", ">", "d")
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """What stands around the panels of a figure.
+
+    Args:
+        across: what is across, with its unit.
+        up: what is up, with its unit; empty where rows have names.
+        note: a line below, about what is drawn.
+    """
+
+    across: str = ""
+    up: str = ""
+    note: str = ""
 
 
 def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
@@ -51,15 +76,52 @@ def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
     return looks
 
 
-def style_of(look: Curve, marker: str = "") -> dict[str, Any]:
-    """Return how a case's line is drawn, as Matplotlib's arguments.
+def draw_curve(
+    axes: Axes,
+    look: Curve,
+    across: FloatArray,
+    heights: FloatArray,
+    band: tuple[FloatArray, FloatArray] | None = None,
+    *,
+    steps: bool = False,
+    every: Any = None,
+) -> None:
+    """Draw a case's curve, with a band where both of its ends are known.
 
     Args:
+        axes: the panel.
         look: of the case.
-        marker: of its points; empty for none.
+        across: where.
+        heights: how high; infinite ones are left out.
+        band: lower and upper end.
+        steps: whether a height holds up to the next place.
+        every: which points have a marker, as Matplotlib has it; all without.
     """
-    style: dict[str, Any] = {"color": look.colour, "linestyle": look.line, "linewidth": look.width}
-    return style | {"marker": marker, "markerfacecolor": "white", "zorder": look.order, "label": look.label}
+    heights = np.where(np.isfinite(heights), heights, np.nan)
+    drawstyle = "steps-post" if steps else "default"
+    axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **_style(look))
+    if band is not None:
+        axes.fill_between(
+            across,
+            *band,
+            where=np.isfinite(band[0]) & np.isfinite(band[1]),
+            step="post" if steps else None,
+            color=look.colour,
+            alpha=0.12,
+            linewidth=0.0,
+            zorder=1.0,
+        )
+
+
+def handles_of(cases: Sequence[ReportCase]) -> list[Any]:
+    """Return what stands for the cases' curves in a legend.
+
+    Args:
+        cases: of the study.
+    """
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], **_style(look)) for look in looks_of(cases).values()]
 
 
 def points_with(summary: Summary, cases: Iterable[ReportCase]) -> tuple[int, ...]:
@@ -71,92 +133,76 @@ def points_with(summary: Summary, cases: Iterable[ReportCase]) -> tuple[int, ...
     """
     places = [case.place for case in cases]
     value = summary.values.value
-    return tuple(
-        point for point in summary.points.shown if places and not np.all(np.isnan(value[:, point, places]))
-    )
+    return tuple(point for point in summary.points.shown if not np.all(np.isnan(value[:, point, places])))
 
 
-def new_panels(
-    summary: Summary, points: Sequence[int], *, height: float, share_y: bool = True
-) -> tuple[Figure, list[Axes]]:
-    """Return a figure with a panel for each combination, its values as title.
+def panel_titles(summary: Summary, points: Sequence[int]) -> list[str]:
+    """Return the swept values of some combinations, as the titles of their panels.
 
     Args:
         summary: of a study.
-        points: numbers of the combinations, at least one.
+        points: numbers of the combinations.
+    """
+    words = map(summary.points.words, points)
+    return [each.replace("P_M/P", "$P_M / P$").replace(", ", "\n") for each in words]
+
+
+def side_by_side(
+    titles: Sequence[str],
+    draw: Callable[[Axes, int], None],
+    handles: Sequence[Any],
+    labels: Labels,
+    *,
+    height: float,
+    share_x: bool = True,
+) -> Figure:
+    """Return a figure with a panel for each title, two in a row, and a legend above them.
+
+    Args:
+        titles: of the panels, at least one.
+        draw: draws what is in a panel, given the place of its title.
+        handles: of the legend; none for no legend.
+        labels: around the panels.
         height: of a panel, inches.
-        share_y: whether all have the same vertical axis, named on the left only.
+        share_x: whether all have the same horizontal axis.
     """
     from matplotlib.figure import Figure
 
-    across = 1 if len(points) == 1 else 2
-    down = -(-len(points) // across)
-    figure = Figure(figsize=(_WIDTH, (1.3 if down == 1 else 0.9) + height * down), layout="constrained")
-    grid = figure.subplots(down, across, sharex=True, sharey=share_y, squeeze=False)
-    panels: list[Axes] = list(grid.flat)
-    for axes, point in zip(panels, points, strict=False):
-        words = summary.points.words(point).replace("P_M/P", "$P_M / P$").replace(", ", "\n")
-        axes.set_title(words, loc="left", fontsize=9.0)
-    for axes in panels[len(points) :]:
-        axes.set_visible(False)
-        panels[len(points) - across].tick_params(labelbottom=True)
-    return figure, panels[: len(points)]
+    across = min(2, len(titles))
+    down = -(-len(titles) // across)
+    with house_style():
+        figure = Figure(figsize=(_WIDTH, (1.3 if down == 1 else 0.9) + height * down), layout="constrained")
+        panels = figure.subplots(down, across, sharex=share_x, sharey=True, squeeze=False).flat
+        for place, axes in enumerate(panels):
+            if place < len(titles):
+                axes.set_title(titles[place], loc="left", fontsize=9.0)
+                draw(axes, place)
+            else:
+                axes.remove()
+                panels[place - across].tick_params(labelbottom=True)
+        if handles:
+            _add_legend(figure, handles)
+        figure.supylabel(labels.up, fontsize=9.5)
+        figure.supxlabel(f"{labels.across}\n" if labels.note else labels.across, fontsize=9.5)
+        figure.text(0.012, 0.008, labels.note, fontsize=7.5, color=GREY, va="bottom", ha="left")
+    return figure
 
 
-def finish(figure: Figure, handles: Sequence[Any], xlabel: str, ylabel: str, note: str = "") -> None:
-    """Put the legend above the panels and the labels around them.
-
-    Args:
-        figure: with its panels.
-        handles: of the legend; none for no legend.
-        xlabel: what is across, with its unit.
-        ylabel: what is up, with its unit; empty where rows have names.
-        note: a line below, about what is drawn.
-    """
-    if handles:
-        letters = [len(str(handle.get_label())) for handle in handles]
-        in_one_row = sum(letters) + 6 * len(letters) <= _LETTERS
-        figure.legend(
-            handles=list(handles),
-            loc="outside upper center",
-            ncols=len(letters) if in_one_row else max(1, min(4, _LETTERS // (max(letters) + 8))),
-            frameon=False,
-            fontsize=8.5,
-            handlelength=2.6,
-            columnspacing=1.2,
-        )
-    if ylabel:
-        figure.supylabel(ylabel, fontsize=9.5)
-    if note:
-        xlabel = f"{xlabel}\n"
-        figure.text(0.012, 0.008, note, fontsize=7.5, color=GREY, va="bottom", ha="left")
-    figure.supxlabel(xlabel, fontsize=9.5)
+def _add_legend(figure: Figure, handles: Sequence[Any]) -> None:
+    letters = [len(str(handle.get_label())) for handle in handles]
+    in_one_row = sum(letters) + 6 * len(letters) <= _LETTERS
+    figure.legend(
+        handles=list(handles),
+        loc="outside upper center",
+        ncols=len(letters) if in_one_row else max(1, min(4, _LETTERS // (max(letters) + 8))),
+        frameon=False,
+        fontsize=8.5,
+        handlelength=2.6,
+        columnspacing=1.2,
+    )
 
 
-def step_curve(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of an empirical distribution function, thinned if there are very many.
-
-    Args:
-        numbers: shape ``(n,)``, at least one, none NaN; infinities count and are drawn outside.
-    """
-    ordered = np.sort(numbers)
-    shares = np.arange(1, len(ordered) + 1) / len(ordered)
-    if len(ordered) > 2 * _STEPS:
-        evenly = np.linspace(0, len(ordered) - 1, _STEPS)
-        tail = np.geomspace(1, len(ordered), _STEPS // 2) - 1  # outage is read where it is rare
-        kept = np.unique(np.concatenate([evenly, tail]).round().astype(int))
-        ordered, shares = ordered[kept], shares[kept]
-    return ordered, shares
-
-
-def row_axis(axes: Axes, names: Sequence[str]) -> None:
-    """Give a panel a row for each case, the first on top.
-
-    Args:
-        axes: the panel.
-        names: of the cases.
-    """
-    axes.set_yticks(range(len(names)), list(names))
-    axes.tick_params(axis="y", length=0)
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.grid(visible=False, axis="y")
+def _style(look: Curve) -> dict[str, Any]:
+    """Return how a case's line is drawn, as Matplotlib's arguments."""
+    line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}
+    return line | {"marker": look.marker, "markersize": 4.2, "markerfacecolor": "white", "zorder": look.order}

@@ -1,0 +1,19 @@
+"""The objectives, one file each: what a scenario may ask to be made as large as it can be.
+
+Everything that depends on the objective asks its record. A new objective is a record in a file, and its name
+in the list below.
+"""
+
+from __future__ import annotations
+
+from nullpose.objectives.min_sinr import MIN_SINR
+from nullpose.objectives.quantity import LEAST_RATE_BPS_HZ, Quantity
+from nullpose.objectives.record import ObjectiveRecord, RatioArrays
+from nullpose.objectives.secrecy_rate import SECRECY_RATE
+
+__all__ = ["LEAST_RATE_BPS_HZ", "RECORDS", "USUAL", "ObjectiveRecord", "Quantity", "RatioArrays"]
+
+RECORDS = {record.name: record for record in (MIN_SINR, SECRECY_RATE)}
+
+USUAL = MIN_SINR.name
+"""The objective of a scenario that names none."""

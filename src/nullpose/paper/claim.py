@@ -1,0 +1,93 @@
+"""One claim of the paper, how it is measured, and what the data say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from nullpose.paper.study import JammingStudy
+from nullpose.report.certainty import Certainty
+from nullpose.schemes import Scheme
+
+__all__ = ["Claim"]
+
+_SEARCHED = Scheme.MAXIMUM_GAIN_PRINTED  # nothing is ever proved of it, which the claims that use it say
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A claim of the paper; once checked, with what was found.
+
+    Args:
+        id: a name that does not change, such as ``weak-jamming-maximum-gain``.
+        claim: what the paper says, in our words.
+        source: where the paper says it.
+        method: what is measured, and what counts as confirmed.
+        unproved: what the claim rests on besides proofs: samples, bisections, the place of a pose.
+        measure: returns the following, from the data; the certainty apart.
+        holds: whether the data bear it out.
+        finding: one or two sentences with the decisive numbers.
+        evidence: the numbers, by name with their unit.
+        proved: what follows from the certified bounds, given that all values are certified.
+        holds_up_to: the largest P_M/P up to which it holds, where that is less than all swept.
+        holds_from: the smallest P_M/P from which it holds on, where that is more than the least swept.
+        fails_from: the smallest P_M/P from which it fails, where it fails.
+        certainty: the status of the values that it rests on, eq. 3.5 as printed apart.
+    """
+
+    id: str
+    claim: str
+    source: str
+    method: str
+    unproved: str
+    measure: Callable[[JammingStudy], dict[str, Any]]
+    holds: bool = False
+    finding: str = ""
+    evidence: Mapping[str, Any] = field(default_factory=dict)
+    proved: str = ""
+    holds_up_to: float | None = None
+    holds_from: float | None = None
+    fails_from: float | None = None
+    certainty: Certainty | None = None
+
+    def checked(self, study: JammingStudy) -> Claim:
+        """Return the claim with its verdict, and what it rests on.
+
+        Args:
+            study: the data.
+        """
+        study.used.clear()
+        measured = self.measure(study)
+        rows = [row for row in study.used.values() if row.scheme != _SEARCHED]
+        return replace(self, **measured, certainty=Certainty.of(rows))
+
+    @property
+    def verdict(self) -> str:
+        """Whether the data bear the claim out, in a word."""
+        return "holds" if self.holds else "fails"
+
+    @property
+    def proved_words(self) -> str:
+        """What is proved of the claim, which is nothing if one of its values is not certified."""
+        if self.certainty is None or not self.certainty.complete:
+            return "Nothing: not every value that it rests on is certified."
+        return self.proved
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the claim as plain data."""
+        return {
+            "id": self.id,
+            "claim": self.claim,
+            "source": self.source,
+            "verdict": self.verdict,
+            "finding": self.finding,
+            "evidence": dict(self.evidence),
+            "holds_up_to": self.holds_up_to,
+            "holds_from": self.holds_from,
+            "fails_from": self.fails_from,
+            "method": self.method,
+            "certainty": None if self.certainty is None else self.certainty.to_dict(),
+            "proved": self.proved_words,
+            "unproved": self.unproved,
+        }

@@ -1,0 +1,164 @@
+"""Claims on places: where the null points, where the vertical antenna ends up, how far the nodes are."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from nullpose.paper.scene import with_jamming
+from nullpose.paper.study import JammingStudy, bound_db, lead_of
+from nullpose.paper.told import NOISE, PRINTED, RATIO, Measured, apart_m, told
+from nullpose.physics import received_power_w, to_db
+from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.report.numbers import at_least, at_most
+from nullpose.schemes import Scheme
+
+__all__ = ["ABOVE_M", "BETTER_DB", "POINTED_DEG", "above_jammer", "equidistant", "null_at_jammer"]
+
+POINTED_DEG = 1.0
+ABOVE_M = 0.1
+BETTER_DB = 1e-4
+
+_GAIN, _VERTICAL = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL
+
+
+def null_at_jammer(study: JammingStudy) -> Measured:
+    """Return how far maximum gain's null is off the jammer as the jamming grows.
+
+    Args:
+        study: the data.
+    """
+    jammer_m = study.scenario.jammer_positions_m[0]
+    strongest = study.levels[-1]
+
+    def off_deg(level: float) -> float:
+        return math.degrees(null_angle_rad(study.at(_GAIN, level).pose, jammer_m))
+
+    limit = study.holds_from(lambda level: off_deg(level) <= POINTED_DEG)
+    levels = (0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, strongest)
+    place = ", ".join(f"{x:.2f}" for x in study.at(_GAIN, strongest).pose.position_m)
+    return {
+        "holds": limit is not None,
+        "finding": f"The null is within {POINTED_DEG:g} degree of the jammer from {told(limit)} on, and "
+        f"{off_deg(strongest):.2g} degrees off it at P_M/P = {strongest:g}, where the drone is at ({place}) "
+        f"m; along the line of the nodes the jammer is at y = {jammer_m[1]:g} m.",
+        "evidence": {
+            "levels": [
+                {
+                    RATIO: level,
+                    "angle_between_null_and_jammer_deg": off_deg(level),
+                    "jamming_to_noise_db": _jamming_to_noise_db(study, level),
+                    "position_m": study.at(_GAIN, level).pose.position_m.tolist(),
+                }
+                for level in levels
+            ]
+        },
+        "proved": "At every level looked at, no pose of the case is better, by more than the gap, than the "
+        "one whose angle is measured.",
+        "holds_from": limit,
+    }
+
+
+def _jamming_to_noise_db(study: JammingStudy, level: float) -> float:
+    scenario, pose = with_jamming(study.scenario, level), study.at(_GAIN, level).pose
+    received_w = received_power_w(
+        pose.position_m,
+        pose.antenna_axis,
+        scenario.jammer_positions_m,
+        scenario.jammer_powers_w,
+        scenario.receiver.reference_gain,
+    )
+    return float(to_db(received_w.sum() / scenario.receiver.noise_power_w))
+
+
+def above_jammer(study: JammingStudy) -> Measured:
+    """Return how far, seen from above, the vertical antenna is from the jammer as the jamming grows.
+
+    Args:
+        study: the data.
+    """
+
+    def off_m(level: float) -> float:
+        away_m = study.at(_VERTICAL, level).pose.position_m - study.scenario.jammer_positions_m[0]
+        return math.hypot(away_m[0], away_m[1])
+
+    limit = study.holds_from(lambda level: off_m(level) <= ABOVE_M)
+    weakest, strongest = study.levels[0], study.levels[-1]
+    before = [level for level in study.levels if limit is None or level < limit] or [weakest]
+    return {
+        "holds": limit is not None,
+        "finding": f"Within {ABOVE_M} m of the vertical above the jammer from {told(limit)} on, and "
+        f"{off_m(strongest):.1g} m from it at P_M/P = {strongest:g}. It does not glide there: it is "
+        f"{off_m(weakest):.1f} m from it at P_M/P = {weakest:g}, {off_m(before[-1]):.1f} m at "
+        f"{before[-1]:.3g}, and then jumps.",
+        "evidence": {
+            "levels": [
+                {
+                    RATIO: level,
+                    "horizontal_distance_m": off_m(level),
+                    "position_m": study.at(_VERTICAL, level).pose.position_m.tolist(),
+                    "value_db": study.at(_VERTICAL, level).min_sinr_db,
+                }
+                for level in sorted({weakest, 0.01, 0.1, before[-1], 1.0, 10.0, 1000.0, strongest})
+            ]
+        },
+        "proved": "At every level looked at, no upright pose is better, by more than the gap, than the one "
+        "whose distance is measured.",
+        "holds_from": limit,
+    }
+
+
+def equidistant(study: JammingStudy) -> Measured:
+    """Return how far the best maximum-gain position is ahead of the best equidistant one.
+
+    Args:
+        study: the data.
+    """
+
+    def ahead_db(level: float) -> float:
+        return lead_of(study.at(_GAIN, level), study.equidistant_at(_GAIN, level)).found_db
+
+    limit = study.holds_up_to(lambda level: ahead_db(level) <= BETTER_DB)
+    failing = [level for level in study.levels if limit is None or level > limit]
+    leads = [lead_of(study.at(_GAIN, x), study.equidistant_at(_GAIN, x)) for x in failing]
+    proved_db = min((lead.least_db for lead in leads), default=0.0)
+    printed = study.curve(PRINTED)
+    levels = [
+        _equidistant_row(study, level) for level in (0.1, 1.0, 1.4, 1.6, 3.0, 10.0, 1e3, study.levels[-1])
+    ]
+    three = levels[4]
+    first_m, second_m = three["distances_m"]
+    as_printed = {
+        "largest_distance_difference_m": apart_m(study, printed),
+        "largest_lead_over_equidistant_db": max(
+            lead_of(row, study.equidistant_at(PRINTED, row.value)).found_db for row in printed
+        ),
+    }
+    return {
+        "holds": not failing,
+        "finding": f"Equidistant up to {told(limit)} only. At P_M/P = 3 the best position is {first_m:.1f} m "
+        f"and {second_m:.1f} m from the nodes and reaches {three['best_db']:.3f} dB; the best equidistant "
+        f"one reaches {three['best_equidistant_db']:.3f} dB. With the axis of eq. 3.4 as printed, not "
+        "normalised, the distances never differ by more than "
+        f"{max(as_printed['largest_distance_difference_m'], NOISE):.1g} m.",
+        "evidence": {"levels": levels, "as_printed": as_printed},
+        "proved": "At P_M/P = 3 no equidistant position reaches more than "
+        f"{at_most(bound_db(study.equidistant_at(_GAIN, 3.0)), 5)} dB, and the position found reaches "
+        f"{at_least(three['best_db'], 5)} dB. At each of the {len(failing)} swept levels above "
+        f"{limit or 0.0:.3g} the best position is ahead of every equidistant one by at least "
+        f"{at_least(proved_db)} dB.",
+        "holds_up_to": limit,
+        "fails_from": (limit or failing[0]) if failing else None,
+    }
+
+
+def _equidistant_row(study: JammingStudy, level: float) -> dict[str, Any]:
+    row, equal = study.at(_GAIN, level), study.equidistant_at(_GAIN, level)
+    return {
+        RATIO: level,
+        "best_db": row.min_sinr_db,
+        "position_m": row.pose.position_m.tolist(),
+        "distances_m": [distance_m(row.pose, node_m) for node_m in study.scenario.node_positions_m],
+        "best_equidistant_db": equal.min_sinr_db,
+        "best_equidistant_position_m": equal.pose.position_m.tolist(),
+    }

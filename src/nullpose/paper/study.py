@@ -1,0 +1,152 @@
+"""The data behind the claims: a sweep over the jamming level, and single solves between its points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from nullpose.paper.scene import JAMMER_POWER
+from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.study import SweepRow, SweepTable, sweep
+
+__all__ = ["JammingStudy", "Lead", "bound_db", "lead_of"]
+
+_BISECTIONS = 12  # of a twelfth of a decade: relative precision 5e-5
+_EQUIDISTANT = "halfway between the nodes"
+
+
+class Lead(NamedTuple):
+    """How far one case is ahead of another, dB: as found, and between which numbers it truly is, proved."""
+
+    least_db: float
+    found_db: float
+    most_db: float
+
+
+class JammingStudy:
+    """A scenario with one jammer, seen at any jamming level; no level is solved twice.
+
+    It notes in ``used`` which rows are looked at, so that a claim can say what it rests on.
+
+    Args:
+        scenario: the paper's scenario.
+        table: its sweep over the jammer's power, at ascending levels.
+        seed: the random seed of the solves between the table's points.
+    """
+
+    def __init__(self, scenario: Scenario, table: SweepTable, seed: int = 0) -> None:
+        self.scenario = scenario
+        self.table = table
+        self.seed = seed
+        self.levels = table.values
+        self.used: dict[tuple[str, float], SweepRow] = {}
+        self._rows = {(row.scheme, row.value): row for row in table.rows}
+
+    def at(self, scheme: str, level: float) -> SweepRow:
+        """Return the pose of a scheme at a jamming level, solved now if it has not been yet.
+
+        Args:
+            scheme: the scheme's name.
+            level: P_M/P, a power ratio.
+        """
+        return self._row((scheme, float(level)), scheme, self.scenario)
+
+    def curve(self, scheme: str) -> tuple[SweepRow, ...]:
+        """Return a scheme's rows at the swept levels.
+
+        Args:
+            scheme: the scheme's name.
+        """
+        return tuple(self.at(scheme, row.value) for row in self.table.of(scheme))
+
+    def equidistant_at(self, scheme: str, level: float) -> SweepRow:
+        """Return a scheme's best pose among those equally far from both nodes.
+
+        The paper's nodes lie north of one another, so that these are the positions of one northing: an
+        airspace as thin as that is solved like any other.
+
+        Args:
+            scheme: the scheme's name.
+            level: P_M/P, a power ratio.
+        """
+        north_m = float(self.scenario.node_positions_m[:, 1].mean())
+        plane = apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
+        return self._row((f"{scheme} {_EQUIDISTANT}", float(level)), scheme, plane)
+
+    def _row(self, key: tuple[str, float], scheme: str, scenario: Scenario) -> SweepRow:
+        if key not in self._rows:
+            solved = sweep(scenario, JAMMER_POWER, [key[1]], schemes=[scheme], seed=self.seed)
+            self._rows[key] = solved.rows[0]
+        self.used[key] = self._rows[key]
+        return self._rows[key]
+
+    def lead(self, scheme: str, other: str, level: float) -> Lead:
+        """Return how far one scheme's smallest SINR is above another's.
+
+        Args:
+            scheme: the scheme's name.
+            other: the one it is compared with.
+            level: P_M/P, a power ratio.
+        """
+        return lead_of(self.at(scheme, level), self.at(other, level))
+
+    def holds_up_to(self, condition: Callable[[float], bool]) -> float | None:
+        """Return the largest level up to which a condition holds, nothing if it fails at the first.
+
+        Every swept level below it was looked at; between the last that holds and the first that fails the
+        level is bisected.
+
+        Args:
+            condition: what is asked of a level.
+        """
+        return _last_holding(condition, self.levels)
+
+    def holds_from(self, condition: Callable[[float], bool]) -> float | None:
+        """Return the smallest level from which a condition holds, nothing if it fails at the last.
+
+        Args:
+            condition: what is asked of a level.
+        """
+        return _last_holding(condition, self.levels[::-1])
+
+
+def bound_db(row: SweepRow) -> float:
+    """Return the upper bound of a row, dB; infinite where nothing is proved.
+
+    Args:
+        row: of a sweep.
+    """
+    return math.inf if row.upper_bound_db is None else row.upper_bound_db
+
+
+def lead_of(row: SweepRow, other: SweepRow) -> Lead:
+    """Return how far one row's smallest SINR is above another's.
+
+    Args:
+        row: of a sweep.
+        other: the one it is compared with.
+    """
+    found_db = row.min_sinr_db - other.min_sinr_db
+    return Lead(row.min_sinr_db - bound_db(other), found_db, bound_db(row) - other.min_sinr_db)
+
+
+def _last_holding(condition: Callable[[float], bool], levels: Sequence[float]) -> float | None:
+    """Return the last level, bisected, up to which a condition was seen to hold from the first of some on."""
+    holding = None
+    for level in levels:
+        if not condition(level):
+            return None if holding is None else _bisected(condition, holding, level)
+        holding = level
+    return holding
+
+
+def _bisected(condition: Callable[[float], bool], holding: float, failing: float) -> float:
+    """Return a level at which the condition was seen to hold, next to one at which it was seen to fail."""
+    for _ in range(_BISECTIONS):
+        middle = math.sqrt(holding * failing)
+        if condition(middle):
+            holding = middle
+        else:
+            failing = middle
+    return holding

@@ -1,0 +1,282 @@
+"""What was found for a scenario, as tables: with one dipole, with an array, or under errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from nullpose.physics import (
+    FramePose,
+    Pose,
+    antenna_gain,
+    eavesdropper_snr,
+    pose_frames,
+    received_power_w,
+    to_db,
+)
+from nullpose.physics.types import FloatArray
+from nullpose.report.document import beside, document, head, pairs, rows, table
+from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
+from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words
+from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
+from nullpose.scenario import Array, Scenario
+from nullpose.solve import Objective, Result
+from nullpose.solve.robust import GuardedPose
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = [
+    "BINDING_RTOL",
+    "array_view",
+    "azimuth_text",
+    "binding_nodes",
+    "frame_rows",
+    "robust_view",
+    "solution_view",
+    "work_words",
+]
+
+BINDING_RTOL = 1e-6
+"""Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
+
+_UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth worth telling
+_NULLED_DB = -150.0  # what is below it is rounding of the angle
+
+
+def binding_nodes(solution: Result) -> frozenset[str]:
+    """Return the names of the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``.
+
+    Args:
+        solution: what was found.
+    """
+    quantity = solution.objective.quantity
+    most = quantity.least(solution.links) * (1.0 + BINDING_RTOL)
+    return frozenset(link.node for link in solution.links if quantity.at(link) <= most)
+
+
+def work_words(starts: int, boxes: int) -> str:
+    """Return how many searches and boxes there were, in words.
+
+    Args:
+        starts: of searches.
+        boxes: of a proof; 0 for no proof.
+    """
+    return count_of(starts, "start") + (f", {count_of(boxes, 'box', 'boxes')}" if boxes else "")
+
+
+def azimuth_text(pose: Pose) -> str:
+    """Return the azimuth of the antenna's axis in degrees, a dash for an upright one.
+
+    Args:
+        pose: of the drone.
+    """
+    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else degrees_text(azimuth_rad(pose))
+
+
+def _head(result: Result, label: str, *more: str) -> RenderableType:
+    """Return what stands above any result: value, bound, how sure it is, the work behind it, and more."""
+    objective = result.objective
+    stats = result.stats
+    lines = (
+        bound_words(objective),
+        f"{result.status.message}{result.reason and f': {result.reason}'}",
+        "" if objective.upper_bound is None else objective.rigour.message,
+        f"{work_words(stats.starts, stats.boxes)}, {stats.wall_s:.2g} s",
+        *more,
+    )
+    value = f"{objective.quantity.smallest} {value_words(objective)}"
+    return head(result.scenario.name, label, value, lines)
+
+
+def solution_view(solution: Result) -> RenderableType:
+    """Return one solution as tables: value, pose, links, jammers and eavesdroppers.
+
+    Args:
+        solution: what was found.
+    """
+    scenario, objective, pose = solution.scenario, solution.objective, solution.pose
+    rate = objective.quantity.is_rate
+    gains = antenna_gain(pose.position_m, pose.antenna_axis, scenario.node_positions_m)
+    azimuth = azimuth_text(pose)
+    leaning = "" if azimuth == "-" else f", azimuth {azimuth} deg (0 east, 90 north)"
+    own = [
+        ("antenna axis", f"{degrees_text(tilt_rad(pose), 3)} deg from vertical{leaning}"),
+        ("", _in_brackets(pose.antenna_axis)),
+    ]
+    if scenario.airframe is not None:
+        own.insert(0, ("airframe", airframe_words(scenario.airframe, pose.tilt_rad)))
+    note = "Jamming does not depend on the pose; it is counted in the noise of the nodes."
+    return document(
+        _head(solution, solution.label, requirement_words(solution), solution.note),
+        pairs("", _pose_rows(scenario, pose, own)),
+        _links_table(solution, {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}),
+        None if rate else _jammers_table(scenario, pose),
+        _eavesdroppers_table(scenario, pose),
+        note if scenario.jammers and rate else None,
+    )
+
+
+def array_view(solution: Result) -> RenderableType:
+    """Return where an array hovers, its attitude, what nodes get, and the phases of a shared beam.
+
+    Args:
+        solution: what was found.
+    """
+    stats, phases_rad = solution.stats, solution.phases_rad
+    agreeing = f"{stats.agreeing} of {stats.searches} searches ended at this value"
+    array = Array(
+        elements=solution.elements, layout=solution.layout, spacing_wavelengths=solution.spacing_wavelengths
+    )
+    phases: list[Mapping[str, str]] = []
+    if phases_rad.ndim == 1:
+        phases = [  # the first element's is zero
+            {"element": str(i), "phase (deg)": degrees_text(float(phase_rad), 1)}
+            for i, phase_rad in enumerate(phases_rad - phases_rad[0], start=1)
+        ]
+    return document(
+        _head(solution, begun(solution.label), requirement_words(solution), agreeing),
+        pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(array))])),
+        _links_table(solution, {}),
+        table("Phase shifters", phases),
+    )
+
+
+def robust_view(solution: Result) -> RenderableType:
+    """Return a robust solution as tables: the guarantee, its bound, and both poses side by side.
+
+    Args:
+        solution: what was found.
+    """
+    robust, nominal = solution.robust, solution.nominal
+    objective, quantity = solution.objective, solution.objective.quantity
+    cells = {"robust pose": robust, "best pose as stated": nominal}
+    gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
+    more = f"The robust pose guarantees {gain:.4g} {quantity.unit} more than the best as stated."
+    if not nominal.guaranteed > 0.0:
+        more = "The best pose as stated guarantees nothing under these errors."
+    unbounded = "no bound on what another pose could guarantee" if solution.upper_bound is None else ""
+    errors = f"{count_of(solution.cases, 'error case')}; errors: {error_words(solution.scenario)}"
+    return document(
+        _head(solution, "Robust, guaranteed", unbounded, errors),
+        table(
+            "",
+            beside({name: _guarded_cells(objective, one) for name, one in cells.items()}),
+            bold=[f"guaranteed ({quantity.unit})"],
+        ),
+        *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
+        f"\n{more}",
+    )
+
+
+def _guarded_cells(objective: Objective, one: GuardedPose) -> dict[str, str]:
+    """Return what a pose guarantees, what it gives without errors, and where it is."""
+    pose, quantity = one.pose, objective.quantity
+    values = {"guaranteed": one.guaranteed, "worst found": one.worst, "without errors": one.nominal}
+    return {
+        **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
+        "position (m)": ", ".join(fixed(float(x), 3) for x in pose.position_m),
+        "roll, pitch, yaw (deg)": ", ".join(map(degrees_text, (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))),
+        "azimuth of the axis (deg)": azimuth_text(pose),
+        "worst off": one.binding_node,
+    }
+
+
+def _pose_rows(scenario: Scenario, pose: Pose, own: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return where the drone is and its attitude: names and words, between them what the antenna has."""
+    place = ", ".join(
+        f"{axis} {fixed(float(at), 4)} m" for axis, at in zip("xyz", pose.position_m, strict=True)
+    )
+    return [("position", place), ("attitude", _attitude_words(pose)), *own, *frame_rows(scenario, pose)]
+
+
+def _attitude_words(pose: Pose | FramePose) -> str:
+    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
+    return ", ".join(f"{name} {degrees_text(angle_rad, 3)} deg" for name, angle_rad in angles.items())
+
+
+def _in_brackets(numbers: Sequence[float] | FloatArray) -> str:
+    return f"({', '.join(fixed(float(number), 6) for number in numbers)})"
+
+
+def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str]]:
+    """Return a pose on the Earth, in NED and as quaternions: a name and words for each.
+
+    Args:
+        scenario: without an origin there is nothing to tell.
+        pose: of the drone.
+    """
+    frames = pose_frames(scenario, pose)
+    if frames.geodetic is None:
+        return []
+    north, east, down = (f"{component:z.4f}" for component in frames.ned.position_m)
+    return [
+        ("on the Earth", place_words(frames.geodetic)),
+        ("NED, body FRD", f"north {north} m, east {east} m, down {down} m"),
+        ("", _attitude_words(frames.ned)),
+        ("quaternion wxyz", f"{_in_brackets(frames.enu.quaternion_wxyz)} in ENU, body FLU"),
+        ("", f"{_in_brackets(frames.ned.quaternion_wxyz)} in NED, body FRD"),
+    ]
+
+
+def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> RenderableType | None:
+    """Return a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
+    scenario, quantity, links = solution.scenario, solution.objective.quantity, solution.links
+    binding = binding_nodes(solution)
+    own: dict[str, Sequence[str | None]] = {}
+    if quantity.noun != quantity.ratio:
+        numbers = [quantity.in_unit(quantity.at(link)) for link in links]
+        own[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
+        own[f"required {quantity.ratio} (dB)"] = [_stated(node.min_sinr_db) for node in scenario.nodes]
+        own["weight"] = [_stated(node.weight) for node in scenario.nodes]
+    if quantity.is_rate:
+        own["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
+    distances_m = [distance_m(solution.pose, point_m) for point_m in scenario.node_positions_m]
+    columns: dict[str, Sequence[str | None]] = {
+        "node": [link.node for link in links],
+        **own,
+        f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
+        quantity.ratio: [f"{link.sinr:.5g}" for link in links],
+        "distance (m)": [f"{distance:.2f}" for distance in distances_m],
+        **more,
+        "": ["binding" if link.node in binding else "" for link in links],
+    }
+    return table("Links", rows(columns), bold=binding, left=[""])
+
+
+def _stated(number: float | None) -> str | None:
+    return None if number is None else f"{number:.6g}"
+
+
+def _jammers_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
+    received_w = received_power_w(
+        pose.position_m,
+        pose.antenna_axis,
+        scenario.jammer_positions_m,
+        scenario.jammer_powers_w,
+        scenario.receiver.reference_gain,
+    )
+    ratios = received_w / scenario.receiver.noise_power_w
+    names, points_m = scenario.jammer_names, scenario.jammer_positions_m
+    return _nulls_table(pose, "jammer", names, points_m, "jamming to noise (dB)", ratios)
+
+
+def _eavesdroppers_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
+    if not scenario.eavesdroppers:
+        return None
+    ratios = eavesdropper_snr(scenario, pose.position_m, pose.antenna_axis)
+    names, points_m = scenario.eavesdropper_names, scenario.eavesdropper_positions_m
+    return _nulls_table(pose, "eavesdropper", names, points_m, "SNR (dB)", ratios)
+
+
+def _nulls_table(
+    pose: Pose, noun: str, names: Sequence[str], points_m: FloatArray, heading: str, ratios: FloatArray
+) -> RenderableType | None:
+    """Return how far the null is off each jammer or eavesdropper, and how strong the link with it is."""
+    columns = {
+        noun: names,
+        f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points_m],
+        "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points_m],
+        heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
+    }
+    return table(f"{noun.capitalize()}s", rows(columns))

@@ -1,0 +1,208 @@
+"""What a scenario amounts to before anything is solved: its numbers, and tables of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nullpose.objectives import Quantity
+from nullpose.physics import to_db
+from nullpose.physics.types import FloatArray
+from nullpose.report.document import document, head, pairs, rows, table
+from nullpose.report.words import airframe_words, array_words, place_words, reach_words
+from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+__all__ = ["scenario_view", "summarise"]
+
+_Point = Node | Jammer | Eavesdropper
+
+
+def summarise(scenario: Scenario) -> dict[str, Any]:
+    """Return a scenario's numbers as plain data: powers in both units, and the most that each link can carry.
+
+    The best a link can do is the drone as close as the airspace's box and the keep-out allow, the dipole
+    broadside: ``g0 P / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. A point with a noise
+    of its own hears the drone, any other is heard by it.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and airspace.
+    """
+    receiver = scenario.receiver
+    return {
+        "scenario": scenario.to_dict(),
+        "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if _is_rate(scenario) else None),
+        "jammers": _points(scenario, scenario.jammers, None),
+        "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
+        "noise_w": receiver.noise_power_w,
+        "noise_dbm": _dbm(receiver.noise_power_w),
+        "reference_gain_db": float(to_db(receiver.reference_gain)),
+    }
+
+
+def _is_rate(scenario: Scenario) -> bool:
+    return Quantity.of(scenario).is_rate
+
+
+def _dbm(power_w: float) -> float:
+    return float(to_db(power_w)) + 30.0
+
+
+def _points(
+    scenario: Scenario, points: Sequence[_Point], own_noise_w: FloatArray | None
+) -> list[dict[str, Any]]:
+    """Return each point with what it transmits, its noise where it hears the drone, and its best link."""
+    receiver, transmitter, told = scenario.receiver, scenario.transmitter, []
+    for i, point in enumerate(points):
+        power_w = getattr(point, "transmit_power_w", None) or None
+        nearest_m = _nearest_m(scenario, np.asarray(point.position_m))
+        sent_w, noise_w, own = power_w or 0.0, receiver.noise_power_w, {}
+        if own_noise_w is not None and transmitter is not None:
+            sent_w, noise_w = transmitter.transmit_power_w, float(own_noise_w[i])
+            own = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
+        ratio = receiver.reference_gain * sent_w / nearest_m**2 / noise_w
+        told.append(
+            {
+                "name": point.name,
+                "position_m": list(point.position_m),
+                "power_w": power_w,
+                "power_dbm": None if power_w is None else _dbm(power_w),
+                "nearest_m": nearest_m,
+                "best_power_to_noise_db": float(to_db(ratio)),
+                **own,
+            }
+        )
+    return told
+
+
+def _nearest_m(scenario: Scenario, position_m: FloatArray) -> float:
+    airspace = scenario.airspace
+    free = (-math.inf, math.inf)
+    sides = np.array([airspace.x_m or free, airspace.y_m or free, airspace.altitude_m])
+    inside = np.clip(position_m, sides[:, 0], sides[:, 1])
+    return max(float(np.linalg.norm(inside - position_m)), airspace.keep_out_m)
+
+
+def scenario_view(scenario: Scenario) -> RenderableType:
+    """Return a scenario's points, airspace, vehicle and receiver, with what the links can carry at best.
+
+    Args:
+        scenario: any.
+    """
+    numbers, rate = summarise(scenario), _is_rate(scenario)
+    best = (
+        "At best: as close as the airspace's box and the keep-out allow (zones and fence not counted), the "
+        f"dipole broadside{'' if rate else ', no jamming'}."
+    )
+    notes = [
+        f"Node {node.name} requires more than its link carries at best."
+        for node, told in zip(scenario.nodes, numbers["nodes"], strict=True)
+        if node.min_sinr_db is not None and node.min_sinr_db > told["best_power_to_noise_db"]
+    ]
+    if scenario.is_uncertain:
+        notes.append("Errors and uncertainty count where a guaranteed value is asked for, not otherwise.")
+    zones = [_zone_row(zone) for zone in scenario.airspace.no_fly]
+    return document(
+        head(scenario.name),
+        "",
+        pairs("Airspace", _airspace_rows(scenario)),
+        table("No-fly zones", zones, left=("shape", "where (m)", "altitude (m)")),
+        pairs("Vehicle and receiver", _vehicle_rows(scenario)),
+        _points_table("node", scenario.nodes, numbers["nodes"], "SNR at best (dB)"),
+        _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "JNR at best (dB)"),
+        _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "SNR at best (dB)"),
+        "\n".join([best, *notes]),
+    )
+
+
+def _airspace_rows(scenario: Scenario) -> list[tuple[str, str]]:
+    airspace, fence_m = scenario.airspace, scenario.airspace.geofence_outline_m
+    told = {
+        "origin": None if scenario.origin is None else place_words(scenario.origin),
+        "altitude (m)": _range(airspace.altitude_m, ""),
+        "x, east (m)": _range(airspace.x_m, "unbounded"),
+        "y, north (m)": _range(airspace.y_m, "unbounded"),
+        "geofence": f"{len(fence_m)} corners, {_extent_words(fence_m)}" if len(fence_m) else None,
+        "keep-out radius (m)": f"{airspace.keep_out_m:g}",
+    }
+    return [(name, words) for name, words in told.items() if words is not None]
+
+
+def _range(sides: tuple[float, float] | None, otherwise: str) -> str:
+    return otherwise if sides is None else f"{sides[0]:g} to {sides[1]:g}"
+
+
+def _extent_words(outline_m: FloatArray) -> str:
+    (west, south), (east, north) = outline_m.min(axis=0), outline_m.max(axis=0)
+    return f"x {west:g} to {east:g}, y {south:g} to {north:g}"
+
+
+def _zone_row(zone: NoFlyZone) -> dict[str, str]:
+    if zone.centre_m is not None:
+        where = f"centre {zone.centre_m[0]:g}, {zone.centre_m[1]:g}, radius {zone.radius_m:g}"
+    else:
+        where = _extent_words(zone.outline_m)
+    corners = f" of {len(zone.outline_m)}" if zone.shape == "polygon" else ""
+    return {
+        "zone": zone.name,
+        "shape": f"{zone.shape}{corners}",
+        "where (m)": where,
+        "altitude (m)": _range(zone.altitude_m, "all"),
+    }
+
+
+def _vehicle_rows(scenario: Scenario) -> list[tuple[str, str]]:
+    receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
+    attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
+    sender = scenario.transmitter
+    told = {
+        "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
+        "array": None if array is None else array_words(array),
+        "airframe": None if airframe is None else airframe_words(airframe),
+        "antenna": f"short dipole, {reach_words(airframe)}",
+        "attitude error": f"at most {attitude_deg:g} deg" if attitude_deg else None,
+        "position error": f"at most {position_m:g} m" if position_m else None,
+        "transmits": None if sender is None else _power_words(sender.transmit_power_w),
+        "noise": _power_words(receiver.noise_power_w),
+        "path gain at 1 m (dB)": f"{to_db(receiver.reference_gain):.2f}",
+    }
+    return [(name, words) for name, words in told.items() if words is not None]
+
+
+def _power_words(power_w: float) -> str:
+    return f"{_dbm(power_w):.2f} dBm ({power_w:.4g} W)"
+
+
+def _points_table(
+    noun: str, points: Sequence[_Point], numbers: Sequence[Mapping[str, Any]], best: str
+) -> RenderableType | None:
+    """Return a row for each point: what points of its kind state, and what its link carries at best."""
+    columns: dict[str, Sequence[str | None]] = {
+        noun: [point.name for point in points],
+        **{f"{axis} (m)": [f"{point.position_m[i]:g}" for point in points] for i, axis in enumerate("xyz")},
+        "noise (dBm)": [_cell(each.get("noise_dbm"), ".2f") for each in numbers],
+        "power (dBm)": [_cell(each["power_dbm"], ".2f") for each in numbers],
+        "power (W)": [_cell(each["power_w"], ".6g") for each in numbers],
+        "requires (dB)": [_cell(getattr(point, "min_sinr_db", None), ".6g") for point in points],
+        "weight": [_cell(getattr(point, "weight", None), ".6g") for point in points],
+        "uncertainty (m)": [_extents(point) for point in points],
+    }
+    if best:
+        columns["closest (m)"] = [_cell(each["nearest_m"], ".6g") for each in numbers]
+        columns[best] = [_cell(each["best_power_to_noise_db"], ".2f") for each in numbers]
+    return table(f"{noun.capitalize()}s", rows(columns))
+
+
+def _cell(number: float | None, digits: str) -> str | None:
+    return None if number is None else format(number, digits)
+
+
+def _extents(point: _Point) -> str | None:
+    """Return how far a point may be from where it is said to be; None if it is not."""
+    extents_m = np.atleast_1d(getattr(point, "uncertainty_m", None) or 0.0)
+    return " x ".join(f"{size_m:g}" for size_m in extents_m) if np.any(extents_m > 0.0) else None

@@ -1,0 +1,223 @@
+"""What a solve returns: a pose, what it gives, what is proved about it, and how it was found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from enum import StrEnum
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+from nullpose.objectives import Quantity
+from nullpose.physics import Link, Pose, pose_frames, to_db
+from nullpose.scenario import Scenario
+from nullpose.schemes import Scheme
+from nullpose.solve.proof import INTERRUPT, Proof
+from nullpose.solve.rigour import Rigour, bound_above
+
+__all__ = ["Objective", "Result", "Stats", "Status", "objective_of"]
+
+
+class Status(StrEnum):
+    """How a solve ended."""
+
+    CERTIFIED = "certified"
+    GAP_NOT_REACHED = "gap-not-reached"
+    BEST_FOUND = "best-found"
+
+    @property
+    def message(self) -> str:
+        """The status as a sentence."""
+        return _MESSAGES[self]
+
+
+_MESSAGES = {
+    Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",
+    Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
+    Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stats:
+    """What the solve cost.
+
+    Args:
+        wall_s: wall-clock time, seconds.
+        starts: local searches run.
+        evaluations: poses evaluated.
+        boxes: boxes of positions examined by the proof; 0 without one.
+        searches: independent searches made, where several were.
+        agreeing: those of them that ended at the best value, within 1e-4.
+    """
+
+    wall_s: float
+    starts: int
+    evaluations: int
+    boxes: int = 0
+    searches: int | None = None
+    agreeing: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objective:
+    """The number that was maximised, evaluated at the reported pose, and what is proved about it.
+
+    Args:
+        name: that of its quantity, as in ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
+        value: that number: a power ratio, or bits/s/Hz for a rate.
+        value_db: the same in dB; not a number for a rate.
+        upper_bound: no pose exceeds this; None if nothing is proved.
+        relative_gap: ``(upper_bound - value) / value``, a rate below 1e-3 bits/s/Hz counting as so much; None
+            if nothing is proved.
+        rigour: how sure the bound is.
+    """
+
+    name: str
+    value: float
+    value_db: float
+    upper_bound: float | None = None
+    relative_gap: float | None = None
+    rigour: Rigour = Rigour.NONE
+
+    @property
+    def quantity(self) -> Quantity:
+        """What the number is of, and its unit."""
+        return Quantity.named(self.name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return value and bound as plain data for JSON; None for a number that JSON cannot hold."""
+        return {
+            "name": self.name,
+            "value": self.value,
+            "value_db": _finite(self.value_db),
+            "upper_bound": self.upper_bound,
+            "relative_gap": _finite(self.relative_gap),
+        }
+
+
+def objective_of(
+    scenario: Scenario, value: float, ratio_bound: float | None, rigour: Rigour = Rigour.FLOATING_POINT
+) -> Objective:
+    """Return the objective at a pose with what is proved about it.
+
+    Args:
+        scenario: what it asks for decides which number it is.
+        value: that number.
+        ratio_bound: no pose has its smallest ratio above this; None if nothing is proved.
+        rigour: of the bound, if there is one.
+
+    Raises:
+        SolveError: the bound is below the value: a fault of nullpose.
+    """
+    quantity = Quantity.of(scenario)
+    bound = gap = None
+    if ratio_bound is not None:
+        ratio = 2.0**value if quantity.is_rate else value
+        bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
+        gap = quantity.gap(value, bound)
+    return Objective(
+        name=quantity.name,
+        value=value,
+        value_db=math.nan if quantity.is_rate else float(to_db(value)),
+        upper_bound=bound,
+        relative_gap=gap,
+        rigour=Rigour.NONE if bound is None else rigour,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Result:
+    """A pose, what it gives, and how it was found. What the details have is read on it too.
+
+    Args:
+        scenario: what was solved.
+        scheme: the case.
+        status: how the solve ended.
+        objective: the value at the pose and the bound on it.
+        pose: position and attitude.
+        links: every node's link at the pose (paper eq. 2.1), in the scenario's order.
+        stats: time and counts.
+        provenance: versions, seed and settings that produced it.
+        note: a sentence on what the scheme did here, such as which jammer the null points at; may be empty.
+        reason: what kept the gap from being reached, or the pose from being certified; empty if nothing did.
+        null_jammer: the jammer that was asked to be nulled, if one was.
+        proofs: what the branch and bound showed, for each axis field of the scheme.
+        details: what this kind of solve has to tell beside that, with a ``to_dict`` of its own:
+            :class:`ArrayDetails`, :class:`nullpose.solve.robust.RobustDetails`, or None.
+    """
+
+    scenario: Scenario
+    scheme: Scheme | str
+    status: Status
+    objective: Objective
+    pose: Pose
+    links: tuple[Link, ...]
+    stats: Stats
+    provenance: Mapping[str, Any]
+    note: str = ""
+    reason: str = ""
+    null_jammer: str | None = None
+    proofs: tuple[Proof, ...] = field(default=(), repr=False)
+    details: Any = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
+
+    def __reduce__(self) -> tuple[Callable[[], Result], tuple[()]]:
+        state = {one.name: getattr(self, one.name) for one in fields(self)}
+        return partial(Result, **state | {"provenance": dict(self.provenance)}), ()
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the details, the objective or the pose have of that name."""
+        if not name.startswith("_"):
+            for part in (self.details, self.objective, self.pose):
+                if hasattr(part, name):
+                    return getattr(part, name)
+        raise AttributeError(f"a result has no {name!r}")
+
+    @property
+    def label(self) -> str:
+        """The name of the case for tables."""
+        return str(self.scheme.label if isinstance(self.scheme, Scheme) else self.details.label)
+
+    @property
+    def binding_node(self) -> str:
+        """Name of the node that decides: least SINR, margin or rate (the first, if several share it)."""
+        return min(self.links, key=self.objective.quantity.at).node
+
+    @property
+    def rigour(self) -> Rigour:
+        """How sure the bound is."""
+        return self.objective.rigour
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended its proof."""
+        return self.reason == INTERRUPT
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result as plain data for JSON; a number that JSON cannot hold becomes None."""
+        stats = {key: value for key, value in asdict(self.stats).items() if value is not None}
+        objective = self.objective.to_dict()
+        return {
+            "scenario": self.scenario.to_dict(),
+            "scheme": str(self.scheme),
+            "status": self.status.value,
+            "reason": self.reason,
+            "rigour": self.rigour.value,
+            "objective": objective,
+            "pose": self.pose.to_dict() | {"frames": pose_frames(self.scenario, self.pose).to_dict()},
+            "links": [link.to_dict() for link in self.links],
+            "binding_node": self.binding_node,
+            "stats": stats,
+            "provenance": dict(self.provenance),
+            "note": self.note,
+            **({} if self.details is None else self.details.to_dict(objective)),
+        }
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None

@@ -1,0 +1,66 @@
+"""Every objective's record: its ratios are what the physics evaluates."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nullpose.objectives import RECORDS, USUAL, Quantity
+from nullpose.physics import Pose, evaluate, objective_value
+from nullpose.scenario import Scenario
+
+
+def _scenario(name: str, rng: np.random.Generator) -> Scenario:
+    def spot() -> list[float]:
+        return [*map(float, rng.uniform(-80.0, 80.0, 2)), 0.0]
+
+    record = RECORDS[name]
+    data = {
+        "objective": name,
+        "airspace": {"altitude_m": [10.0, 60.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": spot(), "power_w": float(rng.uniform(0.5, 2.0))} for _ in range(3)],
+        "jammers": [{"position_m": spot(), "power_w": float(rng.uniform(0.1, 9.0))} for _ in range(2)],
+    }
+    if record.transmits:
+        data["transmitter"] = {"power_w": 1.0}
+        data["eavesdroppers"] = [{"position_m": spot()} for _ in range(2)]
+    return Scenario.from_dict(data)
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_smallest_ratio_is_the_value_of_the_physics(name: str, seed: int) -> None:
+    """Numerators over denominators, summed from the arrays, give the number that the physics evaluates."""
+    rng = np.random.default_rng(seed)
+    scenario = _scenario(name, rng)
+    ratios = RECORDS[name].ratios(scenario)
+    pose = Pose(rng.uniform([-90.0, -90.0, 20.0], [90.0, 90.0, 50.0]), *rng.uniform(-1.0, 1.0, 3))
+    away = ratios["points_m"] - pose.position_m
+    squared = np.sum(away**2, axis=1)
+    link = 1.0 / squared - (away @ pose.antenna_axis) ** 2 / squared**2
+    leaks = ratios["denominator_weight"] * link[ratios["denominator_point"]]
+    below = ratios["denominator_isotropic"] + np.add.reduceat(leaks, ratios["denominator_start"][:-1])
+    above = ratios["numerator_isotropic"] + ratios["numerator_weight"] * link[ratios["numerator_point"]]
+    smallest = float(np.min(above / below[ratios["denominator_of"]]))
+    quantity = Quantity.of(scenario)
+    value = float(objective_value(scenario, pose.position_m, pose.antenna_axis))
+    assert quantity.of_ratio(smallest) == pytest.approx(value, rel=1e-9, abs=1e-12)
+    assert quantity.least(evaluate(scenario, pose)) == pytest.approx(value, rel=1e-12)
+
+
+def test_names_are_told_apart() -> None:
+    """A quantity's name leads back to it, and no two share one."""
+    quantities = [one for record in RECORDS.values() for one in record.quantities]
+    assert [Quantity.named(one.name) for one in quantities] == quantities
+    assert len({one.name for one in quantities}) == len(quantities)
+    assert USUAL in RECORDS
+
+
+@pytest.mark.parametrize("name", [one.name for record in RECORDS.values() for one in record.quantities])
+@given(value=st.floats(1e-6, 1e6), more=st.floats(0.0, 10.0))
+def test_gap_is_relative(name: str, value: float, more: float) -> None:
+    """The gap of a bound is its distance from the value over the value."""
+    assert Quantity.named(name).gap(max(value, 1e-3), max(value, 1e-3) * (1.0 + more)) == pytest.approx(
+        more, abs=1e-9
+    )

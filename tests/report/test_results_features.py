@@ -1,0 +1,181 @@
+"""Tables of margins, rates and airframes: right words, right units, nothing that is no number."""
+
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console, RenderableType
+
+from nullpose import Scenario, load, solve
+from nullpose.report.comparison import compare_all, comparison_view
+from nullpose.report.results import binding_nodes, solution_view
+from nullpose.report.scenario import scenario_view, summarise
+from nullpose.report.sweep import sweep_view
+from nullpose.scenario import apply_overrides
+from nullpose.study import sweep
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def example(name: str) -> Scenario:
+    """Returns one of the examples."""
+    return load(EXAMPLES / f"{name}.toml")
+
+
+def text_of(view: RenderableType, width: int = 120) -> str:
+    """Returns what a terminal without colours shows."""
+    console = Console(width=width, file=io.StringIO(), highlight=False)
+    console.print(view)
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize("name", ["airframe", "eavesdropper", "requirements", "no-fly", "robust"])
+def test_nothing_is_not_a_number(name: str) -> None:
+    """No table of any feature's example prints a NaN or an infinity, and all keep to a terminal's width."""
+    scenario = example(name)
+    views = (
+        scenario_view(scenario),
+        solution_view(solve(scenario)),
+        comparison_view(compare_all(scenario)),
+    )
+    for view in views:
+        text = text_of(view)
+        assert "nan" not in text.lower().split()
+        assert "inf" not in text
+        assert max(map(len, text.splitlines())) <= 120
+
+
+def test_a_rate_has_no_decibels() -> None:
+    """The rate is in bits/s/Hz, per node and in all; SNR is what is in dB, at the eavesdropper too."""
+    solution = solve(example("eavesdropper"))
+    text = text_of(solution_view(solution))
+    assert "smallest secrecy rate 1.160284 bits/s/Hz" in text
+    assert "secrecy rate (bits/s/Hz)" in text
+    assert "SINR" not in text
+    assert "Eavesdroppers" in text
+    assert binding_nodes(solution) == {"S1", "S2"}
+    text = text_of(comparison_view(compare_all(solution.scenario)))
+    assert "smallest rate (bits/s/Hz)" in text
+    assert "axis to E (deg)" in text
+    assert "binding: the smallest secrecy rate" in text
+    assert "Zero interference; Maximum gain: not applicable" in text
+
+
+def test_jamming_in_a_downlink_is_noise() -> None:
+    """Jammers beside eavesdroppers raise the nodes' noise, which is shown, and get no table."""
+    data = example("eavesdropper").to_dict()
+    data["jammers"] = [{"name": "M", "position_m": [17.0, 40.0, 4.0], "power_w": 1.0}]
+    text = text_of(solution_view(solve(Scenario.from_dict(data), certify=False)))
+    assert "noise (dBm)" in text
+    assert "Jammers" not in text
+    assert "counted in the noise of the nodes" in text
+
+
+def test_a_margin_is_called_so() -> None:
+    """Margins decide which node binds, and stand beside SINR and requirement."""
+    solution = solve(example("requirements"))
+    text = text_of(solution_view(solution))
+    assert "smallest margin 3.964289 dB" in text
+    assert "smallest SINR" not in text
+    assert "required SINR (dB)" in text
+    assert binding_nodes(solution) == {"camera", "thermometer"}
+    text = text_of(comparison_view(compare_all(solution.scenario)))
+    assert "margin thermometer (dB)" in text
+    assert "SINR thermometer (dB)" in text
+    assert "Vertical: missed: node camera: 0.87 dB below" in text
+
+
+def test_weights_are_shown(paper: Scenario) -> None:
+    """A node's weight has a column; one without has none to show."""
+    data = paper.to_dict()
+    data["nodes"][0]["weight"] = 2.0
+    scenario = Scenario.from_dict(data)
+    for view in (solution_view(solve(scenario, certify=False)), scenario_view(scenario)):
+        assert "weight" in text_of(view)
+
+
+def test_the_airframe_is_told_with_what_it_uses() -> None:
+    """The tilt used, and the tilt allowed."""
+    text = text_of(solution_view(solve(example("airframe"), certify=False)))
+    assert "tilted by 10.000 deg, at most 10 deg; dipole 90 deg from upright on the body" in text
+    text = text_of(comparison_view(compare_all(example("airframe"))))
+    assert "vehicle's tilt (deg)" in text
+    assert "Vertical: not applicable: the airframe does not reach a vertical antenna" in text
+    assert "--airframes" in text
+
+
+def test_zones_and_fence_are_in_the_summary() -> None:
+    """Each zone has a row with its shape and its altitudes, the fence its size."""
+    text = text_of(scenario_view(example("no-fly")))
+    for words in (
+        "geofence",
+        "5 corners, x -40 to 50, y -20 to 70",
+        "school",
+        "centre -2, 24, radius 12",
+        "0 to 25",
+    ):
+        assert words in text
+    assert "mast" in text
+    assert "polygon of 4" in text
+    assert "zones and fence not counted" in text
+
+
+def test_errors_are_in_the_summary() -> None:
+    """Attitude and position errors, and each jammer's uncertainty."""
+    text = text_of(scenario_view(example("robust")))
+    assert "at most 2 deg" in text
+    assert "at most 0.5 m" in text
+    assert "uncertainty (m)" in text
+    data = example("robust").to_dict()
+    data["jammers"][0]["uncertainty_m"] = [3.0, 2.0, 1.0]
+    assert "3 x 2 x 1" in text_of(scenario_view(Scenario.from_dict(data)))
+
+
+def test_a_downlink_is_summarised_as_one() -> None:
+    """What the drone sends arrives at nodes and eavesdroppers, each with a noise of its own."""
+    scenario = apply_overrides(example("eavesdropper"), ["eavesdroppers.E.noise_dbm=-10"])
+    summary = summarise(scenario)
+    node, eavesdropper = summary["nodes"][0], summary["eavesdroppers"][0]
+    assert node["best_power_to_noise_db"] == pytest.approx(10.0 * 1.193820026, abs=1e-6)
+    assert eavesdropper["noise_dbm"] == pytest.approx(-10.0)
+    assert eavesdropper["best_power_to_noise_db"] == pytest.approx(27.95880017, abs=1e-6)
+    assert node["power_w"] is None
+    text = text_of(scenario_view(scenario))
+    assert "transmits" in text
+    assert "power (dBm)" not in text
+
+
+def test_a_requirement_beyond_reach_is_told(paper: Scenario) -> None:
+    """Straight above a node 11.94 dB are the most; who requires more is named before anything is solved."""
+    data = paper.to_dict()
+    data["nodes"][0]["min_sinr_db"] = 12.0
+    text = text_of(scenario_view(Scenario.from_dict(data)))
+    assert "Node S1 requires more" in text
+    assert "Node S2 requires more" not in text
+
+
+def test_a_sweep_of_rates_is_one_of_rates(tmp_path: Path) -> None:
+    """Title, cells and file are in bits/s/Hz."""
+    table = sweep(example("eavesdropper"), "eavesdroppers.E.position_m[0]", [17.0, 60.0])
+    text = text_of(sweep_view(table, []))
+    assert "Smallest secrecy rate over the nodes (bits/s/Hz)" in text
+    assert "1.1603" in text
+    head = table.write_csv(tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "min_secrecy_rate_bps_hz,upper_bound_bps_hz" in head
+    row = table.to_dict()["rows"][0]
+    assert row["min_secrecy_rate"] == table.rows[0].objective.value
+    assert (row["objective"], row["upper_bound_db"]) == ("min_secrecy_rate", None)
+    assert row["min_sinr"] == min(link["sinr"] for link in row["links"])
+
+
+def test_a_sweep_of_margins_keeps_sinr_and_margin_apart(tmp_path: Path) -> None:
+    """The smallest SINR and the smallest margin are two columns."""
+    table = sweep(
+        example("requirements"), "nodes.camera.min_sinr_db", [3.0], schemes=["optimum"], certify=False
+    )
+    assert "Smallest margin over the nodes (dB)" in text_of(sweep_view(table, []))
+    (row,) = table.rows
+    assert row.min_sinr_db == pytest.approx(-2.0357, abs=1e-3)
+    assert row.objective.value_db == pytest.approx(3.9643, abs=1e-3)
+    head = table.write_csv(tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "min_margin_db" in head

@@ -1,0 +1,49 @@
+"""What a scenario amounts to before it is solved."""
+
+import io
+import math
+
+import pytest
+
+from nullpose import Scenario
+from nullpose.report.scenario import scenario_view, summarise
+
+
+def test_powers_in_both_units(paper: Scenario, field: Scenario) -> None:
+    """Watts and dBm agree, whichever was stated."""
+    for scenario in (paper, field):
+        summary = summarise(scenario)
+        for point in (*summary["nodes"], *summary["jammers"]):
+            assert point["power_dbm"] == pytest.approx(10.0 * math.log10(1e3 * point["power_w"]))
+        assert summary["noise_dbm"] == pytest.approx(10.0 * math.log10(1e3 * summary["noise_w"]))
+
+
+def test_no_pose_beats_the_best_ratio(field: Scenario) -> None:
+    """Each node's link at the optimum stays below what the summary says it can carry."""
+    from nullpose import solve
+
+    summary = summarise(field)
+    for link, node in zip(solve(field).links, summary["nodes"], strict=True):
+        assert link.sinr_db <= node["best_power_to_noise_db"] + 1e-9
+
+
+def test_nearest_point_respects_airspace_and_keep_out(paper: Scenario) -> None:
+    """The closest the drone may come is set by the sides of the airspace, or by the keep-out radius."""
+    data = paper.to_dict() | {"airspace": {"altitude_m": [0.0, 30.0], "x_m": [3.0, 9.0], "keep_out_m": 2.0}}
+    summary = summarise(Scenario.from_dict(data))
+    assert [node["nearest_m"] for node in summary["nodes"]] == [3.0, 3.0]
+    wide = paper.to_dict() | {"airspace": {"altitude_m": [0.0, 30.0], "keep_out_m": 2.0}}
+    assert [node["nearest_m"] for node in summarise(Scenario.from_dict(wide))["nodes"]] == [2.0, 2.0]
+
+
+def test_tables_name_everything(field: Scenario) -> None:
+    """Every node and jammer has its row, even where a name looks like markup."""
+    from rich.console import Console
+
+    data = field.to_dict()
+    data["nodes"][0]["name"] = "[bold]gate[/]"
+    console = Console(width=160, file=io.StringIO())
+    console.print(scenario_view(Scenario.from_dict(data)))
+    text = console.file.getvalue()
+    assert "[bold]gate[/]" in text
+    assert all(name in text for name in (*field.node_names[1:], *field.jammer_names))
