@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.multistart import landmarks, search_settings, shift_of
+from nullpose.solve.multistart import CLIMBS, landmarks, search_settings, shift_of
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import ready
 from nullpose.solve.proof import DIRECT_NODES, INSIDE, BudgetUsed, late_nodes, prove
@@ -160,6 +160,7 @@ class Batch:
             self._landmarks,
             shift_of(options.seed),
             search_settings(options.certify),
+            np.array(CLIMBS),
             INSIDE * options.target if options.certify else -1.0,
             self._budget(options) if options.certify else (1, 1, 1),
             known.position_m,

@@ -18,6 +18,7 @@ from nullpose.solve.precompile import precompile
 
 __all__ = [
     "BORDER_M",
+    "CLIMBS",
     "NOT_RECEIVED",
     "NO_POSITION",
     "SearchSettings",
@@ -41,6 +42,10 @@ NOT_RECEIVED = (
     "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
 )
 """What is said where some were."""
+CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
+"""Barrier weights of the climbs after a search."""
+_CLIMB_STEPS = 300
+_SAME = 1e-12
 _PAIRED = 4  # interferers whose lines are looked at
 
 
@@ -129,6 +134,7 @@ def multistart(
     Raises:
         SolveError: no position of the domain gave every ratio a positive value.
     """
+    from nullpose.solve.kernels.polish import polish
     from nullpose.solve.kernels.search import search
 
     precompile(family, axis_field)
@@ -140,13 +146,35 @@ def multistart(
         if attempt == 1:  # what is allowed may be of no width: a point, a line or a wall
             domain, places = loosened(family, BORDER_M).domain, np.vstack([places, _corners(family)])
         log_value, starts, evaluations = search(
-            family.arrays, domain, axis_field.arrays, places, shift, settings or SearchSettings(), position_m,
-            axis, multipliers,
-        )  # fmt: skip
+            family.arrays,
+            domain,
+            axis_field.arrays,
+            places,
+            shift,
+            settings or SearchSettings(),
+            position_m,
+            axis,
+            multipliers,
+        )
         if math.isfinite(log_value):
             break
     else:
         raise SolveError(NOT_RECEIVED if evaluations else NO_POSITION)
+    for mu in CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
+        before = log_value
+        log_value, steps = polish(
+            family.arrays,
+            domain,
+            axis_field.arrays,
+            position_m,
+            axis,
+            mu,
+            _CLIMB_STEPS,
+            multipliers,
+        )
+        evaluations += steps
+        if steps < _CLIMB_STEPS and log_value <= before + _SAME:
+            break
     return Incumbent(
         position_m=position_m,
         axis=axis,

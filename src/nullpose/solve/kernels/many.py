@@ -27,7 +27,23 @@ OPEN = 0
 PROVED = 1
 UNPLACED = 2
 
+_CLIMB_STEPS = 300
+_SAME = 1e-12
 _HAIR = 1e-9
+
+
+@inner_kernel
+def find(family, domain, axis_field, landmarks, shift, effort, climbs, p, u, z):
+    """Fill the best pose of a search and of a last climb; return its smallest log ratio."""
+    value, _, _ = search(family, domain, axis_field, landmarks, shift, effort, p, u, z)
+    if not math.isfinite(value):
+        return value
+    for mu in climbs:
+        before = value
+        value, steps = polish(family, domain, axis_field, p, u, mu, np.int64(_CLIMB_STEPS), z)
+        if steps < _CLIMB_STEPS and value <= before + _SAME:
+            break
+    return value
 
 
 @inner_kernel
@@ -129,7 +145,7 @@ def prove_directly(family, domain, axis_field, log_value, target, budget, p, u, 
 
 @heap_kernel
 def solve_and_prove_many(
-    shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, target, budget,
+    shape, varied, domain, keep_points, axis_field, landmarks, shift, effort, climbs, target, budget,
     positions, axes, multipliers, log_values, bounds, nodes, codes,
 ):  # fmt: skip
     """Fill the best pose of every family that is not solved yet, and the bound that was proved.
@@ -144,7 +160,8 @@ def solve_and_prove_many(
         axis_field: kind, offset and matrix.
         landmarks: (s, m, 3) positions polished first.
         shift: (3,) offset of the low-discrepancy sequence.
-        effort: how hard to search, a ``SearchSettings``.
+        effort: coarse, polished, rounds and patience of the search.
+        climbs: barrier weights of the last climb.
         target: relative gap to be proved; negative: nothing is.
         budget: nodes of a try in which axes are split late, of one in which they are split early, and of all;
             a family that needs more stays open.
@@ -170,7 +187,7 @@ def solve_and_prove_many(
         p, u, z = positions[s].copy(), axes[s].copy(), multipliers[s].copy()
         value = log_values[s]
         if value == -math.inf:
-            value, _, _ = search(family, here, axis_field, landmarks[s], shift, effort, p, u, z)
+            value = find(family, here, axis_field, landmarks[s], shift, effort, climbs, p, u, z)
         if not math.isfinite(value):
             codes[s] = UNPLACED
             continue

@@ -12,7 +12,7 @@ from nullpose.solve.kernels.exclusion import is_level
 from nullpose.solve.kernels.forms import form_value
 from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.local_coordinates import BAND as ELEVATION_BAND
-from nullpose.solve.kernels.local_coordinates import clamp_axis
+from nullpose.solve.kernels.local_coordinates import clamp_axis, clamp_elevation
 from nullpose.solve.kernels.node import (
     BAND,
     CELL,
@@ -24,7 +24,14 @@ from nullpose.solve.kernels.node import (
     keep_largest,
 )
 from nullpose.solve.kernels.scratch import scratch, scratch_int
-from nullpose.solve.kernels.symmetric import add_square, copy_into, dot, form_product, top_eigenvector
+from nullpose.solve.kernels.symmetric import (
+    add_square,
+    copy_into,
+    dot,
+    form_product,
+    normalise,
+    top_eigenvector,
+)
 from nullpose.solve.kernels.whitened import (
     axis_of,
     constraint_forms,
@@ -43,105 +50,55 @@ _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
 _LOOSE = 1e-3  # and in units of a box's size
-_LINES = 9  # across a cell, on which axes are looked for that are inside a band too
+_GRID = 5  # of axes across a cell, along each side
 
 
 @inner_kernel
-def add_start(basis, back, u, start):
-    """Add the whitened square of an axis to a matrix."""
-    w = scratch(3)
-    whiten_axis(basis, back, u, w)
-    add_square(1.0 / dot(w, w), w, start)
+def in_cell(face, row, u):
+    """Return whether an axis lies in a row's cell."""
+    inside = True
+    for side in range(2):
+        share = u[(face + 1 + side) % 3] / u[face]
+        inside = inside and row[CELL + 2 * side] < share < row[CELL + 2 * side + 1]
+    return inside
 
 
 @inner_kernel
 def cell_start(axis_field, basis, back, row, start):
     """Fill a positive definite matrix of unit trace inside the row's cell and band; return whether there is.
 
-    In whitened coordinates. The mean of the squares of axes inside; none may have been met in a thin cell.
+    In whitened coordinates: the mean of the squares of axes inside, brought to the band from a grid over the
+    cell. None may have been met in a thin cell.
     """
-    face, level_axes, has_band = int(row[FACE]), is_level(axis_field), axis_field.kind >= ELEVATION_BAND
-    least, greatest = 0.0, 1.0
-    if has_band:
-        half = half_width(axis_field)
-        least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
+    face, has_cell = max(0, int(row[FACE])), row[FACE] >= 0.0
+    has_band, level_axes = axis_field.kind >= ELEVATION_BAND, is_level(axis_field)
     start[:] = 0.0
-    if face < 0 and (level_axes or not has_band):
-        start[:3] = 1.0
-    elif face < 0:
-        add_band(basis, back, least, greatest, start)
-    elif level_axes:
-        add_horizontal_axes(basis, back, row, start)
-    else:
-        count = 0
-        for swap in range(2 if face == 2 else 1):
-            count += add_cell_axes(basis, back, row, least, greatest, swap, _LINES if has_band else 2, start)
-        if count < 3:
-            return False
+    if not has_cell and (level_axes or not has_band):
+        start[:3] = 1.0 / 3.0
+        return True
+    half = half_width(axis_field)
+    least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
+    u, w = scratch(3), scratch(3)
+    for point in range(_GRID * _GRID):
+        for share in (0.25, 0.75):
+            u[face] = 1.0
+            for side in range(2):
+                low, high = (row[CELL + 2 * side], row[CELL + 2 * side + 1]) if has_cell else (-1.0, 1.0)
+                place = point % _GRID if side == 0 else point // _GRID
+                u[(face + 1 + side) % 3] = low + (high - low) * (0.02 + 0.96 * place / (_GRID - 1))
+            if has_band:
+                wanted = least + share * (greatest - least)
+                normalise(u)
+                clamp_elevation(wanted, wanted, u)
+            if not has_cell or in_cell(face, row, u):
+                whiten_axis(basis, back, u, w)
+                add_square(1.0 / dot(w, w), w, start)
+    if level_axes:
+        start[2] += 0.1
     trace = start[0] + start[1] + start[2]
     for m in range(6):
         start[m] /= trace
-    return not has_band or positive_definite(start)
-
-
-@inner_kernel
-def add_band(basis, back, least, greatest, start):
-    """Add the whitened squares of axes all around a band."""
-    u = scratch(3)
-    for corner in range(12):
-        share = least + (greatest - least) * (0.25 if corner & 1 else 0.75)
-        across, turn = math.sqrt(1.0 - share), (corner % 6) * math.pi / 3.0
-        u[0], u[1] = across * math.cos(turn), across * math.sin(turn)
-        u[2] = math.sqrt(share) if corner < 6 else -math.sqrt(share)
-        add_start(basis, back, u, start)
-
-
-@inner_kernel
-def add_horizontal_axes(basis, back, row, start):
-    """Add the whitened squares of two horizontal axes inside a cell, and a part of the vertical one."""
-    face = int(row[FACE])
-    side = 0 if face == 0 else 1
-    low, high = row[CELL + 2 * side], row[CELL + 2 * side + 1]
-    for share in (0.1, 0.9):
-        u = scratch(3)
-        u[:] = 0.0
-        u[face], u[(face + 1 + side) % 3] = 1.0, low + share * (high - low)
-        add_start(basis, back, u, start)
-    start[2] += 0.1
-
-
-@inner_kernel
-def add_cell_axes(basis, back, row, least, greatest, swap, lines, start):
-    """Add the whitened squares of axes inside both a cell and a band; return how many.
-
-    Along lines across the cell, on which the band leaves an interval or two.
-    """
-    face = int(row[FACE])
-    along = swap if face == 2 else (1 if face == 0 else 0)  # the side that is solved for: z where it is one
-    other = 1 - along
-    u = scratch(3)
-    count = 0
-    for line in range(lines):
-        low, high = row[CELL + 2 * other], row[CELL + 2 * other + 1]
-        x = low + (high - low) * (0.02 + 0.96 * line / (lines - 1))
-        if face == 2:  # u_z = 1: the squares of the others sum to 1 / u_z^2 - 1
-            bottom = 1.0 / greatest - 1.0 - x * x
-            top = (1.0 / least - 1.0 if least > 0.0 else 2.0) - x * x
-        else:
-            bottom = least / (1.0 - least) * (1.0 + x * x)
-            top = (greatest / (1.0 - greatest) if greatest < 0.5 else 2.0) * (1.0 + x * x)
-        if not top > 0.0:
-            continue
-        far, near = math.sqrt(top), math.sqrt(max(0.0, bottom))
-        for a, b in ((-far, -near), (near, far)):
-            a, b = max(a, row[CELL + 2 * along]), min(b, row[CELL + 2 * along + 1])
-            if b > a:
-                for share in (0.25, 0.75):
-                    u[face], u[(face + 1 + other) % 3] = 1.0, x
-                    u[(face + 1 + along) % 3] = a + share * (b - a)
-                    add_start(basis, back, u, start)
-                    count += 1
-    return count
+    return positive_definite(start)
 
 
 @inner_kernel

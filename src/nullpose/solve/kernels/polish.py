@@ -35,11 +35,10 @@ from nullpose.solve.kernels.local_coordinates import (
     domain_slacks,
     local_coordinates,
     move,
-    nearest_node,
     reduce_hessian,
     slack_count,
 )
-from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, inner, smallest_of
 
 __all__ = ["polish"]
@@ -174,15 +173,16 @@ def linearise(problem, point, grads, parts, n, model, h):
 
 
 @inner_kernel
-def longest_scale(gaps, rates, ratios, step, n):
-    """Return the largest share of a step that stays inside the domain, and the step's size."""
+def longest_scale(problem, gaps, rates, step, n):
+    """Return the largest share of a step that stays inside all but the balls, and the step's size."""
+    ratios, balls = gaps.shape[0] - problem.used.shape[0], problem.domain.keep_out_points_m.shape[0]
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
     scale = min(1.0, _LONGEST / largest)
     for c in range(ratios, gaps.shape[0]):
         change = inner(rates[c], step, n)
-        if change < 0.0:
+        if change < 0.0 and not ratios + 6 <= c < ratios + 6 + balls:
             scale = min(scale, -_INSIDE * gaps[c] / change)
     return scale, largest
 
@@ -199,7 +199,7 @@ def line_search(problem, here, t, there, model, n, mu, step, slope, scale, logs)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
             bent_step(f, new_f, here.gaps, model.duals, model.rates, model.factor, n, scale, step, bent)
-            share, _ = longest_scale(here.gaps, model.rates, ratios, bent, n)
+            share, _ = longest_scale(problem, here.gaps, model.rates, bent, n)
             move(problem.axis_field, here.pose, model.directions, n, bent, share, there.pose)
         else:
             scale *= 0.5 if attempt > 1 else 1.0
@@ -214,22 +214,30 @@ def line_search(problem, here, t, there, model, n, mu, step, slope, scale, logs)
 
 
 @inner_kernel
-def put_on_faces(problem, point, duals, logs, best, best_pose):
-    """Put the best pose on the faces that hold it; return its value, unless that loses anything."""
-    domain, pose = problem.domain, point.pose
-    copy_into(best_pose, pose)
-    ratios = duals.shape[0] - problem.used.shape[0]
-    least = _ACTIVE / nearest_node(problem.family, pose[:3])
+def put_on_faces(problem, here, there, model, logs, best, best_pose):
+    """Put the last pose on the faces that hold it, as the best unless that loses anything; return its value.
+
+    A step in the search variables does so, since the axis must follow.
+    """
+    ratios, m = model.duals.shape[0] - problem.used.shape[0], 0
+    step, goal = zeroed(6), scratch(3)
+    copy_into(here.pose[:3], goal)
     for i in range(3):
-        if duals[ratios + i] > least:
-            pose[i] = domain.low_m[i]
-        if duals[ratios + 3 + i] > least:
-            pose[i] = domain.high_m[i]
-    axis_at(problem.axis_field, pose[:3], pose[3:])
-    fill_values(problem, pose, logs, point.values)
-    value = reached(problem, point.values)
+        if problem.free[i]:
+            length = model.directions[m, i]
+            if model.duals[ratios + i] * length > _ACTIVE:
+                goal[i] = problem.domain.low_m[i]
+            if model.duals[ratios + 3 + i] * length > _ACTIVE:
+                goal[i] = problem.domain.high_m[i]
+            step[m] = (goal[i] - here.pose[i]) / length
+            m += 1
+    move(problem.axis_field, here.pose, model.directions, m, step, 1.0, there.pose)
+    copy_into(goal, there.pose)  # exactly
+    axis_at(problem.axis_field, goal, there.pose[3:])
+    fill_values(problem, there.pose, logs, there.values)
+    value = reached(problem, there.values)
     if value >= best - _HAIR:
-        copy_into(pose, best_pose)
+        copy_into(there.pose, best_pose)
         return value
     return best
 
@@ -254,7 +262,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     count, groups = ratios + sides, family.denominator_isotropic.shape[0]
     here = Point(np.empty(6), np.empty(count), np.empty(count))
     there = Point(np.empty(6), np.empty(count), np.empty(count))
-    model = Model(np.empty((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
+    model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
     best_pose, logs, duals = scratch(6), np.empty(groups), model.duals
     copy_into(p, here.pose)
     copy_into(u, here.pose[3:])
@@ -280,7 +288,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             slope = newton_step(here.gaps, duals, model.rates, h, n, mu, model.factor, step)
             if math.isnan(slope):
                 break
-            dual_scale, largest = longest_scale(here.gaps, model.rates, ratios, step, n)
+            dual_scale, largest = longest_scale(problem, here.gaps, model.rates, step, n)
             scale, t = line_search(problem, here, t, there, model, n, mu, step, slope, dual_scale, logs)
             if not scale > 0.0:
                 stalled += 3
@@ -294,7 +302,7 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
             if value > best:
                 best = value
                 copy_into(here.pose, best_pose)
-        best = put_on_faces(problem, here, duals, logs, best, best_pose)
+        best = put_on_faces(problem, here, there, model, logs, best, best_pose)
     else:
         duals[:] = 1.0
     total = 0.0

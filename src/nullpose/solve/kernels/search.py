@@ -31,9 +31,6 @@ __all__ = ["search"]
 _MU_START = 0.1
 _MAX_STEPS = 100
 _SAME = 1e-9
-_CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)  # barrier weights after the search
-_CLIMB_STEPS = 300
-_SAME_END = 1e-12
 _ROUGH = 1e-2
 _STEP = 1e-3  # m beyond a forbidden piece's side
 _SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
@@ -276,12 +273,4 @@ def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_
             idle = 0 if best > before + _SAME else idle + 1
             if idle >= settings.patience:
                 break
-    for mu in _CLIMBS:  # along a flat, curved ridge the steps above may not have sufficed
-        if not best > -math.inf:
-            break
-        before = best
-        best, steps = polish(family, domain, axis_field, best_p, best_u, mu, np.int64(_CLIMB_STEPS), best_z)
-        evaluations += steps
-        if steps < _CLIMB_STEPS and best <= before + _SAME_END:
-            break
     return best, starts, evaluations
