@@ -12,15 +12,13 @@ Run = Callable[..., Result]
 
 
 def test_table_and_answer(run: Run, paper: str) -> None:
-    """Every vehicle has a row, and the answer comes last."""
+    """Every vehicle has a row, and the answer says which suffices."""
     result = run("compare", paper, "--airframes", "--set", "jammers.M.power_w=100")
     assert result.exit_code == 0
     for words in ("level, vertical", "tilt 10, horizontal", "omnidirectional", "array of 8, analogue"):
         assert words in result.stdout
-    answer = result.stdout.splitlines()[-2]
-    assert answer.startswith(
-        "A 10 degree tilt with a horizontal dipole gives 99.3 % of what an omnidirectional"
-    )
+    answer = "A 10 degree tilt with a horizontal dipole gives 99.3 % of what an omnidirectional"
+    assert any(line.startswith(answer) for line in result.stdout.splitlines())
 
 
 def test_json(run: Run, paper: str) -> None:

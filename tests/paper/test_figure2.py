@@ -119,9 +119,7 @@ def test_poses_are_drawn_to_scale(reproduction: Reproduction, paper: Scenario) -
         sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
         ratios = sides.ravel() / axes._box_aspect
         assert ratios == pytest.approx([ratios[0]] * 3)
-        assert re.search(
-            r"= \d+\nsmallest SINR -?\d+\.\d\d dB, null \d+\.\d° off the jammer", axes.get_title()
-        )
+        assert re.search(r"= \d+\nsmallest SINR -?\d+\.\d\d dB, null \d+\.\d° off M", axes.get_title())
 
 
 def test_pyplot_is_never_used(reproduction: Reproduction) -> None:

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from nullpose import Scenario, load, solve
+from nullpose import Pose, Scenario, load, solve
 from nullpose.errors import UsageError
 from nullpose.report.figures import draw_pose
-from nullpose.report.figures.outlines import outlines_of
+from nullpose.report.figures.scene import ALONE, Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure_file
+from nullpose.report.geometry import outline_m
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -49,14 +50,22 @@ def test_one_metre_is_as_long_along_every_axis() -> None:
 
 
 def test_zones_far_away_are_left_out() -> None:
-    """A zone beyond the distance drawn is not; a cylinder is drawn as a ring of its radius."""
-    airspace = load(EXAMPLES / "no-fly.toml").airspace
-    scene = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]])
-    names = [outline.name for outline in outlines_of(airspace, scene, 150.0)]
-    assert names == ["", "school", "mast", "road"]
-    assert [outline.name for outline in outlines_of(airspace, scene, 30.0)] == ["school", "mast"]
-    school = outlines_of(airspace, scene, 30.0)[0]
-    assert np.linalg.norm(school.vertices_m - [-2.0, 24.0], axis=1) == pytest.approx(12.0)
+    """A zone or a fence that reaches far beyond the scene is not drawn; a cylinder encloses its circle."""
+    scenario = load(EXAMPLES / "no-fly.toml")
+    stage = Stage(scenario=scenario, poses=(Pose(np.array([0.0, 25.0, 8.0]), 0.0, 0.0),), view=ALONE)
+    assert [zone.name for zone in stage.zones] == ["school", "mast", "road"]
+    assert len(stage.fence_m) == 5
+    nodes = tuple(
+        node.model_copy(update={"position_m": (0.2 * node.position_m[0], 0.2 * node.position_m[1], 0.0)})
+        for node in scenario.nodes
+    )
+    small = scenario.model_copy(update={"nodes": nodes, "jammers": ()})
+    stage = Stage(scenario=small, poses=(Pose(np.array([0.0, 5.0, 8.0]), 0.0, 0.0),), view=ALONE)
+    assert [zone.name for zone in stage.zones] == ["mast"]
+    assert len(stage.fence_m) == 0
+    radii = np.linalg.norm(outline_m(scenario.airspace.no_fly[0]) - [-2.0, 24.0], axis=1)
+    assert np.all(radii >= 12.0)
+    assert radii == pytest.approx(12.0, rel=1e-3)
 
 
 def test_no_jammer_no_line(paper: Scenario) -> None:

@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 
 from nullpose import Scenario, load
 from nullpose.report.figures import draw_robust
-from nullpose.report.figures.uncertainty import reach_of, wires_m
+from nullpose.report.figures.bodies import draw_set, set_box_m
 from nullpose.report.geometry import distance_m
 from nullpose.solve.robust import RobustSolution, solve_robust
 
@@ -74,12 +76,11 @@ def test_the_set_is_drawn_around_its_jammer(solution: RobustSolution) -> None:
     """Every wire is as far from the jammer as it may be off, in its colour, and in the legend once."""
     figure = draw_robust(solution)
     for axes in figure.axes:
-        wires = [line for line in axes.lines if line.get_label() == "where the jammer may be"]
-        assert len(wires) > 3
-        for wire in wires:
-            points = np.transpose(wire.get_data_3d()) - [17.0, 15.0, 4.0]
-            assert np.linalg.norm(points, axis=1) == pytest.approx(3.0)
-            assert wire.get_color() == "#d40000"
+        (wires,) = [one for one in axes.collections if one.get_label() == "where the jammer may be"]
+        assert len(wires._segments3d) > 3
+        points = np.vstack(wires._segments3d) - [17.0, 15.0, 4.0]
+        assert np.linalg.norm(points, axis=1) == pytest.approx(3.0)
+        assert to_hex(wires.get_edgecolor()[0]) == "#d40000"
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts.count("where the jammer may be") == 1
 
@@ -95,10 +96,12 @@ def test_without_a_set_there_is_none() -> None:
 def test_wires_lie_on_the_ellipsoid() -> None:
     """A turned ellipsoid's wires are on its surface and within its box, which they touch nearly."""
     (jammer,) = _turned().jammers
-    wires = wires_m(jammer).reshape(-1, 3)
+    axes = Figure().add_subplot(projection="3d")
+    draw_set(axes, jammer, "k", "set")
+    wires = np.vstack(axes.collections[0]._segments3d)
     inverse = np.linalg.inv(jammer.uncertainty_matrix_m)
     assert np.linalg.norm((wires - jammer.position_m) @ inverse.T, axis=1) == pytest.approx(1.0)
-    low, high = reach_of(jammer)
+    low, high = set_box_m(jammer)
     assert np.all(wires >= low - 1e-9)
     assert np.all(wires <= high + 1e-9)
     assert np.ptp(wires, axis=0) == pytest.approx(high - low, rel=0.1)

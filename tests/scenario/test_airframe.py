@@ -96,7 +96,7 @@ def test_round_trip(tilt: float, mount: float) -> None:
         ({"tilt_max_deg": 1.0, "mount_deg": 90.5}, "from 0 to 90"),
         ({"tilt_max_deg": 1.0, "mount_deg": -1.0}, "0 is along the body's vertical"),
         ({"preset": "hexarotor"}, 'or "fixed-tilt-hexarotor"; did you mean "fixed-tilt-hexarotor"?'),
-        ({"preset": 3}, 'got 3, must be a preset: "omnidirectional", "level" or'),
+        ({"preset": 3}, 'got 3, must be a preset: "omnidirectional" or "level" or'),
     ],
 )
 def test_airframes_that_are_none(values: dict[str, object], words: str) -> None:

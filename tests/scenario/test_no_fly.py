@@ -90,14 +90,14 @@ def test_a_cylinder_is_the_limit_of_polygons(seed: int) -> None:
 @pytest.mark.parametrize(
     ("values", "path", "words"),
     [
-        ({}, "", "no shape is given, exactly one must be: add x_m and y_m, or centre_m and radius_m, or"),
-        ({"altitude_m": [0, 9]}, "", "no shape is given"),
-        ({"x_m": [0, 1]}, "", "x_m is given without y_m; add y_m"),
-        ({"radius_m": 1.0}, "", "radius_m is given without centre_m; add centre_m"),
+        ({}, "", "neither x_m and y_m nor centre_m and radius_m nor polygon_m is given, exactly one"),
+        ({"altitude_m": [0, 9]}, "", "exactly one must be"),
+        ({"x_m": [0, 1]}, "", "x_m given without y_m; add it"),
+        ({"radius_m": 1.0}, "", "radius_m given without centre_m; add it"),
         (
             {"x_m": [0, 1], "y_m": [0, 1], "radius_m": 1.0},
             "",
-            "x_m, y_m, radius_m are given, exactly one shape",
+            "x_m and y_m and radius_m are given, exactly one is allowed",
         ),
         ({"centre_m": [0, 0], "radius_m": 0.0}, "radius_m", "a shape has an inside"),
         ({"centre_m": [0, 0, 0], "radius_m": 1.0}, "centre_m", "a list of two numbers [x, y]"),

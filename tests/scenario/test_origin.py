@@ -133,7 +133,7 @@ def test_all_three_or_none(key: str) -> None:
     part = {other: value for other, value in HERE.items() if other != key}
     faults = faults_of(nodes=[{"power_w": 1.0} | part])
     assert list(faults) == ["nodes[0]"]
-    assert f"without {key}; give all three, or position_m" in faults["nodes[0]"]
+    assert f"without {key}; add it, or position_m" in faults["nodes[0]"]
     faults = faults_of(origin={other: value for other, value in ORIGIN.items() if other != key})
     assert list(faults) == [f"origin.{key}"]
     assert "missing; it must be given" in faults[f"origin.{key}"]
@@ -192,7 +192,7 @@ def test_two_points_at_one_place() -> None:
 
 def test_a_point_alone_has_no_origin() -> None:
     """A node built outside a scenario is told that a latitude needs the scenario's origin."""
-    with pytest.raises(ScenarioError, match=r"need the \[origin\] of a scenario; give position_m"):
+    with pytest.raises(ScenarioError, match=r"position_m: missing.*with an \[origin\]"):
         Node(power_w=1.0, **HERE)
 
 

@@ -97,10 +97,10 @@ def test_area(vertices: list[list[float]], area: float) -> None:
 @pytest.mark.parametrize(
     ("vertices", "path", "words"),
     [
-        ([], "geofence_m", "got an empty list, must be at least three vertices"),
+        ([], "geofence_m", "got an empty list, must be a list of at least three"),
         ([[0, 0], [1, 0]], "geofence_m", "got a list of 2 values"),
         ([[0, y] for y in range(5001)], "geofence_m", "got a list of 5001 values"),
-        (3, "geofence_m", "must be a list of at least three vertices"),
+        (3, "geofence_m", "must be a list of at least three"),
         ({}, "geofence_m", "got a table"),
         ([[0, 0], [1, 0], [1]], "geofence_m[2]", "a list of two numbers [x, y]: metres east and north"),
         ([[0, 0], [1, 0], 3], "geofence_m[2]", "got 3"),
@@ -110,15 +110,19 @@ def test_area(vertices: list[list[float]], area: float) -> None:
         (
             [*SQUARE, [0, 0]],
             "geofence_m",
-            "vertex [4] repeats vertex [0]; remove it, the last vertex is joined",
+            "the edge from vertex [0] to [1] meets the one from [3]",
         ),
         (
             [[0, 0], [1, 0], [1, 0], [0, 1]],
             "geofence_m",
-            "vertex [2] repeats vertex [1]; give every vertex once",
+            "list every vertex once",
         ),
-        ([[0, 0], [4, 0], [2, 1], [0, 0], [-2, 1]], "geofence_m", "vertex [3] repeats vertex [0]"),
-        ([[0, 0], [1, 1], [2, 2]], "geofence_m", "on one line"),
+        (
+            [[0, 0], [4, 0], [2, 1], [0, 0], [-2, 1]],
+            "geofence_m",
+            "the edge from vertex [0] to [1] meets the one from [2]",
+        ),
+        ([[0, 0], [1, 1], [2, 2]], "geofence_m", "touches itself"),
         ([[0, 0], [2, 0], [1, 0], [3, 0]], "geofence_m", "touches itself"),
         (
             [[0, 0], [4, 4], [4, 0], [0, 4]],
@@ -166,6 +170,6 @@ def test_more_corners_are_refused() -> None:
     """A polygon of more corners is refused with how many it has and how many it may have."""
     angles = np.arange(MOST_CORNERS + 1) * 2.0 * np.pi / (MOST_CORNERS + 1)
     with pytest.raises(
-        ScenarioError, match="got a list of 5001 values, must be at most 5000 vertices; leave out"
+        ScenarioError, match="got a list of 5001 values, must be a list of at least three and at most 5000"
     ):
         accepted(np.stack([np.cos(angles), np.sin(angles)], axis=1).tolist())

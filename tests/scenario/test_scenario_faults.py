@@ -195,7 +195,7 @@ CROSS_CASES = [
         "less than keep_out_m = 100.0 m",
         "no room",
         "widen altitude_m, x_m or y_m",
-        "keep_out_m smaller",
+        "make keep_out_m or a zone smaller",
     ),
 ]
 CASES = FIELD_CASES + CROSS_CASES
@@ -242,8 +242,12 @@ def test_one_fault_is_one_message(one: Case, tmp_path: Path) -> None:
             "nodes",
             "missing; it must be given: Tables headed [[nodes]]",
         ),
-        ("nodes = []\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must have at least one"),
-        ("nodes = 3\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must be a list of tables"),
+        (
+            "nodes = []\n" + GOOD.split("[[nodes]]", maxsplit=1)[0],
+            "nodes",
+            "must be a list of at least one table",
+        ),
+        ("nodes = 3\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must be a list of at least one"),
         ("nodes = [1]\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes[0]", "must be a node"),
         ("jammers = 3\n" + GOOD.split("[[jammers]]", maxsplit=1)[0], "jammers", "must be a list of tables"),
         (
@@ -268,14 +272,14 @@ def test_empty_file_lacks_every_part(tmp_path: Path) -> None:
 
 
 def test_default_name_taken_by_another(tmp_path: Path) -> None:
-    """A name given by place collides like any other, and the message says where it came from."""
+    """A name given by place collides like any other, wherever it comes from."""
     text = GOOD.replace('name = "S1"\n', "").replace('name = "S2"', 'name = "S1"')
     (fault,) = faults_of(tmp_path / "bad.toml", text)
     assert fault.path == "nodes[1].name"
     assert 'got "S1", the name of nodes[0] already' in fault.message
     text = GOOD.replace('name = "S2"\n', "").replace('name = "S1"', 'name = "S2"')
     (fault,) = faults_of(tmp_path / "bad.toml", text)
-    assert 'left out, which means "S2" here, the name of nodes[0] already' in fault.message
+    assert 'got "S2", the name of nodes[0] already' in fault.message
 
 
 def test_faults_come_in_the_order_of_the_file(tmp_path: Path) -> None:

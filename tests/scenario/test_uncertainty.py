@@ -58,10 +58,10 @@ def test_a_long_ellipsoid_turned_to_the_north() -> None:
 @pytest.mark.parametrize(
     ("values", "path", "words"),
     [
-        ({"uncertainty_m": -1.0}, "uncertainty_m", "got -1.0, must be a length in m from 0"),
+        ({"uncertainty_m": -1.0}, "uncertainty_m", "got -1.0, must be a radius in m"),
         ({"uncertainty_m": float("nan")}, "uncertainty_m", "got NaN"),
         ({"uncertainty_m": float("inf")}, "uncertainty_m", "got infinity"),
-        ({"uncertainty_m": "3"}, "uncertainty_m", "a radius in m, or a list of three semi-axes"),
+        ({"uncertainty_m": "3"}, "uncertainty_m", "a radius in m (or a list of three semi-axes"),
         ({"uncertainty_m": True}, "uncertainty_m", "got the truth value true"),
         ({"uncertainty_m": {}}, "uncertainty_m", "got a table"),
         ({"uncertainty_m": []}, "uncertainty_m", "got an empty list, must be a list of three semi-axes"),

@@ -13,18 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.errors import UsageError
 from nullpose.files import write_text
 from nullpose.physics import pose_frames
-from nullpose.report.geometry import azimuth_rad, tilt_rad
+from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
 from nullpose.report.plain import json_text
 from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
-from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.solve import Result
 
 __all__ = ["require_origin", "solution_geojson", "write_geojson"]
-
-_SIDES = 72
-"""Sides of the polygon that stands for a cylinder; 0.1 % of the radius larger at most."""
 
 _Feature = dict[str, object]
 
@@ -137,16 +133,7 @@ def _outlines(scenario: Scenario, origin: Origin) -> Iterator[_Feature]:
     for zone in airspace.no_fly:
         round_one = {} if zone.radius_m is None else {"radius_m": zone.radius_m}
         own = {"kind": "no-fly", "name": zone.name, "altitude_m": zone.altitude_m, **round_one}
-        yield _polygon(origin, _outline_m(zone), max(zone.floor_m, height_m), **own)
-
-
-def _outline_m(zone: NoFlyZone) -> NDArray[np.float64]:
-    """Return a zone's outline [m], (n, 2), counter-clockwise; of a cylinder, a polygon that encloses it."""
-    if zone.centre_m is None or zone.radius_m is None:
-        return zone.outline_m
-    turns = math.tau * np.arange(_SIDES) / _SIDES
-    reach_m = zone.radius_m / math.cos(math.pi / _SIDES)
-    return np.asarray(zone.centre_m) + reach_m * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+        yield _polygon(origin, outline_m(zone), max(zone.floor_m, height_m), **own)
 
 
 def _point(origin: Origin, position_m: ArrayLike, **properties: object) -> _Feature:

@@ -8,8 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import NoFlyZone
 
-__all__ = ["azimuth_rad", "distance_m", "null_angle_rad", "tilt_rad"]
+__all__ = ["azimuth_rad", "distance_m", "null_angle_rad", "outline_m", "tilt_rad"]
+
+_SIDES = 72  # of the polygon that stands for a cylinder; 0.1 % of the radius larger at most
 
 
 def null_angle_rad(pose: Pose, point_m: ArrayLike) -> float:
@@ -58,3 +62,16 @@ def azimuth_rad(pose: Pose) -> float:
     east, north, up = (float(component) for component in pose.antenna_axis)
     sign = -1.0 if up < 0.0 else 1.0
     return math.atan2(sign * north, sign * east) if math.hypot(east, north) > 0.0 else 0.0
+
+
+def outline_m(zone: NoFlyZone) -> FloatArray:
+    """Return a zone's corners seen from above, (n, 2), counter-clockwise, metres; of a cylinder, around it.
+
+    Args:
+        zone: any.
+    """
+    if zone.centre_m is None or zone.radius_m is None:
+        return zone.outline_m
+    around = math.tau * np.arange(_SIDES) / _SIDES
+    reach_m = zone.radius_m / math.cos(math.pi / _SIDES)
+    return np.asarray(zone.centre_m + reach_m * np.stack([np.cos(around), np.sin(around)], axis=-1))

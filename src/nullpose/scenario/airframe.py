@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.choice import Choice
+from nullpose.scenario.rules import Choice
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import MountDegrees, TiltDegrees
+from nullpose.scenario.ways import Ways, exactly_one
 
 __all__ = ["Airframe"]
 
 PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexarotor": 30.0}
 """Largest tilt of each airframe that has a name [deg]."""
 
-_Preset = Annotated[
-    Literal["omnidirectional", "level", "fixed-tilt-hexarotor"],
-    Choice("a preset", tuple(PRESET_TILTS_DEG)),
-]
+
+_Preset = Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))]
 
 
 class Airframe(Section):
@@ -36,8 +35,7 @@ class Airframe(Section):
         mount_deg: angle between the dipole and the body's vertical [deg].
     """
 
-    header: ClassVar[str] = "a table headed [airframe]"
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("preset", "tilt_max_deg"),)
+    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
     preset: _Preset | None = Field(
@@ -85,10 +83,7 @@ class Airframe(Section):
 
     @property
     def _tilt_deg(self) -> float:
-        if self.preset is not None:
-            return PRESET_TILTS_DEG[self.preset]
-        assert self.tilt_max_deg is not None, "validation lets exactly one of the two through"
-        return self.tilt_max_deg
+        return PRESET_TILTS_DEG[self.preset] if self.preset else self.tilt_max_deg or 0.0
 
 
 def _cosine_squared(angle_deg: float) -> float:

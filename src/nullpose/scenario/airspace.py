@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.members import Members
 from nullpose.scenario.no_fly import NoFlyZone
-from nullpose.scenario.polygon import Polygon, area_m2, depth_m
+from nullpose.scenario.polygon import Polygon, counter_clockwise_m, depth_m
+from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import KeepOutMetres, Range
 
@@ -40,7 +40,6 @@ class Airspace(Section):
         no_fly: zones that the vehicle stays out of.
     """
 
-    header: ClassVar[str] = "a table headed [airspace]"
     unstated: ClassVar[frozenset[str]] = frozenset({"no_fly"})
 
     altitude_m: Range = Field(
@@ -70,7 +69,7 @@ class Airspace(Section):
         "[[east, north], ...]. Left out: no fence.",
         examples=[[[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]]],
     )
-    no_fly: Annotated[tuple[NoFlyZone, ...], Members("airspace.no_fly", NoFlyZone.letter)] = Field(
+    no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly")] = Field(
         default=(),
         description="Tables headed [[airspace.no_fly]], one for each zone that the vehicle stays out of; "
         "none if left out.",
@@ -89,9 +88,7 @@ class Airspace(Section):
     @cached_property
     def geofence_outline_m(self) -> NDArray[np.float64]:
         """Vertices of the geofence [m], (n, 2), counter-clockwise; none without a fence."""
-        vertices_m = np.asarray(self.geofence_m or (), dtype=np.float64).reshape(-1, 2)
-        clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
-        return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
+        return counter_clockwise_m(self.geofence_m)
 
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the vehicle may be at each position, the keep-out balls not being looked at.

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from nullpose.scenario.choice import Choice
+from nullpose.scenario.rules import Choice, Count
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Count, Wavelengths
+from nullpose.scenario.units import Wavelengths
 
 __all__ = ["Array"]
 
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
+
+
 _Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
 
 
@@ -24,8 +26,6 @@ class Array(Section):
         layout: linear, evenly spaced on a level line; or circular, evenly spaced on a level circle.
         spacing_wavelengths: distance between neighbours in wavelengths.
     """
-
-    header: ClassVar[str] = "a table headed [array]"
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
     layout: _Layout = Field(

@@ -34,19 +34,12 @@ def distance_m(points_m: Array, centre_m: Array, matrix_m: Array) -> Array:
     high = np.sqrt(squares.max()) * np.linalg.norm(offsets, axis=1)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        beyond = _excess(offsets, squares, middle) > 1.0
-        low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
-    nearest = _nearest(offsets, squares, high)
-    return np.asarray(np.linalg.norm(offsets - nearest, axis=1))
+        reach = np.linalg.norm(np.sqrt(squares) * _share(offsets, squares, middle), axis=1)
+        low, high = np.where(reach > 1.0, middle, low), np.where(reach > 1.0, high, middle)
+    return np.asarray(np.linalg.norm(offsets - squares * _share(offsets, squares, high), axis=1))
 
 
-def _excess(offsets: Array, squares: Array, multiplier: Array) -> Array:
-    """Returns the sum that is 1 at the root, (n,)."""
+def _share(offsets: Array, squares: Array, multiplier: Array) -> Array:
+    """Returns ``y / (a^2 + t)``, and 0 where both are 0."""
     total = squares + multiplier[:, None]
-    share = np.divide(np.sqrt(squares) * offsets, total, out=np.zeros_like(offsets), where=total > 0.0)
-    return np.asarray(np.sum(share**2, axis=1))
-
-
-def _nearest(offsets: Array, squares: Array, multiplier: Array) -> Array:
-    total = squares + multiplier[:, None]
-    return np.divide(squares * offsets, total, out=np.zeros_like(offsets), where=total > 0.0)
+    return np.divide(offsets, total, out=np.zeros_like(offsets), where=total > 0.0)

@@ -3,52 +3,66 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.wording import printable
+from nullpose.scenario.wording import described, printable
 
-__all__ = ["Place", "as_error_details", "collected", "path_of", "rejection", "scenario_error"]
+__all__ = ["Place", "collected", "path_of", "rejection", "reworded", "scenario_error"]
 
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
 
-KIND = "scenario"
-"""The type that every fault worded here carries through pydantic."""
-
-
+_KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def rejection(message: str) -> PydanticCustomError:
     """Returns the exception with which a validator refuses a value, in exactly these words."""
     # The message travels as context: braces in it (from user text) are then not taken for placeholders.
-    return PydanticCustomError(KIND, "{message}", {"message": message})
+    return PydanticCustomError(_KIND, "{message}", {"message": message})
 
 
-def as_error_details(place: Place, message: str, given: object = None) -> InitErrorDetails:
-    """Returns one fault in the form in which pydantic collects them."""
-    return InitErrorDetails(type=rejection(message), loc=place, input=given)
-
-
-def collected(title: str, details: Sequence[InitErrorDetails]) -> ValidationError:
+def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationError:
     """Returns pydantic's exception that carries all the faults together."""
-    return ValidationError.from_exception_data(title, list(details))
+    details = [InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults]
+    return ValidationError.from_exception_data(title, details)
+
+
+def reworded(
+    error: ValidationError, fields: Mapping[str, FieldInfo], untold: Collection[str] = ()
+) -> Iterator[tuple[Place, str]]:
+    """Yields in plain words what pydantic found in a table.
+
+    Args:
+        error: what it found.
+        fields: the fields of the table.
+        untold: keys of which it need not be said that they are missing.
+    """
+    for entry in error.errors(include_url=False):
+        place, kind = entry["loc"], entry["type"]
+        message = entry["msg"]
+        if kind == "missing":
+            message = f"missing; it must be given: {(fields[str(place[-1])].description or '').rstrip('.')}"
+        elif kind != _KIND:
+            message = f"got {described(entry['input'])}, which cannot be used here"
+        if kind != "missing" or place[-1] not in untold:
+            yield place, message
 
 
 def path_of(place: Iterable[str | int]) -> str:
     """Returns a place as a person would write it: ``jammers[1].power_w``."""
-    path = ""
-    for step in place:
-        if isinstance(step, int):
-            path += f"[{step}]"
-        else:
-            key = printable(step) if _BARE_KEY.fullmatch(step) else f'"{printable(step)}"'
-            path += f".{key}" if path else key
-    return path
+    words = (f"[{step}]" if isinstance(step, int) else f".{_key(step)}" for step in place)
+    return "".join(words).removeprefix(".")
+
+
+def _key(step: str) -> str:
+    return printable(step) if _BARE_KEY.fullmatch(step) else f'"{printable(step)}"'
 
 
 def scenario_error(error: ValidationError, data: object, source: str = "") -> ScenarioError:
@@ -60,25 +74,16 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
         source: the file or object at fault, as the user would name it.
     """
     found = [(tuple(entry["loc"]), entry["msg"]) for entry in error.errors(include_url=False)]
-    found.sort(key=lambda fault: _position(fault[0], data))
+    found.sort(key=lambda fault: _ranks(fault[0], data))
     return ScenarioError([Fault(path_of(place), message) for place, message in found], source)
 
 
-def _position(place: Place, data: object) -> tuple[int, ...]:
-    """Returns a sort key: the rank of each step of the place among its siblings in the input."""
+def _ranks(place: Place, data: Any) -> list[int]:
+    """Returns the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
-        if isinstance(data, Mapping):
-            keys = list(data)
-            ranks.append(keys.index(step) if step in keys else len(keys))
-            data = data.get(step)
-        else:
-            ranks.append(step if isinstance(step, int) else 0)
-            data = _member(data, step)
-    return tuple(ranks)
-
-
-def _member(values: object, step: str | int) -> object:
-    if isinstance(values, list | tuple) and isinstance(step, int) and 0 <= step < len(values):
-        return values[step]
-    return None
+        is_list = isinstance(data, list | tuple)
+        keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if is_list else []
+        ranks.append(keys.index(step) if step in keys else len(keys))
+        data = data[step] if step in keys else ()
+    return ranks

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["enu_from_geodetic", "enu_from_ned", "geodetic_from_enu", "ned_from_enu"]
+__all__ = ["enu_from_geodetic", "geodetic_from_enu", "ned_from_enu"]
 
 # pymap3d is imported where it is used: most scenarios have no place on the Earth.
 
@@ -29,8 +29,8 @@ def enu_from_geodetic(geodetic: ArrayLike, origin: ArrayLike) -> NDArray[np.floa
     """
     from pymap3d.enu import geodetic2enu
 
-    places, start = _rows(geodetic), _rows(origin)
-    return np.stack(geodetic2enu(*np.moveaxis(places, -1, 0), *start), axis=-1)
+    places = np.asarray(geodetic, dtype=np.float64)
+    return np.stack(geodetic2enu(*np.moveaxis(places, -1, 0), *np.asarray(origin)), axis=-1)
 
 
 def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
@@ -47,12 +47,14 @@ def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.fl
     """
     from pymap3d.enu import enu2geodetic
 
-    positions, start = _rows(position_m), _rows(origin)
-    return np.stack(enu2geodetic(*np.moveaxis(positions, -1, 0), *start), axis=-1)
+    positions = np.asarray(position_m, dtype=np.float64)
+    return np.stack(enu2geodetic(*np.moveaxis(positions, -1, 0), *np.asarray(origin)), axis=-1)
 
 
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
     """Returns vectors in north, east, down: the first two components swapped, the third negated.
+
+    Done twice, it gives the vectors back: so it leads from north, east, down to east, north, up too.
 
     Args:
         vector: components east, north and up, in any unit, (..., 3).
@@ -60,20 +62,4 @@ def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
     Returns:
         Array of shape (..., 3).
     """
-    return _rows(vector)[..., [1, 0, 2]] * [1.0, 1.0, -1.0] + 0.0  # no negative zeros
-
-
-def enu_from_ned(vector: ArrayLike) -> NDArray[np.float64]:
-    """Returns vectors in east, north, up; the same exchange as ``ned_from_enu``, which undoes itself.
-
-    Args:
-        vector: components north, east and down, in any unit, (..., 3).
-
-    Returns:
-        Array of shape (..., 3).
-    """
-    return ned_from_enu(vector)
-
-
-def _rows(values: ArrayLike) -> NDArray[np.float64]:
-    return np.asarray(values, dtype=np.float64)
+    return np.asarray(vector, dtype=np.float64)[..., [1, 0, 2]] * [1.0, 1.0, -1.0] + 0.0  # no negative zeros

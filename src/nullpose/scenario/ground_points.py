@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
 from pydantic import Field
 
-from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
 from nullpose.scenario.origin import GEODETIC_KEYS, Altitude, Latitude, Longitude
 from nullpose.scenario.section import Section
@@ -21,9 +20,14 @@ from nullpose.scenario.units import (
     power_w,
     ratio_from_db,
 )
-from nullpose.scenario.wording import nearest
+from nullpose.scenario.ways import Ways, at_most_one, exactly_one
 
-__all__ = ["Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
+__all__ = ["POWER", "Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
+
+POWER = exactly_one("power_w", "power_dbm")
+"""The keys of a transmit power."""
+
+_PLACE = Ways((("position_m",), GEODETIC_KEYS), fewest=0, most=2)
 
 
 class GroundPoint(Section):
@@ -36,7 +40,7 @@ class GroundPoint(Section):
             position_m; None if the place was not stated so.
     """
 
-    ways: ClassVar[tuple[tuple[str, ...], ...]] = (("position_m",), GEODETIC_KEYS)
+    ways: ClassVar[tuple[Ways, ...]] = (_PLACE,)
 
     name: Label = Field(
         default="",
@@ -45,7 +49,7 @@ class GroundPoint(Section):
     )
     position_m: Position = Field(
         description="Position in metres from the origin: [east, north, up]. Either this, or lat_deg, lon_deg "
-        "and alt_m.",
+        "and alt_m in a scenario with an [origin].",
         examples=[[17.0, 15.0, 4.0]],
     )
     lat_deg: Latitude | None = Field(
@@ -64,20 +68,6 @@ class GroundPoint(Section):
         description="Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.",
         examples=[252.0],
     )
-
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        yield from super().cross_faults(data)
-        given = [key for key in GEODETIC_KEYS if data.get(key) is not None]
-        absent = [key for key in GEODETIC_KEYS if key not in given]
-        if any(nearest(str(key), absent) for key in data if key not in cls.model_fields):
-            return  # a misspelt key is told already
-        if given and absent:
-            yield (), f"{' and '.join(given)} without {' and '.join(absent)}; give all three, or position_m"
-        elif given and data.get("position_m") is None:
-            # Within a scenario, its origin has given the point a position by now.
-            yield (), "lat_deg, lon_deg and alt_m need the [origin] of a scenario; give position_m here"
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Returns a copy with some values replaced; a new position takes the place of a latitude too.
@@ -105,7 +95,7 @@ class Emitter(GroundPoint):
         power_dbm: the same in dBm.
     """
 
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("power_w", "power_dbm"),)
+    ways: ClassVar[tuple[Ways, ...]] = (_PLACE, POWER)
 
     power_w: Watts | None = Field(
         default=None,
@@ -121,7 +111,7 @@ class Emitter(GroundPoint):
     @property
     def transmit_power_w(self) -> float:
         """Transmit power, however it was stated [W]; 0 where none is."""
-        return power_w(self.power_w, self.power_dbm) or 0.0
+        return power_w(self.power_w, self.power_dbm)
 
 
 class Node(Emitter):
@@ -145,12 +135,12 @@ class Node(Emitter):
     header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
     letter: ClassVar[str] = "S"
     # A node need not transmit where the drone does; a scenario judges whether it has to.
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("power_w", "power_dbm"),
-        ("weight", "min_sinr_db"),
-        ("noise_w", "noise_dbm"),
-        ("jamming_w", "jamming_dbm"),
+    ways: ClassVar[tuple[Ways, ...]] = (
+        _PLACE,
+        at_most_one("power_w", "power_dbm"),
+        at_most_one("weight", "min_sinr_db"),
+        at_most_one("noise_w", "noise_dbm"),
+        at_most_one("jamming_w", "jamming_dbm"),
     )
 
     weight: Weight | None = Field(
@@ -232,7 +222,7 @@ class Eavesdropper(Uncertain, GroundPoint):
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
     letter: ClassVar[str] = "E"
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("noise_w", "noise_dbm"),)
+    ways: ClassVar[tuple[Ways, ...]] = (_PLACE, at_most_one("noise_w", "noise_dbm"))
 
     noise_w: Watts | None = Field(
         default=None,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from nullpose.scenario.ground_points import Emitter
+from nullpose.objectives import RECORDS
+from nullpose.scenario.ground_points import POWER
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
 
@@ -51,43 +51,20 @@ class _TomlSchema(GenerateJsonSchema):
         if issubclass(kind, Section):
             # The class docstring speaks of Python; the fields describe themselves.
             described["description"] = str(described.get("description", "")).split("\n", 1)[0]
-            either = {key for way in kind.ways for key in way}
+            either = {key for ways in kind.ways for group in ways.groups for key in group}
             required = [key for key in described.pop("required", ()) if key not in either]
             described |= {"required": required} if required else {}
-            described |= _together(_rules(kind))
+            rules = _rules(kind)
+            described |= rules[0] if len(rules) == 1 else {"allOf": rules} if rules else {}
         return described
 
 
 def _rules(kind: type[Section]) -> list[dict[str, Any]]:
-    """Returns what a table says of keys together: one of several, at most one, one of several ways."""
-    rules: list[dict[str, Any]] = [_either_or(*((key,) for key in pair)) for pair in kind.pairs]
-    rules += [{"not": {"required": list(pair)}} for pair in kind.alternatives]
-    if kind.shapes:
-        rules.append(_either_or(*kind.shapes))
-    if kind.ways:
-        # Not "oneOf": a scenario that is written to a file states such things in every way that it knows.
-        rules.append({"anyOf": [{"required": list(way)} for way in kind.ways]})
+    """Returns what a table says of keys together, and of nodes what an objective needs of them."""
+    rules = [ways.schema() for ways in kind.ways]
+    silent = [name for name, record in RECORDS.items() if "nodes.power" not in record.needs]
     if issubclass(kind, Scenario):
-        rules.append(_NODES_TRANSMIT)
+        powers = {"properties": {"nodes": {"items": POWER.schema()}}}
+        named = {"properties": {"objective": {"enum": silent}}, "required": ["objective"]}
+        rules.append({"if": named, "else": powers})
     return rules
-
-
-def _either_or(*groups: Sequence[str]) -> dict[str, Any]:
-    return {"oneOf": [{"required": list(group)} for group in groups]}
-
-
-_NODES_TRANSMIT: dict[str, Any] = {
-    "if": {"properties": {"objective": {"const": "secrecy-rate"}}, "required": ["objective"]},
-    "else": {"properties": {"nodes": {"items": _either_or(*((key,) for key in Emitter.pairs[0]))}}},
-}
-"""Every node has a power, but where the drone transmits."""
-
-
-def _together(rules: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    match rules:
-        case []:
-            return {}
-        case [rule]:
-            return rule
-        case _:
-            return {"allOf": list(rules)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -12,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
-from nullpose.scenario.polygon import Polygon, area_m2, depth_m
-from nullpose.scenario.rewording import meant_keys
+from nullpose.scenario.polygon import Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import PlanePoint, RadiusMetres, Range
+from nullpose.scenario.ways import Ways
 
 __all__ = ["NoFlyZone"]
 
@@ -40,11 +38,7 @@ class NoFlyZone(Section):
 
     header: ClassVar[str] = "a no-fly zone, in a table of its own headed [[airspace.no_fly]]"
     letter: ClassVar[str] = "Z"
-    shapes: ClassVar[tuple[tuple[str, ...], ...]] = (
-        ("x_m", "y_m"),
-        ("centre_m", "radius_m"),
-        ("polygon_m",),
-    )
+    ways: ClassVar[tuple[Ways, ...]] = (Ways((("x_m", "y_m"), ("centre_m", "radius_m"), ("polygon_m",))),)
 
     name: Label = Field(
         default="",
@@ -95,9 +89,7 @@ class NoFlyZone(Section):
         if self.x_m is not None and self.y_m is not None:
             (west, east), (south, north) = self.x_m, self.y_m
             return read_only([(west, south), (east, south), (east, north), (west, north)], (4, 2))
-        vertices_m = np.asarray(self.polygon_m or (), dtype=np.float64).reshape(-1, 2)
-        clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
-        return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
+        return counter_clockwise_m(self.polygon_m)
 
     @property
     def floor_m(self) -> float:
@@ -144,21 +136,3 @@ class NoFlyZone(Section):
             sideways = depth_m(position[..., :2], self.outline_m)
         height = position[..., 2]
         return np.asarray(np.minimum(sideways, np.minimum(height - floor_m, ceiling_m - height)))
-
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table: no shape, several, or half of one."""
-        yield from super().cross_faults(data)
-        given = [[key for key in shape if data.get(key) is not None] for shape in cls.shapes]
-        begun = [index for index, keys in enumerate(given) if keys]
-        allowed = ", or ".join(" and ".join(shape) for shape in cls.shapes)
-        meant = meant_keys(data, cls.model_fields)
-        if len(begun) > 1:
-            stated = ", ".join(key for keys in given for key in keys)
-            yield (), f"{stated} are given, exactly one shape is allowed: {allowed}; remove the others"
-        elif not begun and meant.isdisjoint(key for shape in cls.shapes for key in shape):
-            yield (), f"no shape is given, exactly one must be: add {allowed}"
-        elif begun:
-            for key in cls.shapes[begun[0]]:
-                if key not in given[begun[0]] and key not in meant:
-                    yield (), f"{given[begun[0]][0]} is given without {key}; add {key}"

@@ -7,19 +7,23 @@ import io
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
-from nullpose.errors import Fault
+from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.ground_points import Node
-from nullpose.scenario.listed_nodes import WHOLE, ListedNodes, NodesFileError
+from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.origin import GEODETIC_KEYS
-from nullpose.scenario.section import MOST_MEMBERS
-from nullpose.scenario.wording import listed, nearest, printable
+from nullpose.scenario.rules import MOST_MEMBERS
+from nullpose.scenario.ways import Ways
+from nullpose.scenario.wording import listed, printable, unknown
 
 __all__ = ["nodes_from_csv"]
 
 _LOCAL = ("x_m", "y_m", "z_m")
+_PLACE = Ways((_LOCAL, GEODETIC_KEYS))
+_COLUMNS = ("name", *_LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))
+_PLACES = {"position_m": ""} | {f"position_m[{axis}]": f", column {key}" for axis, key in enumerate(_LOCAL)}
 
 
-def nodes_from_csv(text: str) -> ListedNodes:
+def nodes_from_csv(text: str) -> list[ListedNode]:
     """Returns the nodes of a CSV file.
 
     Args:
@@ -27,89 +31,50 @@ def nodes_from_csv(text: str) -> ListedNodes:
             power, and any other key of a node; an empty cell is a key left out.
 
     Raises:
-        NodesFileError: no CSV, a header that cannot be used, or no line below it.
+        ScenarioError: no CSV, a header that cannot be used, or no line below it.
     """
-    lines = _lines(text)
+    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    cells = ([cell.strip() for cell in row] for row in reader)
+    lines = ((reader.line_num, row) for row in cells if any(row))
     try:
-        header_line, header = next(lines, (1, []))
-        if words := list(_header_faults(header)):
-            raise NodesFileError(*(Fault(f"line {header_line}", message) for message in words))
+        line, header = next(lines, (1, []))
         rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
     except csv.Error as error:
-        raise NodesFileError(Fault("", f"this is not CSV: {error}; check the quotes")) from None
-    if not rows:
-        raise NodesFileError(Fault("", "there is no line below the header, must be one for each node"))
-    faults: list[Fault] = []
-    hidden: dict[int, str] = {}
-    members: list[dict[str, object]] = []
-    for index, (line, row) in enumerate(rows):
-        members.append(_member(header, row) if len(row) == len(header) else {})
-        if len(row) != len(header):
-            message = f"got {len(row)} values, must be {len(header)}, as many as the header has"
-            faults.append(Fault(f"line {line}", message))
-            hidden[index] = WHOLE
-    return ListedNodes(
-        members=tuple(members),
-        where=tuple(f"line {line}" for line, _ in rows),
-        place_of=_place_of,
-        faults=tuple(faults),
-        hidden=hidden,
-    )
-
-
-def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yields the lines that hold anything, each with its number, their cells without blanks at the ends."""
-    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
-    before = 0
-    for row in reader:
-        cells = [cell.strip() for cell in row]
-        if any(cells):
-            yield before + 1, cells
-        before = reader.line_num
+        raise ScenarioError([Fault("", f"this is not CSV: {error}; check the quotes")]) from None
+    faults = [Fault(f"line {line}", message) for message in _header_faults(header)]
+    if not rows and not faults:
+        faults.append(Fault("", "there is no line below the header, must be one for each node"))
+    if faults:
+        raise ScenarioError(faults)
+    return [_node(number, header, row) for number, row in rows]
 
 
 def _header_faults(header: Sequence[str]) -> Iterator[str]:
-    values = [key for key in Node.model_fields if key not in ("position_m", *GEODETIC_KEYS)]
-    known = ["name", *_LOCAL, *GEODETIC_KEYS, *(key for key in values if key != "name")]
-    if not header:
-        yield f"the file is empty, must have a header line with columns such as {listed(known[:8])}"
-        return
-    if len(header) == 1 and any(mark in header[0] for mark in ";\t"):
-        yield "the columns are not separated by commas; save the file as comma-separated values (CSV)"
+    if len(header) < 2:
+        got = f'got "{printable(header[0])}"' if header else "the file is empty"
+        yield f"{got}, must be a header line of columns separated by commas, such as {listed(_COLUMNS[:8])}"
         return
     for index, column in enumerate(header):
         if column in header[:index]:
             yield f'the column "{printable(column)}" is there twice; remove one'
-        elif column not in known:
-            guess = nearest(column, [key for key in known if key not in header])
-            meant = f'; did you mean "{guess}"?' if guess else ";"
-            yield f'unknown column "{printable(column)}"{meant} the columns here are {listed(known)}'
-    yield from _place_faults(header)
+        elif column not in _COLUMNS:
+            absent = [key for key in _COLUMNS if key not in header]
+            yield f'"{printable(column)}": {unknown("column", column, _COLUMNS, absent)}'
+    yield from _PLACE.faults(header)
 
 
-def _place_faults(header: Sequence[str]) -> Iterator[str]:
-    local, earthly = ([key for key in keys if key in header] for keys in (_LOCAL, GEODETIC_KEYS))
-    if local and earthly:
-        yield f"columns {listed(local + earthly)} state places in both ways; keep one of the two"
-    elif not local and not earthly:
-        yield f"there are no columns of places, must be {listed(_LOCAL)} or {listed(GEODETIC_KEYS)}"
-    else:
-        missing = [key for key in (_LOCAL if local else GEODETIC_KEYS) if key not in header]
-        if missing:
-            yield f"the column {' and '.join(missing)} is missing beside {listed(local + earthly)}; add it"
-
-
-def _member(header: Sequence[str], row: Sequence[str]) -> dict[str, object]:
-    cells = dict(zip(header, row, strict=True))
-    values = {key: cell if key == "name" else _number(cell) for key, cell in cells.items()}
-    places = {key: value for key, value in values.items() if key in GEODETIC_KEYS}
-    if "x_m" in values:
-        places = {"position_m": [values[key] for key in _LOCAL]}
+def _node(line: int, header: Sequence[str], row: Sequence[str]) -> ListedNode:
+    where = f"line {line}"
+    if len(row) != len(header):
+        message = f"got {len(row)} values, must be {len(header)}, as many as the header has"
+        return ListedNode(where, fault=Fault("", message))
+    cells = {key: cell if key == "name" else _number(cell) for key, cell in zip(header, row, strict=True)}
     # A place is never left out, so its empty cells stay, to be refused.
-    others = {
-        key: value for key, value in values.items() if key not in (*_LOCAL, *GEODETIC_KEYS) and value != ""
-    }
-    return others | places
+    values = {key: cell for key, cell in cells.items() if cell != "" or key in GEODETIC_KEYS}
+    if "x_m" in header:
+        values = {key: value for key, value in values.items() if key not in _LOCAL}
+        values["position_m"] = [cells[key] for key in _LOCAL]
+    return ListedNode(where, values, ", column {}", _PLACES)
 
 
 def _number(cell: str) -> object:
@@ -117,9 +82,3 @@ def _number(cell: str) -> object:
         return cell if "_" in cell else float(cell)
     except ValueError:
         return cell
-
-
-def _place_of(index: int, key: str, rest: str) -> str:
-    if key != "position_m":
-        return f", column {key}"
-    return f", column {_LOCAL[int(rest[1:-1])]}" if rest else ""

@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
-from pydantic_core import PydanticCustomError
+from pydantic import Field, ValidationError
 
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.geodesy import enu_from_geodetic
+from nullpose.scenario.rules import Quantity
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Quantity
-from nullpose.scenario.wording import nearest, plain
+
+if TYPE_CHECKING:
+    from nullpose.scenario.ground_points import GroundPoint
 
 __all__ = [
     "FARTHEST_M",
     "GEODETIC_KEYS",
+    "POINT_LISTS",
     "Altitude",
     "Latitude",
     "Longitude",
     "Origin",
+    "is_placed",
     "located",
     "origin_faults",
-    "unlocated",
 ]
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
@@ -37,17 +38,20 @@ FARTHEST_M = 1e5
 """A point farther from the origin than this is taken for a mistake [m]."""
 
 _SAME_M = 1e-3  # position_m and the geodetic keys may be given together if they agree within this
-_POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
+POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
+"""The keys of a scenario's points."""
 _WORDS = "lat_deg, lon_deg and alt_m"
 
-_LATITUDE = Quantity("a latitude in degrees", -90.0, 90.0, "north of the equator is positive")
-_LONGITUDE = Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
-_ALTITUDE = Quantity(
-    "an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "it is not the height above the ground"
-)
-Latitude = Annotated[float, _LATITUDE]
-Longitude = Annotated[float, _LONGITUDE]
-Altitude = Annotated[float, _ALTITUDE]
+Latitude = Annotated[
+    float, Quantity("a latitude in degrees", -90.0, 90.0, "north of the equator is positive")
+]
+Longitude = Annotated[
+    float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
+]
+Altitude = Annotated[
+    float,
+    Quantity("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
+]
 
 
 class Origin(Section):
@@ -58,8 +62,6 @@ class Origin(Section):
         lon_deg: longitude [degrees], east positive.
         alt_m: altitude over the ellipsoid [m], not over the sea or the ground.
     """
-
-    header: ClassVar[str] = "a table headed [origin]"
 
     lat_deg: Latitude = Field(
         description="Latitude of the origin in degrees (WGS-84), north positive.", examples=[50.0]
@@ -77,163 +79,99 @@ class Origin(Section):
         return read_only([self.lat_deg, self.lon_deg, self.alt_m], (3,))
 
 
-@dataclass(frozen=True, slots=True)
-class _Point:
-    """How a raw node, jammer or eavesdropper states its place."""
-
-    place: Place
-    geodetic: bool
-    local: bool
-    position_m: object
-    enu_m: tuple[float, float, float] | None
-    """Where its latitude and longitude put it, if that can be told [m]."""
-
-    @property
-    def far(self) -> bool:
-        return self.enu_m is not None and bool(np.linalg.norm(self.enu_m) > FARTHEST_M)
-
-
-def located(
-    data: Mapping[str, object], unknown_m: tuple[float, float, float] | None = None
-) -> Mapping[str, object]:
+def located(data: Mapping[str, object]) -> Mapping[str, object]:
     """Returns a raw scenario in which points stated by latitude and longitude have their position_m too.
+
+    Where it cannot be told, for want of an origin or because it is too far from it, position_m is zero: such
+    a scenario is refused for that.
 
     Args:
         data: the raw scenario.
-        unknown_m: what stands for a position that cannot be told, for want of an origin, say; the scenario
-            has a fault then. Without it such a point stays without a position.
     """
-    points = _points(data)
-    if not any(point.geodetic and not point.local for point in points):
-        return data
-    changed = dict(data)
-    for point in points:
-        if point.local or not point.geodetic:
-            continue
-        key, index = point.place
-        position_m = unknown_m if point.enu_m is None or point.far else point.enu_m
-        if position_m is not None:
-            members = changed[str(key)] = list(_members(changed, str(key)))
-            members[int(index)] = {**_table(members[int(index)]), "position_m": position_m}
-    return changed
+    origin = _place(data.get("origin"))
+    members = {key: value for key in POINT_LISTS if isinstance(value := data.get(key), list | tuple)}
+    return {**data} | {key: [_located(point, origin) for point in points] for key, points in members.items()}
 
 
-def unlocated(data: Mapping[str, object]) -> None:
-    """Takes position_m from the points of a plain scenario that are stated by latitude and longitude too.
+def _located(point: object, origin: Origin | None) -> object:
+    """Returns a raw point with its position_m, if it is stated by latitude and longitude."""
+    if not isinstance(point, Mapping) or point.get("position_m") is not None:
+        return point
+    if all(point.get(key) is None for key in GEODETIC_KEYS):
+        return point
+    place, position_m = _place(point), np.zeros(3)
+    if place is not None and origin is not None:
+        position_m = enu_from_geodetic(place.geodetic, origin.geodetic)
+    is_near = np.linalg.norm(position_m) <= FARTHEST_M
+    return {**point, "position_m": position_m.tolist() if is_near else [0.0, 0.0, 0.0]}
+
+
+def _place(stated: object) -> Origin | None:
+    """Returns the place that a raw table states by latitude and longitude, or None."""
+    if isinstance(stated, Mapping):
+        stated = {key: stated.get(key) for key in GEODETIC_KEYS}
+    try:
+        return Origin.model_validate(stated)
+    except ValidationError:
+        return None
+
+
+def origin_faults(
+    origin: Origin | None, points: Mapping[Place, GroundPoint], stated: Mapping[str, Any]
+) -> Iterator[tuple[Place, str]]:
+    """Yields what is wrong between the origin and the points of a scenario, each with its place.
 
     Args:
-        data: the scenario's dictionary, which is changed.
+        origin: the origin, if there is one.
+        points: the points by their place.
+        stated: the raw scenario, which says in which way each is stated.
     """
-    for key in _POINT_LISTS:
-        for member in _members(data, key):
-            if isinstance(member, dict) and any(member.get(way) is not None for way in GEODETIC_KEYS):
-                member.pop("position_m", None)
-
-
-def origin_faults(data: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
-    """Yields what is wrong between the origin and the points of a raw scenario, each with its place."""
-    points = _points(data)
-    earthly = [point for point in points if point.geodetic]
-    if earthly and data.get("origin") is None and not _misspelt_origin(data):
+    earthly = {place: point for place, point in points.items() if None not in _geodetic(point)}
+    if earthly and origin is None:
         yield (
             ("origin",),
-            f"missing, but {path_of(earthly[0].place)} is stated by {_WORDS}; add a table headed [origin] "
+            f"missing, but {path_of(next(iter(earthly)))} is stated by {_WORDS}; add a table headed [origin] "
             f"with {_WORDS} of the place where position_m is to be [0, 0, 0]",
         )
-    yield from _mixed(points)
-    for point in earthly:
-        if point.enu_m is None:
-            continue
-        if point.far:
+    yield from _mixed(earthly, points, stated)
+    if not earthly or origin is None:
+        return
+    enu_m = enu_from_geodetic([_geodetic(point) for point in earthly.values()], origin.geodetic)
+    for (place, point), place_m in zip(earthly.items(), enu_m, strict=True):
+        if (away_m := np.linalg.norm(place_m)) > FARTHEST_M:
             yield (
-                point.place,
-                f"{_WORDS} are {np.linalg.norm(point.enu_m) / 1e3:.0f} km from the origin, must be within "
+                place,
+                f"{_WORDS} are {away_m / 1e3:.0f} km from the origin, must be within "
                 f"{FARTHEST_M / 1e3:.0f} km; are latitude and longitude exchanged, or a sign lost?",
             )
-        elif (apart_m := _apart_m(point)) > _SAME_M:
-            yield (
-                point.place,
-                f"position_m and {_WORDS} are {apart_m:.3g} m apart, must be one place; remove either",
-            )
+        elif (apart_m := np.linalg.norm(np.subtract(point.position_m or place_m, place_m))) > _SAME_M:
+            message = f"position_m and {_WORDS} are {apart_m:.3g} m apart, must be one place; remove either"
+            yield place, message
 
 
-def _misspelt_origin(data: Mapping[str, object]) -> bool:
-    return any(nearest(str(key), ("origin",), at_least=0.8) for key in data)
-
-
-def _mixed(points: list[_Point]) -> Iterator[tuple[Place, str]]:
+def _mixed(
+    earthly: Collection[Place], points: Mapping[Place, GroundPoint], stated: Mapping[str, Any]
+) -> Iterator[tuple[Place, str]]:
     """Yields the first point that is stated in another way than the first of all.
 
     A point that has both, as in files that are written from scenarios, goes with either.
     """
-    single = [point for point in points if point.local != point.geodetic]
-    other = next((point for point in single if point.local != single[0].local), None)
-    if other is not None:
-        ways = ("position_m", _WORDS)
-        mine, first = ways if other.local else ways[::-1]
-        yield (
-            other.place,
-            f"stated by {mine}, but {path_of(single[0].place)} by {first}; "
-            "state all points of a file in one of the two ways",
-        )
+    ways: dict[str, Place] = {}
+    for place in points:
+        raw = stated[str(place[0])][place[1]]
+        in_metres = not isinstance(raw, Mapping) or raw.get("position_m") is not None
+        if in_metres != (place in earthly):
+            ways.setdefault("position_m" if in_metres else _WORDS, place)
+    if len(ways) == 2:
+        (first_way, first), (way, place) = ways.items()
+        message = f"stated by {way}, but {path_of(first)} by {first_way}; state all in one way"
+        yield place, message
 
 
-def _apart_m(point: _Point) -> float:
-    """Returns how far a point's two places are apart [m]; 0 if it has one, or one that is no position."""
-    position_m = plain(point.position_m)
-    if point.enu_m is None or not isinstance(position_m, list | tuple) or len(position_m) != 3:
-        return 0.0
-    if not all(isinstance(x, int | float) and abs(x) < 1e9 for x in position_m):
-        return 0.0
-    return float(np.linalg.norm(np.subtract(position_m, point.enu_m)))
+def is_placed(point: GroundPoint) -> bool:
+    """Returns whether a point of a scenario that may be at fault has a position, and no half of another."""
+    return point.position_m is not None and _geodetic(point).count(None) in (0, 3)
 
 
-def _points(data: Mapping[str, object]) -> list[_Point]:
-    members = [
-        ((key, index), _table(raw)) for key in _POINT_LISTS for index, raw in enumerate(_members(data, key))
-    ]
-    places = [_geodetic(table) for _, table in members]
-    enu = iter(
-        _enu_m([place for place in places if place is not None], _geodetic(_table(data.get("origin"))))
-    )
-    return [
-        _Point(
-            place=where,
-            geodetic=any(table.get(key) is not None for key in GEODETIC_KEYS),
-            local=table.get("position_m") is not None,
-            position_m=table.get("position_m"),
-            enu_m=None if place is None else next(enu),
-        )
-        for (where, table), place in zip(members, places, strict=True)
-    ]
-
-
-def _enu_m(
-    places: list[tuple[float, float, float]], origin: tuple[float, float, float] | None
-) -> list[tuple[float, float, float] | None]:
-    if not places or origin is None:
-        return [None] * len(places)
-    return [(x, y, z) for x, y, z in enu_from_geodetic(places, origin).tolist()]
-
-
-def _members(data: Mapping[str, object], key: str) -> list[object]:
-    members = plain(data.get(key))
-    return list(members) if isinstance(members, list | tuple) else []
-
-
-def _table(raw: object) -> Mapping[str, object]:
-    """Returns a raw table, or one already built, as a mapping; an empty one if it is neither."""
-    if isinstance(raw, Section):
-        return {key: getattr(raw, key) for key in type(raw).model_fields}
-    return raw if isinstance(raw, Mapping) else {}
-
-
-def _geodetic(table: Mapping[str, object]) -> tuple[float, float, float] | None:
-    try:
-        return (
-            _LATITUDE.read(table.get("lat_deg")),
-            _LONGITUDE.read(table.get("lon_deg")),
-            _ALTITUDE.read(table.get("alt_m")),
-        )
-    except PydanticCustomError:
-        return None
+def _geodetic(point: GroundPoint) -> tuple[Any, Any, Any]:
+    return (point.lat_deg, point.lon_deg, point.alt_m)

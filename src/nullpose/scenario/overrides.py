@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import Place, path_of
-from nullpose.scenario.names import named
-from nullpose.scenario.origin import unlocated
+from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
 from nullpose.scenario.wording import listed, nearest, plain
@@ -74,45 +75,35 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         ScenarioError: with every path that does not exist and every fault of the result.
     """
     data = scenario.to_dict()
-    known = tuple(_known_paths(Scenario, scenario))
     faults: list[Fault] = []
     applied: list[Override] = []
     for override in overrides:
         try:
             parsed = parse_override(override) if isinstance(override, str) else override
             applied.append(parsed)
-            _assign(data, _steps(parsed.path), deepcopy(plain(parsed.value)))
+            steps = _steps(parsed.path)
+            _assign(Scenario, data, steps, deepcopy(plain(parsed.value)), parsed.path)
+            if steps[0] == "origin":
+                _unlocate(data)
         except ScenarioError as error:
             faults += error.faults
-        except _UnknownPathError as error:
-            guess = _nearest_path(parsed.path, known)
-            meant = f"; did you mean {guess}?" if guess != parsed.path else ""
-            faults.append(Fault(parsed.path, f"{error}{meant}"))
     source = f"override {listed([str(override) for override in applied])}"
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
-        raise ScenarioError([*faults, *error.faults], source) from None
+        faults += error.faults
     if faults:
         raise ScenarioError(faults, source)
     return changed
 
 
-class _UnknownPathError(Exception):
-    """A path that leads nowhere; the message says where it ends."""
-
-
 def _value(path: str, text: str) -> object:
-    try:
+    with suppress(ValueError, RecursionError):  # it may be a bare word
         tables = tomllib.loads(f"value = {text}")
         if tables.keys() == {"value"}:
             return tables["value"]
-    except (ValueError, RecursionError):
-        pass  # not TOML; it may be a bare word
-    try:
+    with suppress(ValueError):
         return float(text)  # .5 and 5. are numbers to everyone but TOML
-    except ValueError:
-        pass
     if text[0] in "[{\"'" or "\n" in text:
         message = f"the value {text} is not TOML; write as in 10, [5, 20] or a bare word"
         raise ScenarioError([Fault(path, message)], "override")
@@ -120,109 +111,64 @@ def _value(path: str, text: str) -> object:
 
 
 def _steps(path: str) -> Place:
-    """Returns the path as keys, names and indices; raises _UnknownPathError when it is not one."""
+    """Returns the path as keys, names and indices."""
     steps: list[str | int] = []
     end = 0
-    while end < len(path):
+    while end < len(path) or not steps:
         step = _STEP.match(path, end)
         if not step:
-            raise _UnknownPathError("this is not a path")
+            raise ScenarioError([Fault(path, "this is not a path")])
         steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
         end = step.end()
     return tuple(steps)
 
 
-def _assign(data: dict[str, Any], steps: Place, value: object) -> None:
-    """Sets the value at the place that the steps lead to."""
-    if not steps or steps[0] not in Scenario.model_fields:
-        raise _UnknownPathError("there is no such value in a scenario")
-    if steps[0] == "origin":
-        unlocated(data)
-    _assign_in_table(Scenario, data, steps, value)
+def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object, path: str) -> None:
+    """Sets the value at the place in a raw table or list that the steps lead to; drops what it replaces.
+
+    Args:
+        kind: what kind of table the holder is, or its members are; None where there are none.
+        holder: the table or list, which is changed.
+        steps: from it to the place.
+        value: the new value.
+        path: all steps as they were given, for messages.
+    """
+    members, (step, *rest) = _members(kind, holder), steps
+    if step not in members:
+        known = [member for member in members if isinstance(member, str)]
+        guess = nearest(str(step), known) or (known[0] if len(known) == 1 else "")
+        meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
+        have = f"must be one of {listed([path_of((member,)) for member in members])}{meant}"
+        have = have if members else "but it has no members, so set it whole"
+        raise ScenarioError([Fault(path, f"got {path_of((step,))}, {have}")])
+    here, inner = members[step], kind
+    if kind is not None and isinstance(holder, dict):
+        inner = inner_section(kind.model_fields[str(here)])
+    if rest:
+        is_table = inner is not None and inner.letter is None
+        below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]
+        _assign(inner, below, tuple(rest), value, path)
+        value = below
+    holder[here] = value
+    for ways in kind.ways if kind is not None and isinstance(holder, dict) else ():
+        for other in ways.others(str(here)):
+            holder.pop(other, None)
 
 
-def _assign_in_table(kind: type[Section], table: object, steps: Place, value: object) -> None:
-    """Sets what the steps lead to inside a table; drops what it takes the place of."""
-    key, rest = steps[0], steps[1:]
-    if not isinstance(table, dict) or not isinstance(key, str) or key not in kind.model_fields:
-        raise _UnknownPathError(f"there is no such key; the keys here are {listed(kind.model_fields)}")
-    inner = inner_section(kind.model_fields[key])
-    if not rest:
-        table[key] = value
-    elif inner is None:
-        _assign_in_row(key, table.get(key), rest, value)
-    elif inner.letter is None:
-        # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
-        begun = table.get(key, {})
-        _assign_in_table(inner, begun, rest, value)
-        table[key] = begun
-    else:
-        members: Any = table.get(key)
-        index = _index(key, inner.letter, members, rest[0])
-        if len(rest) == 1:
-            members[index] = value
-        else:
-            _assign_in_table(inner, members[index], rest[1:], value)
-    for other in _replaced(kind, key):
-        table.pop(other, None)
+def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str | int]:
+    """Returns the steps that lead on from a raw table or list, with the key or index that each means."""
+    if isinstance(holder, dict):
+        return {} if kind is None else {key: key for key in kind.model_fields}
+    members = holder if isinstance(holder, list) else []
+    indices: dict[str | int, str | int] = {index: index for index in range(len(members))}
+    for index, member in enumerate(members):
+        if kind is not None and isinstance(member, dict):
+            indices[member.get("name") or f"{kind.letter}{index + 1}"] = index
+    return indices
 
 
-def _replaced(kind: type[Section], key: str) -> Iterator[str]:
-    """Yields the keys that state in another way what a key states."""
-    for one, other in (*kind.pairs, *kind.alternatives):
-        if key in (one, other):
-            yield other if key == one else one
-    if any(key in way for way in kind.ways):
-        yield from (other for way in kind.ways if key not in way for other in way)
-
-
-def _index(key: str, letter: str, members: object, step: str | int) -> int:
-    """Returns the index of the member with a name or an index."""
-    if not isinstance(members, list) or not members:
-        raise _UnknownPathError(f"the scenario has no {key}")
-    names = [member.get("name") if isinstance(member, dict) else None for member in named(members, letter)]
-    if step in names:
-        return names.index(str(step))
-    if isinstance(step, int) and step < len(members):
-        return step
-    have = listed([f"[{index}] {name}" for index, name in enumerate(names)])
-    raise _UnknownPathError(f"{key} has no member {path_of((step,))}, it has {have}")
-
-
-def _assign_in_row(key: str, row: object, steps: Place, value: object) -> None:
-    """Sets a member of a list of numbers, or of a list of such lists."""
-    index = steps[0]
-    if not isinstance(row, list) or not isinstance(index, int) or index >= len(row):
-        raise _UnknownPathError(f"{key} {_shape(row)}")
-    if len(steps) == 1:
-        row[index] = value
-    else:
-        _assign_in_row(f"{key}[{index}]", row[index], steps[1:], value)
-
-
-def _shape(row: object) -> str:
-    if row is None:
-        return "is not given, so set it whole"
-    return f"has the members [0] to [{len(row) - 1}]" if isinstance(row, list) else "is a single value"
-
-
-def _nearest_path(path: str, known: Sequence[str]) -> str:
-    """Returns a known path of the same depth and much like the given, else its known beginning, else any."""
-    same_depth = [other for other in known if other.count(".") == path.count(".")]
-    beginning = max((other for other in known if path.startswith(other)), key=len, default="")
-    return nearest(path, same_depth, at_least=0.7) or beginning or nearest(path, known, at_least=0.0)
-
-
-def _known_paths(kind: type[Section], values: Section | None, at: Place = ()) -> Iterator[str]:
-    """Yields every path that may be set below a place, members by name and by index."""
-    for key, field in kind.model_fields.items():
-        yield path_of((*at, key))
-        inner = inner_section(field)
-        value = getattr(values, key, None)
-        if inner is not None and inner.letter is None:
-            yield from _known_paths(inner, value, (*at, key))
-        elif inner is not None:
-            for index, member in enumerate(value or ()):
-                for step in (member.name, index):
-                    yield path_of((*at, key, step))
-                    yield from _known_paths(type(member), member, (*at, key, step))
+def _unlocate(data: Mapping[str, Any]) -> None:
+    """Takes position_m from the points of a raw scenario that are stated by latitude and longitude too."""
+    for point in chain(*(members for key in POINT_LISTS if isinstance(members := data.get(key), list))):
+        if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
+            point.pop("position_m", None)

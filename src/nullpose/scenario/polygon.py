@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, core_schema
 
+from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import rejection
+from nullpose.scenario.rules import ListOf
 from nullpose.scenario.units import PlanePoint
-from nullpose.scenario.wording import described, plain
 
-__all__ = ["MOST_CORNERS", "Polygon", "area_m2", "depth_m"]
+__all__ = ["MOST_CORNERS", "Polygon", "area_m2", "counter_clockwise_m", "depth_m"]
 
 Array = NDArray[np.float64]
 
@@ -38,6 +36,13 @@ def area_m2(vertices_m: Array) -> float:
     """
     x, y = (vertices_m - vertices_m[0]).T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def counter_clockwise_m(polygon: Sequence[tuple[float, float]] | None) -> Array:
+    """Returns the vertices of a polygon [m], (n, 2), counter-clockwise and read-only; none without one."""
+    vertices_m = np.asarray(polygon or (), dtype=np.float64).reshape(-1, 2)
+    clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
+    return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
 
 
 def depth_m(points_m: Array, vertices_m: Array) -> Array:
@@ -75,46 +80,14 @@ def _distance_m(points: Array, start: Array, end: Array) -> Array:
 
 
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
-def _fault(vertices: tuple[tuple[float, float], ...]) -> str:
-    """Returns what keeps a chain of vertices from bounding one area, or an empty text."""
-    count, vertices_m = len(vertices), np.asarray(vertices)
-    for one, other in _near(vertices_m, vertices_m):
-        same = np.linalg.norm(vertices_m[one] - vertices_m[other], axis=-1) < _APART_M
-        if same.any():
-            earlier, later = one[same.argmax()], other[same.argmax()]
-            closes = (earlier, later) == (0, count - 1)
-            remedy = (
-                "remove it, the last vertex is joined to the first" if closes else "give every vertex once"
-            )
-            return f"vertex [{later}] repeats vertex [{earlier}]; {remedy}"
-    met = _first_meeting(vertices_m)
-    if met:
-        first, second = met
-        return (
-            f"the edge from vertex [{first}] to [{(first + 1) % count}] meets the one from [{second}] to "
-            f"[{(second + 1) % count}], so the border crosses or touches itself; list the vertices in order "
-            "around the area"
-        )
-    if abs(area_m2(vertices_m)) < _APART_M**2:
-        return "its vertices lie on one line, so it holds no area; move one off the line"
-    return ""
-
-
-def _first_meeting(vertices: Array) -> tuple[int, int] | None:
+def _first_meeting(corners: tuple[tuple[float, float], ...]) -> tuple[int, int] | None:
     """Returns the first two edges that have more in common than the vertex between neighbours."""
-    count = len(vertices)
-    if count == 3:
-        return None
-    ends = np.roll(vertices, -1, axis=0)
+    vertices = np.asarray(corners)
+    count, ends = len(vertices), np.roll(vertices, -1, axis=0)
     for one, other in _near(np.minimum(vertices, ends), np.maximum(vertices, ends)):
         p, q, start, end = vertices[one], ends[one], vertices[other], ends[other]
+        # Neither lies on one side of the other's line: they meet there, or are on one line and overlap.
         met = ~(_beside(p, q, start, end) | _beside(start, end, p, q))
-        p, q, start, end = p[met], q[met], start[met], end[met]
-        met[met] = (
-            _crosses(p, q, start, end)
-            | (np.min([_distance_m(p, start, end), _distance_m(q, start, end)], axis=0) < _APART_M)
-            | (np.min([_distance_m(start, p, q), _distance_m(end, p, q)], axis=0) < _APART_M)
-        )
         follows, closes = other == one + 1, other - one == count - 1
         met[follows] = _folds(vertices[one[follows]], ends[one[follows]], ends[other[follows]])
         met[closes] = _folds(vertices[-1:], vertices[:1], vertices[1:2])
@@ -134,24 +107,12 @@ def _near(low: Array, high: Array) -> Iterator[tuple[NDArray[np.intp], NDArray[n
         yield one + first, other + first
 
 
-def _left(a: Array, b: Array, c: Array) -> Array:
-    """Returns how far a point c is to the left of a line ab, times the length from a to b."""
-    ab, ac = b - a, c - a
-    return np.asarray(ab[..., 0] * ac[..., 1] - ab[..., 1] * ac[..., 0])
-
-
 def _beside(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     """Returns which segments lie on one side of the line pq, and not near it."""
-    near = _APART_M * np.linalg.norm(q - p, axis=-1)
-    sides = np.stack([_left(p, q, start), _left(p, q, end)])
+    along, near = q - p, _APART_M * np.linalg.norm(q - p, axis=-1)
+    offsets = np.stack([start - p, end - p])
+    sides = along[..., 0] * offsets[..., 1] - along[..., 1] * offsets[..., 0]
     return np.asarray((sides > near).all(axis=0) | (sides < -near).all(axis=0))
-
-
-def _crosses(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
-    """Returns which segments run from one side of segment pq to the other, and it of theirs."""
-    theirs = np.sign(_left(p, q, start)) * np.sign(_left(p, q, end))
-    its = np.sign(_left(start, end, p)) * np.sign(_left(start, end, q))
-    return np.asarray((theirs < 0) & (its < 0))
 
 
 def _folds(before: Array, corner: Array, after: Array) -> NDArray[np.bool_]:
@@ -160,38 +121,24 @@ def _folds(before: Array, corner: Array, after: Array) -> NDArray[np.bool_]:
     return np.asarray(backs < _APART_M)
 
 
-@dataclass(frozen=True, slots=True)
-class _Outline:
-    """The vertices of a simple polygon, as metadata of an annotated tuple."""
+class _Outline(ListOf):
+    """The vertices of a simple polygon, as the metadata of an annotated tuple."""
 
-    def read(self, value: object) -> list[object]:
-        value = plain(value)
-        if not isinstance(value, list | tuple):
-            raise rejection(f"got {described(value)}, must be a list of at least three vertices [x, y] in m")
-        if len(value) > MOST_CORNERS:
+    def judge(self, value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        """Returns the vertices, or raises the fault that keeps them from bounding one area."""
+        count, met = len(value), _first_meeting(value)
+        if met:
+            first, second = met
             raise rejection(
-                f"got {described(value)}, must be at most {MOST_CORNERS} vertices; leave out "
-                "those that change the area least"
+                f"the edge from vertex [{first}] to [{(first + 1) % count}] meets the one from [{second}] to "
+                f"[{(second + 1) % count}], so the border crosses or touches itself; list every vertex "
+                "once, in order around the area (the last is joined to the first)"
             )
-        if len(value) < 3:
-            raise rejection(f"got {described(value)}, must be at least three vertices [x, y] in m")
-        return list(value)
-
-    def judge(self, vertices: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        fault = _fault(vertices)
-        if fault:
-            raise rejection(fault)
-        return vertices
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        members = core_schema.no_info_before_validator_function(self.read, handler(source))
-        return core_schema.no_info_after_validator_function(self.judge, members)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"type": "array", "items": handler(schema)["items"], "minItems": 3, "maxItems": MOST_CORNERS}
+        return value
 
 
-Polygon = Annotated[tuple[PlanePoint, ...], _Outline()]
+Polygon = Annotated[
+    tuple[PlanePoint, ...],
+    _Outline(f"a list of at least three and at most {MOST_CORNERS} vertices [x, y] in m", 3, MOST_CORNERS),
+]
 """The vertices [x, y] of a polygon in order, in m; the last is joined to the first."""

@@ -1,9 +1,8 @@
-"""Whether an airspace has room, and whether what is uncertain reaches into it."""
+"""Whether an airspace has a position for the vehicle, and whether what is uncertain reaches into it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,102 +10,104 @@ from numpy.typing import NDArray
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.ellipsoid import distance_m
 from nullpose.scenario.faults import Place, path_of
-from nullpose.scenario.room import has_room
+from nullpose.scenario.ground_points import GroundPoint
+from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.subdivision import find_position
-from nullpose.scenario.wording import listed
+from nullpose.scenario.uncertainty import Uncertain
 
-__all__ = ["Known", "has_any_room", "reach_faults"]
+__all__ = ["airspace_faults", "may_hold_a_position"]
 
 Array = NDArray[np.float64]
 
+_MOST_DISTANCES = 6_000_000  # between parts of the airspace and what bounds it, for the time that they take
 
-@dataclass(frozen=True, slots=True)
-class Known:
-    """What is known of where a ground point is.
+
+def airspace_faults(
+    airspace: Airspace, points: Mapping[Place, GroundPoint], error_m: float
+) -> Iterator[tuple[Place, str]]:
+    """Yields what is wrong between the airspace and the ground points, each with its place.
 
     Args:
-        place: where it stands in the scenario.
-        position_m: its stated position [m], (3,).
-        matrix_m: the matrix A [m], (3, 3), of the set ``{position + A x : |x| <= 1}`` that it is in.
-        reach_m: the set's greatest half-width [m].
+        airspace: where the vehicle is meant to be.
+        points: all the ground points by their place.
+        error_m: how far the vehicle may be from where it is meant to be [m].
     """
+    centres_m = np.array([point.position_m for point in points.values()], dtype=np.float64).reshape(-1, 3)
+    corners = sum(max(1, len(zone.outline_m)) for zone in airspace.no_fly) + len(airspace.geofence_outline_m)
+    if corners > MOST_CORNERS:
+        yield (
+            ("airspace",),
+            f"its geofence and no-fly zones have {corners} corners, must be at most {MOST_CORNERS} in all; "
+            "leave out those that change the areas least",
+        )
+    elif may_hold_a_position(airspace, centres_m):
+        yield from _reach_faults(airspace, points, centres_m, error_m)
+    else:
+        yield (
+            ("airspace",),
+            f"every position in it is less than keep_out_m = {airspace.keep_out_m!r} m from a node or "
+            "jammer, in a no-fly zone or outside the geofence, so there is no room for the vehicle; widen "
+            "altitude_m, x_m or y_m, make keep_out_m or a zone smaller, or move the geofence",
+        )
 
-    place: Place
-    position_m: Array
-    matrix_m: Array
-    reach_m: float
 
-
-def has_any_room(airspace: Airspace, points: Sequence[Known]) -> bool:
+def may_hold_a_position(airspace: Airspace, centres_m: Array) -> bool:
     """Returns whether there is a position that the airspace allows outside the keep-out balls.
 
-    Exact for a box, and to a billionth of the box's size with zones or a fence, unless these are so intricate
-    that it takes too long to tell, which counts as room.
+    True to a billionth of the airspace's size, unless it is so intricate that it takes too long to tell,
+    which counts as if there were one.
 
     Args:
         airspace: where the vehicle may be.
-        points: all the ground points.
+        centres_m: the ground points [m], (n, 3).
     """
-    centres_m = np.array([point.position_m for point in points], dtype=np.float64).reshape(-1, 3)
-    lower_m, upper_m = airspace.lower_m, airspace.upper_m
     fence_m = airspace.geofence_outline_m
-    if not len(fence_m) and not airspace.no_fly:
-        return has_room(lower_m, upper_m, centres_m, airspace.keep_out_m)
+    lower_m, upper_m = airspace.lower_m, airspace.upper_m
     if len(fence_m):
         lower_m = np.maximum(lower_m, [*fence_m.min(axis=0), -np.inf])
         upper_m = np.minimum(upper_m, [*fence_m.max(axis=0), np.inf])
     if not (np.isfinite(lower_m).all() and np.isfinite(upper_m).all()):
         return True  # zones and balls end somewhere
-    corners = sum((len(zone.outline_m) for zone in airspace.no_fly), len(fence_m))
-    most = min(60_000, 6_000_000 // max(1, corners))
-    found = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, centres_m, at), most)
-    return found.position_m is not None or not found.settled
+    apart_m = np.linalg.norm(centres_m - np.clip(centres_m, lower_m, upper_m), axis=1)
+    near_m = centres_m[apart_m < airspace.keep_out_m]
+    borders = sum((len(zone.outline_m) for zone in airspace.no_fly), len(fence_m) + len(near_m))
+    most = min(60_000, _MOST_DISTANCES // max(1, borders))
+    position_m, is_sure = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
+    return position_m is not None or not is_sure
 
 
-def reach_faults(airspace: Airspace, points: Sequence[Known], error_m: float) -> Iterator[tuple[Place, str]]:
+def _reach_faults(
+    airspace: Airspace, points: Mapping[Place, GroundPoint], centres_m: Array, error_m: float
+) -> Iterator[tuple[Place, str]]:
     """Yields a fault for every ground point that the vehicle may meet, given what is uncertain.
 
     That is so if an allowed position is no further from the point's set than the vehicle's own position
     error: the distance may then be zero, at which the model has no limit.
-
-    Args:
-        airspace: where the vehicle is meant to be.
-        points: all the ground points.
-        error_m: how far the vehicle may be from where it is meant to be [m].
     """
-    centres_m = np.array([point.position_m for point in points], dtype=np.float64).reshape(-1, 3)
-    exact = []
-    for point in points:
-        total_m = point.reach_m + error_m
+    for place, point in points.items():
+        matrix_m = point.uncertainty_matrix_m if isinstance(point, Uncertain) else np.zeros((3, 3))
+        reach_m = point.uncertainty_reach_m if isinstance(point, Uncertain) else 0.0
+        total_m = reach_m + error_m
         if total_m == 0.0 or total_m < airspace.keep_out_m:
             continue
-        half_m = np.sqrt(np.diag(point.matrix_m @ point.matrix_m.T)) + error_m
+        half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
+        centre_m = np.asarray(point.position_m)
 
-        def clearance_m(at: Array, point: Known = point) -> Array:
-            inside = error_m - distance_m(at, point.position_m, point.matrix_m)
+        def clearance_m(at: Array, centre_m: Array = centre_m, matrix_m: Array = matrix_m) -> Array:
+            inside = error_m - distance_m(at, centre_m, matrix_m)
             return np.asarray(np.minimum(inside, _clearance_m(airspace, centres_m, at)))
 
-        lower_m = np.maximum(airspace.lower_m, point.position_m - half_m)
-        upper_m = np.minimum(airspace.upper_m, point.position_m + half_m)
-        met_m = find_position(lower_m, upper_m, clearance_m).position_m
-        if met_m is None:
-            continue
-        if point.reach_m == 0.0:
-            exact.append(path_of(point.place))
-            continue
-        slack = f", with position_error_m = {error_m:g}," if error_m else ""
-        message = (
-            f"the positions that it allows{slack} reach into the airspace, at "
-            f"{[float(f'{x:.4g}') for x in met_m]} for one, where the vehicle may meet it; make it smaller, "
-            f"keep the airspace away from it, or make keep_out_m more than {total_m:g}"
-        )
-        yield (*point.place, "uncertainty_m"), message
-    if exact:
-        message = (
-            f"a vehicle up to {error_m:g} m from where it is meant to be may meet {listed(exact)}; make it "
-            f"smaller, or keep_out_m more than {error_m:g}"
-        )
-        yield ("receiver", "position_error_m"), message
+        lower_m = np.maximum(airspace.lower_m, centre_m - half_m)
+        upper_m = np.minimum(airspace.upper_m, centre_m + half_m)
+        met_m, _ = find_position(lower_m, upper_m, clearance_m)
+        if met_m is not None:
+            yield (
+                (*place, "uncertainty_m") if reach_m else ("receiver", "position_error_m"),
+                f"the vehicle, up to position_error_m = {error_m:g} from where it is meant to be, may meet "
+                f"{path_of(place)}, which is known to within {reach_m:g} m: at "
+                f"{[float(f'{x:.4g}') for x in met_m]} for one, inside the airspace; make either smaller, "
+                f"keep the airspace away from it, or make keep_out_m more than {total_m:g}",
+            )
 
 
 def _clearance_m(airspace: Airspace, centres_m: Array, at: Array) -> Array:

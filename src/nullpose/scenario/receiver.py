@@ -16,9 +16,10 @@ from nullpose.scenario.units import (
     ErrorMetres,
     Hertz,
     Watts,
+    power_w,
     ratio_from_db,
-    watts_from_dbm,
 )
+from nullpose.scenario.ways import Ways, exactly_one
 
 __all__ = ["Receiver"]
 
@@ -35,10 +36,9 @@ class Receiver(Section):
         position_error_m: largest distance between the true position and the commanded one [m].
     """
 
-    header: ClassVar[str] = "a table headed [receiver]"
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("noise_w", "noise_dbm"),
-        ("reference_gain_db", "frequency_hz"),
+    ways: ClassVar[tuple[Ways, ...]] = (
+        exactly_one("noise_w", "noise_dbm"),
+        exactly_one("reference_gain_db", "frequency_hz"),
     )
     unstated: ClassVar[frozenset[str]] = frozenset({"attitude_error_deg", "position_error_m"})
 
@@ -84,18 +84,11 @@ class Receiver(Section):
     @property
     def noise_power_w(self) -> float:
         """Noise power, however it was stated [W]."""
-        if self.noise_w is not None:
-            return self.noise_w
-        return watts_from_dbm(_given(self.noise_dbm))
+        return power_w(self.noise_w, self.noise_dbm)
 
     @property
     def reference_gain(self) -> float:
         """Path gain at 1 m, linear: as stated, or ``(c / (4 pi f))^2`` from the frequency (Friis)."""
         if self.frequency_hz is not None:
             return (SPEED_OF_LIGHT_M_PER_S / (4.0 * math.pi * self.frequency_hz)) ** 2
-        return ratio_from_db(_given(self.reference_gain_db))
-
-
-def _given(value: float | None) -> float:
-    assert value is not None, "validation lets exactly one of a pair through"
-    return value
+        return ratio_from_db(self.reference_gain_db or 0.0)

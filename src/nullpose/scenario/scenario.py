@@ -15,19 +15,18 @@ from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.choice import Choice
-from nullpose.scenario.crosscheck import cross_faults
+from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
-from nullpose.scenario.members import Members
-from nullpose.scenario.names import FileOnly, Title
-from nullpose.scenario.objective_faults import objective_faults
-from nullpose.scenario.origin import Origin, located, origin_faults
+from nullpose.scenario.names import Label, Title
+from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_text import toml_text
 from nullpose.scenario.transmitter import Transmitter
 from nullpose.scenario.units import power_w
+from nullpose.scenario.ways import Ways
 
 __all__ = ["Scenario"]
 
@@ -57,7 +56,7 @@ class Scenario(Section):
 
     header: ClassVar[str] = "a table with the keys of a scenario file"
     unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers"})
-    ways: ClassVar[tuple[tuple[str, ...], ...]] = (("nodes",), ("nodes_from",))
+    ways: ClassVar[tuple[Ways, ...]] = (Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),)
 
     name: Title = Field(
         default="",
@@ -71,7 +70,7 @@ class Scenario(Section):
         + ".",
         examples=list(RECORDS),
     )
-    nodes_from: FileOnly | None = Field(
+    nodes_from: Label | None = Field(
         default=None,
         description="Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
         "Either this or tables headed [[nodes]].",
@@ -101,13 +100,13 @@ class Scenario(Section):
         description="A table headed [transmitter]: the drone's own power (W or dBm); with objective "
         "secrecy-rate only.",
     )
-    nodes: Annotated[tuple[Node, ...], Members("nodes", Node.letter, at_least=1)] = Field(
+    nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
     )
-    jammers: Annotated[tuple[Jammer, ...], Members("jammers", Jammer.letter)] = Field(
+    jammers: Annotated[tuple[Jammer, ...], list_of_tables("jammers")] = Field(
         default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
     )
-    eavesdroppers: Annotated[tuple[Eavesdropper, ...], Members("eavesdroppers", Eavesdropper.letter)] = Field(
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
         default=(),
         description="Tables headed [[eavesdroppers]], one for each; with objective secrecy-rate only.",
     )
@@ -115,15 +114,11 @@ class Scenario(Section):
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Returns the raw scenario with the positions of points that are stated by latitude and longitude."""
-        # Where the origin is at fault the scenario is refused, and for that fault alone.
-        return located(data, unknown_m=(0.0, 0.0, 0.0))
+        return located(data)
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw scenario, as far as they can be judged."""
-        yield from origin_faults(data)
-        yield from objective_faults(data, list(cls.model_fields))
-        yield from cross_faults(located(data))
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between the parts of the scenario, those that are None being at fault."""
+        return scenario_faults(self, stated)
 
     def to_toml(self) -> str:
         """Returns the text of a scenario file that loads as an equal scenario."""
@@ -220,12 +215,11 @@ class Scenario(Section):
         return (0.0, 1.0) if self.airframe is None else self.airframe.axis_band
 
     def _own_noise_w(self, point: Node | Eavesdropper) -> float:
-        noise = power_w(point.noise_w, point.noise_dbm)
-        return self.receiver.noise_power_w if noise is None else noise
+        return power_w(point.noise_w, point.noise_dbm) or self.receiver.noise_power_w
 
     def _jamming_w(self, node: Node) -> float:
         stated = power_w(node.jamming_w, node.jamming_dbm)
-        if stated is not None:
+        if stated > 0.0:
             return stated
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         return float(np.sum(self.receiver.reference_gain * self.jammer_powers_w / distance_squared))

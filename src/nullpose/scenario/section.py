@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from itertools import chain
+from typing import Any, ClassVar, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
-from nullpose.scenario.faults import Place, as_error_details, collected, rejection, scenario_error
-from nullpose.scenario.rewording import table_faults
-from nullpose.scenario.wording import described
+from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
+from nullpose.scenario.rules import MOST_MEMBERS
+from nullpose.scenario.ways import Ways
+from nullpose.scenario.wording import described, nearest, unknown
 
-__all__ = ["MOST_MEMBERS", "Section", "inner_section"]
-
-MOST_MEMBERS = 10_000
-"""The most members of a list, such as nodes or the corners of a polygon."""
+__all__ = ["Section", "inner_section"]
 
 _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
@@ -27,17 +28,11 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     header: ClassVar[str] = ""
-    """What the table is called and how it is headed in a file."""
+    """What the table is called and how it is headed in a file; empty where it is headed by its own name."""
     letter: ClassVar[str | None] = None
     """The letter of names given by place, as the S of S1, S2, ...; None for a table alone of its kind."""
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = ()
-    """Keys of which exactly one is given, each pair being one quantity in two units."""
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()
-    """Keys of which at most one is given."""
-    shapes: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    """Groups of keys of which exactly one is given, and given whole."""
-    ways: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    """Groups of keys that state one required thing; one group is given whole."""
+    ways: ClassVar[tuple[Ways, ...]] = ()
+    """Keys that belong together."""
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
 
@@ -69,50 +64,85 @@ class Section(BaseModel):
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
-        values = {key: getattr(self, key) for key in type(self).model_fields}
-        return {key: _plain(value) for key, value in values.items() if not self._is_left_out(key, value)}
+        stated = {}
+        for key, field in type(self).model_fields.items():
+            value = getattr(self, key)
+            if value is not None and not (key in self.unstated and value == field.default):
+                stated[key] = _plain(value)
+        return stated
 
-    def _is_left_out(self, key: str, value: object) -> bool:
-        default = type(self).model_fields[key].default
-        return value is None or (key in self.unstated and bool(value == default))
+    @classmethod
+    def heading(cls) -> str:
+        """Returns what the table is called and how it is headed in a file."""
+        return cls.header or f"a table headed [{cls.__name__.lower()}]"
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Returns the raw table with what follows from its own values filled in."""
         return data
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between several values of a table; those with a fault of their own are None.
+
+        Args:
+            stated: the raw table, as it was before anything was filled in.
+        """
         return ()
 
     @model_validator(mode="wrap")
     @classmethod
-    def _report_together(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def _judged(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Returns the table, or raises all that is wrong with it: keys, values, keys and values together."""
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
-            raise rejection(f"got {described(data)}, must be {cls.header}")
+            raise rejection(f"got {described(data)}, must be {cls.heading()}")
         for key, value in data.items():
             if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
                 message = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
-                raise collected(cls.__name__, [as_error_details((key,), message)])
-        table, error = None, None
-        known = cls.model_fields
-        untold = set([key for key in data if key not in known][_MOST_UNKNOWN:])
-        if untold:
-            data = {key: value for key, value in data.items() if key not in untold}
+                raise collected(cls.__name__, [((key,), message)])
+        stated = {key: value for key, value in data.items() if key in cls.model_fields}
+        given = {key for key, value in stated.items() if value is not None}
+        strange = [str(key) for key in data if key not in stated]
+        absent = [key for key in cls.model_fields if key not in given]
+        meant = {nearest(key, absent) for key in strange[:_MOST_UNKNOWN]}
+        # A key that is still to be given is the likelier meaning of a misspelt one.
+        faults: list[tuple[Place, str]] = [
+            ((key,), unknown("key", key, cls.model_fields, absent)) for key in strange[:_MOST_UNKNOWN]
+        ]
+        if len(strange) > _MOST_UNKNOWN:
+            faults.append(((), f"{len(strange) - _MOST_UNKNOWN} more keys are unknown; remove them too"))
+        if not strange:
+            faults += [((), message) for ways in cls.ways for message in ways.faults(given)]
+        completed = cls.completed(stated)
         try:
-            table = handler(cls.completed(data))
-        except ValidationError as several:
-            error = several
-        details = table_faults(error, data, known, cls.pairs, cls.alternatives, cls.ways)
-        if untold:
-            details.append(as_error_details((), f"{len(untold)} more keys are unknown; remove them too"))
-        details += [as_error_details(place, message) for place, message in cls.cross_faults(data)]
-        if table is None or details:
-            raise collected(cls.__name__, details)
-        return table
+            judged = handler(completed)
+        except ValidationError as error:
+            otherwise = {key for ways in cls.ways if ways.begun(given) for key in chain(*ways.groups)}
+            faults += reworded(
+                error, cls.model_fields, meant | otherwise if faults or error.error_count() > 1 else ()
+            )
+            judged = cls._sound_part(completed)
+        faults += _news(judged.faults(stated), [place for place, _ in faults], meant)
+        if faults:
+            raise collected(cls.__name__, faults)
+        return judged
+
+    @classmethod
+    def _sound_part(cls, data: object) -> Any:
+        """Returns a table without the values that are at fault, which are None in it."""
+        if not isinstance(data, Mapping):
+            return data if isinstance(data, cls) else None
+        sound: dict[str, Any] = {}
+        for key, field in cls.model_fields.items():
+            value, inner = data.get(key), inner_section(field)
+            sound[key] = None if key in data or field.is_required() else field.get_default()
+            if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
+                sound[key] = tuple(inner._sound_part(member) for member in value)
+            elif key in data:
+                with suppress(ValidationError):
+                    sound[key] = _reader(cls, key).validate_python(value)
+        return cls.model_construct(**sound)
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Returns a copy with some values replaced, validated like any other.
@@ -127,53 +157,43 @@ class Section(BaseModel):
         values = {key: getattr(self, key) for key in type(self).model_fields}
         return type(self)(**values | dict(update or {}))
 
-    def __copy__(self) -> Self:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
-        return self
-
     def __getstate__(self) -> dict[Any, Any]:
         # Cached arrays stay behind: they would come back writeable.
         state = super().__getstate__()
         fields = type(self).model_fields
         return state | {"__dict__": {key: value for key, value in state["__dict__"].items() if key in fields}}
 
-    def _values(self) -> tuple[object, ...]:
-        return tuple(getattr(self, key) for key in type(self).model_fields)
-
     def __eq__(self, other: object) -> bool:
         # Not pydantic's own comparison, which would meet the cached arrays too.
-        if not isinstance(other, Section):
-            return NotImplemented
-        return type(self) is type(other) and self._values() == other._values()
-
-    def __hash__(self) -> int:
-        return hash((type(self), self._values()))
-
-    if not TYPE_CHECKING:  # type checkers know from the configuration that fields are frozen
-
-        def __setattr__(self, name: str, value: object) -> None:
-            raise AttributeError(f"cannot set {name}: scenarios are frozen; see model_copy for a changed one")
-
-        def __delattr__(self, name: str) -> None:
-            raise AttributeError(f"cannot delete {name}: scenarios are frozen")
+        same = type(self) is type(other)
+        return same and all(getattr(self, key) == getattr(other, key) for key in type(self).model_fields)
 
 
-def inner_section(field: FieldInfo, kind: type[Section] = Section) -> type[Section] | None:
-    """Returns the kind of table that a field holds, or a list of; None if it holds no table of a kind.
-
-    Args:
-        field: a field of a table.
-        kind: the kind looked for, with those made from it.
-    """
+def inner_section(field: FieldInfo) -> type[Section] | None:
+    """Returns the kind of table that a field holds, or a list of; None if it holds no table."""
     pending = [field.annotation]
     while pending:
         annotation = pending.pop()
-        if isinstance(annotation, type) and issubclass(annotation, kind):
+        if isinstance(annotation, type) and issubclass(annotation, Section):
             return annotation
         pending += get_args(annotation)
     return None
+
+
+@cache
+def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
+    """Returns what reads the value of one key of a table."""
+    return TypeAdapter(kind.model_fields[key].rebuild_annotation())
+
+
+def _news(
+    faults: Iterable[tuple[Place, str]], told: Iterable[Place], meant: Collection[str]
+) -> Iterator[tuple[Place, str]]:
+    """Yields the faults between values that do not only follow from one of their own, or a misspelt key."""
+    broken = {place[:depth] for place in told for depth in range(1, len(place) + 1)}
+    for place, message in faults:
+        if place not in broken and not (place and place[0] in meant):
+            yield place, message
 
 
 def _plain(value: object) -> object:

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import DecibelMilliwatts, Watts, power_w
+from nullpose.scenario.ways import Ways, exactly_one
 
 __all__ = ["Transmitter"]
 
@@ -20,8 +21,7 @@ class Transmitter(Section):
         power_dbm: the same in dBm.
     """
 
-    header: ClassVar[str] = "a table headed [transmitter]"
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("power_w", "power_dbm"),)
+    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
     power_w: Watts | None = Field(
         default=None,
@@ -37,6 +37,4 @@ class Transmitter(Section):
     @property
     def transmit_power_w(self) -> float:
         """Transmit power, however it was stated [W]."""
-        power = power_w(self.power_w, self.power_dbm)
-        assert power is not None, "validation lets exactly one of the two through"
-        return power
+        return power_w(self.power_w, self.power_dbm)

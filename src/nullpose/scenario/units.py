@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, core_schema
-
-from nullpose.scenario.faults import rejection
-from nullpose.scenario.wording import described, plain
+from nullpose.scenario.rules import Ascending, ListOf, Quantity
 
 __all__ = [
     "SPEED_OF_LIGHT_M_PER_S",
     "AttitudeDegrees",
-    "Count",
     "DecibelMilliwatts",
     "Decibels",
     "ErrorDegrees",
@@ -25,13 +19,12 @@ __all__ = [
     "MountDegrees",
     "PlanePoint",
     "Position",
-    "Quantity",
     "RadiusMetres",
     "Range",
     "RatioDecibels",
+    "RollPitchYaw",
     "SemiAxes",
     "TiltDegrees",
-    "Turn",
     "Watts",
     "Wavelengths",
     "Weight",
@@ -42,75 +35,6 @@ __all__ = [
 
 SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """A finite number with a unit, between two limits; used as the metadata of an annotated float.
-
-    The limits are wide enough for any radio scene and narrow enough that no product of such numbers in
-    the physics overflows.
-
-    Args:
-        noun: what the number is, with its unit, as in ``a power in W``.
-        low: smallest number allowed.
-        high: largest number allowed.
-        hint: what to try when a number is outside the limits.
-    """
-
-    noun: str
-    low: float
-    high: float
-    hint: str
-
-    @property
-    def allowed(self) -> str:
-        """The allowed numbers in words."""
-        return f"{self.noun} from {self.low:g} to {self.high:g}"
-
-    def read(self, value: object) -> float:
-        """Returns the number, or raises the fault that says what is wrong with it."""
-        value = plain(value)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            remedy = "; write it without quotes" if _is_quoted_number(value) else ""
-            raise rejection(f"got {described(value)}, must be a number: {self.allowed}{remedy}")
-        if not self.low <= value <= self.high:  # also refuses NaN
-            raise rejection(f"got {described(value)}, must be {self.allowed} ({self.hint})")
-        return float(value)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.read, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"type": "number", "minimum": self.low, "maximum": self.high}
-
-
-class Count(Quantity):
-    """A whole number between two limits; used as the metadata of an annotated int."""
-
-    def read(self, value: object) -> int:
-        """Returns the whole number, or raises the fault that says what is wrong with it."""
-        number = super().read(value)
-        if not number.is_integer():
-            raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
-        return int(number)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return super().__get_pydantic_json_schema__(schema, handler) | {"type": "integer"}
-
-
-def _is_quoted_number(value: object) -> bool:
-    if not isinstance(value, str):
-        return False
-    try:
-        float(value)
-    except ValueError:
-        return False
-    return True
 
 
 _POWER_HINT = "a power is never zero or negative; a value in dBm belongs to the key that ends in _dbm"
@@ -150,65 +74,32 @@ Weight = Annotated[
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A list of a fixed number of lengths or angles, as metadata of an annotated tuple."""
-
-    size: int
-    noun: str
-    ascending: bool = False
-    low: float = -1e7
-    high: float = 1e7
-
-    def read(self, value: object) -> list[object]:
-        value = plain(value)
-        if not isinstance(value, list | tuple) or len(value) != self.size:
-            raise rejection(f"got {described(value)}, must be {self.noun}")
-        return list(value)
-
-    def judge(self, row: tuple[float, ...]) -> tuple[float, ...]:
-        if self.ascending and row[0] > row[1]:
-            raise rejection(
-                f"got [{row[0]!r}, {row[1]!r}], which is reversed and so holds nothing; "
-                f"must be {self.noun}; try [{row[1]!r}, {row[0]!r}]"
-            )
-        return row
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        members = core_schema.no_info_before_validator_function(self.read, handler(source))
-        return core_schema.no_info_after_validator_function(self.judge, members)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        # One "items" for all members, not "prefixItems": editors that know only older drafts read it too.
-        number = {"type": "number", "minimum": self.low, "maximum": self.high}
-        return {"type": "array", "items": number, "minItems": self.size, "maxItems": self.size}
-
-
 Position = Annotated[
-    tuple[Metres, Metres, Metres], _Row(3, "a list of three numbers [x, y, z]: metres east, north and up")
+    tuple[Metres, Metres, Metres],
+    ListOf("a list of three numbers [x, y, z]: metres east, north and up", 3, 3),
 ]
 Range = Annotated[
     tuple[Metres, Metres],
-    _Row(2, "a list of two numbers in m, the lowest first (equal ends fix the value)", ascending=True),
+    Ascending("a list of two numbers in m, the lowest first (equal ends fix the value)", 2, 2),
 ]
-PlanePoint = Annotated[tuple[Metres, Metres], _Row(2, "a list of two numbers [x, y]: metres east and north")]
-Turn = Annotated[
+PlanePoint = Annotated[
+    tuple[Metres, Metres], ListOf("a list of two numbers [x, y]: metres east and north", 2, 2)
+]
+RollPitchYaw = Annotated[
     tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],
-    _Row(3, "a list of three angles in degrees [roll, pitch, yaw]", low=-360.0, high=360.0),
+    ListOf("a list of three angles in degrees [roll, pitch, yaw]", 3, 3),
 ]
 SemiAxes = Annotated[
     tuple[ErrorMetres, ErrorMetres, ErrorMetres],
-    _Row(3, "a list of three semi-axes in m [a, b, c]", low=0.0),
+    ListOf("a list of three semi-axes in m [a, b, c]", 3, 3),
 ]
 
 
-def power_w(watts: float | None, dbm: float | None) -> float | None:
-    """Returns a power however it was stated [W], or None where neither unit is given."""
-    if watts is not None:
-        return watts
-    return None if dbm is None else watts_from_dbm(dbm)
+def power_w(watts: float | None, dbm: float | None) -> float:
+    """Returns a power however it was stated [W]; 0 where neither unit is given."""
+    if dbm is not None:
+        return watts_from_dbm(dbm)
+    return watts or 0.0
 
 
 def watts_from_dbm(power_dbm: float) -> float:

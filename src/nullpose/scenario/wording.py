@@ -9,7 +9,7 @@ from difflib import SequenceMatcher
 
 import numpy as np
 
-__all__ = ["described", "listed", "nearest", "plain", "printable"]
+__all__ = ["described", "listed", "nearest", "plain", "printable", "unknown"]
 
 _LONGEST_QUOTE = 40  # characters of a given text that a message repeats
 _LONGEST_WORD = 100  # characters of a word that is repeated, or compared with others
@@ -18,42 +18,35 @@ _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting
 
 def plain(value: object) -> object:
     """Returns the Python value behind a numpy scalar or array; other values pass unchanged."""
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return value
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 def described(value: object) -> str:
     """Returns a given value in words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
-    value = plain(value)
-    match value:
+    match plain(value):
         case None:
             return "nothing"
-        case bool():
-            return f"the truth value {str(value).lower()}"
-        case int() | float():
-            return _number(value)
-        case str():
-            shown = value if len(value) <= _LONGEST_QUOTE else value[: _LONGEST_QUOTE - 3] + "..."
-            return "an empty text" if not value else f'the text "{printable(shown)}"'
-        case list() | tuple():
+        case bool(truth):
+            return f"the truth value {str(truth).lower()}"
+        case int() | float() as number:
+            return _number(number)
+        case str(text):
+            shown = text if len(text) <= _LONGEST_QUOTE else text[: _LONGEST_QUOTE - 3] + "..."
+            return f'the text "{printable(shown)}"' if text else "an empty text"
+        case list() | tuple() as values:
             sizes = {0: "an empty list", 1: "a list of one value"}
-            return sizes.get(len(value), f"a list of {len(value)} values")
+            return sizes.get(len(values), f"a list of {len(values)} values")
         case Mapping():
             return "a table"
         case date() | time():
             return "a date or time"
-        case _:
-            return f"an object of type {type(value).__name__}"
+    return f"an object of type {type(value).__name__}"
 
 
 def _number(value: float) -> str:
     if isinstance(value, float):
-        if math.isnan(value):
-            return "NaN"
-        if math.isinf(value):
-            return "infinity" if value > 0 else "minus infinity"
-        return repr(value)
+        special = {math.inf: "infinity", -math.inf: "minus infinity"}
+        return "NaN" if math.isnan(value) else special.get(value, repr(value))
     # Very long integers cannot be printed in decimal by default, and nobody would read them.
     return str(value) if abs(value) < 10**15 else f"an integer beyond {'-' if value < 0 else ''}1e+15"
 
@@ -69,17 +62,30 @@ def listed(words: Collection[str]) -> str:
     return ", ".join(words)
 
 
-def nearest(word: str, known: Collection[str], at_least: float = _LIKE_ENOUGH) -> str:
+def nearest(word: str, known: Collection[str]) -> str:
     """Returns the known word most like the given one, or an empty text when none is like it.
 
     Args:
         word: what was given.
         known: the words to choose from.
-        at_least: similarity in [0, 1] below which nothing is suggested.
     """
 
     def similarity(candidate: str) -> float:
         return SequenceMatcher(None, word[:_LONGEST_WORD].casefold(), candidate.casefold()).ratio()
 
     best = max(known, key=similarity, default="")
-    return best if best and similarity(best) >= at_least else ""
+    return best if best and similarity(best) >= _LIKE_ENOUGH else ""
+
+
+def unknown(noun: str, word: str, known: Collection[str], likely: Collection[str] = ()) -> str:
+    """Returns what to say of a word that is not among the known ones, with the one that may be meant.
+
+    Args:
+        noun: what the word is, such as a key.
+        word: what was given.
+        known: the words to choose from.
+        likely: those of them that are the likelier meaning.
+    """
+    guess = nearest(word, likely) or nearest(word, known)
+    meant = f'; did you mean "{guess}"?' if guess else ";"
+    return f"unknown {noun}{meant} the {noun}s here are {listed(known)}"

@@ -115,7 +115,7 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
                 if (power_db, scheme.value) not in rows:
                     go_on()
                     solution = solve(Case(label="").on(at_power.scenario), scheme, certify=False)
-                    rows[power_db, scheme.value] = _row(power_db, solution)
+                    rows[power_db, scheme.value] = SweepRow.of(power_db, solution)
             if every == 1 and i % _CURVE_SHOWN == _CURVE_SHOWN - 1:
                 yield _curve(version, rows, complete=False)
         yield _curve(version, rows, complete=every == 1)
@@ -124,16 +124,3 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
 def _curve(version: int, rows: dict[tuple[float, str], SweepRow], *, complete: bool) -> PowerCurve:
     table = SweepTable(path=POWER_LABEL, rows=tuple(rows[key] for key in sorted(rows)))
     return PowerCurve(version=version, table=table, complete=complete)
-
-
-def _row(value: float, solution: Solution) -> SweepRow:
-    return SweepRow(
-        value=value,
-        scheme=str(solution.scheme),
-        status=solution.status.value,
-        objective=solution.objective,
-        pose=solution.pose,
-        links=solution.links,
-        note=solution.note,
-        reason=solution.reason,
-    )

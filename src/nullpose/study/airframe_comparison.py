@@ -3,35 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Unpack
 
 from nullpose.errors import SolveError
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
 from nullpose.solve import (
-    NODE_LIMIT,
     TIME_LIMIT_S,
-    ArraySolution,
     Objective,
-    Solution,
+    Result,
+    SolveKeywords,
+    SolveOptions,
     Status,
-    default_gap_of,
     solve,
     solve_array,
 )
-from nullpose.solve.options import SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust import guarantee, solve_robust
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
+from nullpose.study.grid import solved_grid
 
 __all__ = ["TOLERANCE", "AirframeComparison", "AirframeResult", "Guaranteed", "compare_airframes"]
 
-TOLERANCE = 0.01
-"""A vehicle suffices if it gives no less than the omnidirectional one but for this share."""
-
+TOLERANCE = 0.01  # a vehicle suffices if it gives no less than the omnidirectional one but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
 
 
@@ -49,14 +46,6 @@ class Guaranteed:
     robust_pose: float | None
     upper_bound: float | None
 
-    def to_dict(self) -> dict[str, float | None]:
-        """Return the numbers as plain data."""
-        return {
-            "nominal_pose": self.nominal_pose,
-            "robust_pose": self.robust_pose,
-            "upper_bound": self.upper_bound,
-        }
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AirframeResult:
@@ -72,9 +61,9 @@ class AirframeResult:
     """
 
     case: AirframeCase
-    status: Status | None
-    objective: Objective | None
-    pose: Pose | None
+    status: Status | None = None
+    objective: Objective | None = None
+    pose: Pose | None = None
     guaranteed: Guaranteed | None = None
     reason: str = ""
 
@@ -85,31 +74,19 @@ class AirframeResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data, angles in radians."""
-        objective, pose = self.objective, self.pose
+        objective, array = self.objective, self.case.array
         return {
             "name": self.case.name,
             "label": self.case.label,
             "airframe": self.case.airframe.to_dict(),
-            "array": self._array_dict(),
+            "array": None if array is None else array.to_dict() | {"combining": self.case.combining},
             "status": None if self.status is None else self.status.value,
             "reason": self.reason,
             "rigour": None if objective is None else objective.rigour.value,
             "objective": None if objective is None else objective.to_dict(),
-            "pose": None
-            if pose is None
-            else {
-                "position_m": [float(x) for x in pose.position_m],
-                "roll_rad": pose.roll_rad,
-                "pitch_rad": pose.pitch_rad,
-                "yaw_rad": pose.yaw_rad,
-                "tilt_rad": pose.tilt_rad,
-            },
-            "guaranteed": None if self.guaranteed is None else self.guaranteed.to_dict(),
+            "pose": None if self.pose is None else self.pose.to_dict(),
+            "guaranteed": None if self.guaranteed is None else asdict(self.guaranteed),
         }
-
-    def _array_dict(self) -> dict[str, Any] | None:
-        array = self.case.array
-        return None if array is None else array.to_dict() | {"combining": self.case.combining}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -220,12 +197,8 @@ def compare_airframes(
     scenario: Scenario,
     *,
     cases: Sequence[AirframeCase] | None = None,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
 ) -> AirframeComparison:
     """Return what each kind of vehicle makes of a scenario: level, tilting, omnidirectional, with an array.
 
@@ -237,107 +210,61 @@ def compare_airframes(
         scenario: what to solve.
         cases: the vehicles, by the tilt that they take, the omnidirectional one among them; without it
             those of :func:`cases_of`.
-        gap: relative gap at which each proof is done; without it, by the number of nodes.
-        time_limit_s: seconds after which each proof stops.
-        node_limit: boxes after which each proof stops.
-        certify: whether to prove anything.
-        seed: the random seed of every solve.
         on_progress: called after each vehicle with how many are done and how many there are.
+        options: as for :func:`nullpose.solve`.
 
     Raises:
         UsageError: a bad seed or limit.
         SolveError: no pose of the omnidirectional vehicle reaches every node.
     """
-    vehicles = cases_of(scenario) if cases is None else tuple(cases)
-    limits = SolveOptions(
-        gap=default_gap_of(scenario) if gap is None else gap, time_limit_s=time_limit_s, node_limit=node_limit
-    )
-    results: list[AirframeResult] = []
-    interrupted = False
-    for done, case in enumerate(vehicles, start=1):
-        proved = limits if certify and not interrupted else None
+    asked = SolveOptions(**options).of(scenario)
+    options["gap"] = asked.target
+    interrupted: list[bool] = []
+
+    def solved(own: Scenario, case: AirframeCase) -> AirframeResult:
+        certify = asked.certify and not any(interrupted)
         try:
-            if case.array is None:
-                solution = _solved(case, scenario, proved, seed)
-                interrupted = interrupted or solution.interrupted
-                results.append(_dipole_result(case, solution, None if interrupted else limits, certify))
-            else:
-                found = solve_array(
-                    case.on(scenario),
-                    case.combining,
-                    gap=limits.target,
-                    certify=proved is not None,
-                    seed=seed,
-                )
-                results.append(_array_result(case, found))
+            result = _solved(case, own, options | {"certify": certify})
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
-            results.append(_nothing(case, error))
-        if on_progress is not None:
-            on_progress(done, len(vehicles))
+            return AirframeResult(case=case, reason=str(error))
+        interrupted.append(result.interrupted)
+        known = case.array is None and own.is_uncertain
+        return AirframeResult(
+            case=case,
+            status=result.status,
+            objective=result.objective,
+            pose=result.pose,
+            guaranteed=_guaranteed(result, None if any(interrupted) else options) if known else None,
+            reason=result.reason,
+        )
+
+    vehicles = cases_of(scenario) if cases is None else cases
     return AirframeComparison(
         scenario=scenario,
-        results=tuple(results),
-        interrupted=interrupted,
-        provenance=provenance(seed) | ({"gap": limits.target} if certify else {}),
+        results=tuple(solved_grid([scenario], vehicles, solved, on_progress)),
+        interrupted=any(interrupted),
+        provenance=provenance(asked.seed) | ({"gap": asked.target} if asked.certify else {}),
     )
 
 
-def _solved(case: AirframeCase, scenario: Scenario, limits: SolveOptions | None, seed: int) -> Solution:
-    if limits is None:
-        return solve(case.on(scenario), certify=False, seed=seed)
-    return solve(
-        case.on(scenario),
-        gap=limits.target,
-        time_limit_s=limits.time_limit_s,
-        node_limit=limits.node_limit,
-        seed=seed,
-    )
+def _solved(case: AirframeCase, scenario: Scenario, options: SolveKeywords) -> Result:
+    if case.array is None:
+        return solve(case.on(scenario), **options)
+    return solve_array(case.on(scenario), case.combining, **options)
 
 
-def _nothing(case: AirframeCase, error: SolveError) -> AirframeResult:
-    return AirframeResult(case=case, status=None, objective=None, pose=None, reason=str(error))
-
-
-def _array_result(case: AirframeCase, solution: ArraySolution) -> AirframeResult:
-    return AirframeResult(
-        case=case,
-        status=solution.status,
-        objective=solution.objective,
-        pose=solution.pose,
-        reason=solution.reason,
-    )
-
-
-def _dipole_result(
-    case: AirframeCase, solution: Solution, limits: SolveOptions | None, certify: bool
-) -> AirframeResult:
-    return AirframeResult(
-        case=case,
-        status=solution.status,
-        objective=solution.objective,
-        pose=solution.pose,
-        guaranteed=_guaranteed(solution, limits, certify) if solution.scenario.is_uncertain else None,
-        reason=solution.reason,
-    )
-
-
-def _guaranteed(solution: Solution, limits: SolveOptions | None, certify: bool) -> Guaranteed:
+def _guaranteed(result: Result, options: SolveKeywords | None) -> Guaranteed:
     """Return what the pose that was found guarantees, and the robust pose unless the work was interrupted."""
-    scenario, pose = solution.scenario, solution.pose
+    scenario, pose = result.scenario, result.pose
     nominal = Quantity.of(scenario).of_ratio(guarantee(scenario, pose.position_m, pose.antenna_axis).lower)
-    if limits is None:
+    if options is None:
         return Guaranteed(nominal_pose=nominal, robust_pose=None, upper_bound=None)
-    robust = solve_robust(
-        scenario,
-        time_limit_s=min(_ROBUST_S, limits.time_limit_s),
-        node_limit=limits.node_limit,
-        certify=certify,
-        seed=int(solution.provenance["seed"]),
-    )
+    limit_s = min(_ROBUST_S, options.get("time_limit_s", TIME_LIMIT_S))
+    robust = solve_robust(scenario, **options | {"gap": None, "time_limit_s": limit_s})
     return Guaranteed(
         nominal_pose=nominal,
-        robust_pose=max(nominal, robust.robust.guaranteed),
-        upper_bound=robust.upper_bound,
+        robust_pose=max(nominal, robust.objective.value),
+        upper_bound=robust.objective.upper_bound,
     )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Unpack
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
 from nullpose.scenario import Scenario, apply_overrides
-from nullpose.solve import NODE_LIMIT, PAPER_SCHEMES, TIME_LIMIT_S, Scheme, default_gap_of
-from nullpose.solve.options import SolveOptions
+from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.solve import SolveKeywords, SolveOptions
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import scenarios_along, sweep
 from nullpose.study.table import SweepTable
@@ -28,8 +29,7 @@ class SweepPlan:
         values: what it is set to.
         schemes: the cases to solve.
         folder: where the results go; it exists and can be written.
-        seed: the random seed of every solve.
-        limits: target and limits of every proof; None proves nothing.
+        options: of every solve.
     """
 
     scenario: Scenario
@@ -37,8 +37,7 @@ class SweepPlan:
     values: tuple[float, ...]
     schemes: tuple[Scheme, ...]
     folder: Path
-    seed: int
-    limits: SolveOptions | None
+    options: SolveKeywords
 
     def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
         """Return what the sweep finds.
@@ -46,18 +45,13 @@ class SweepPlan:
         Args:
             on_progress: called after each solve with how many are done and how many there are.
         """
-        limits = self.limits
         return sweep(
             self.scenario,
             self.path,
             self.values,
             schemes=self.schemes,
-            gap=None if limits is None else limits.target,
-            time_limit_s=TIME_LIMIT_S if limits is None else limits.time_limit_s,
-            node_limit=NODE_LIMIT if limits is None else limits.node_limit,
-            certify=limits is not None,
-            seed=self.seed,
             on_progress=on_progress,
+            **self.options,
         )
 
 
@@ -71,11 +65,7 @@ def plan_sweep(
     out: Path,
     log: bool = False,
     schemes: Sequence[str] | None = None,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
+    **options: Unpack[SolveKeywords],
 ) -> SweepPlan:
     """Return the plan of a sweep, its output folder made.
 
@@ -88,30 +78,23 @@ def plan_sweep(
         out: where the results go.
         log: space the values by a constant ratio.
         schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
-        gap: relative gap at which each proof is done; without it, by the number of nodes.
-        time_limit_s: seconds after which each proof stops.
-        node_limit: boxes after which each proof stops.
-        certify: whether to prove anything.
-        seed: the random seed of every solve.
+        options: as for :func:`nullpose.solve`.
 
     Raises:
         UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.
         ScenarioError: a fixed setting is at fault.
         OutputError: the folder cannot be written.
     """
-    varied = [setting for setting in settings if "=" not in setting]
+    varied = [setting.strip() for setting in settings if "=" not in setting]
     if len(varied) != 1:
         given = ", ".join(settings)
         raise UsageError(f"--set: exactly one path to vary is needed, without a value; given {given}")
+    SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
     wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
-    target = default_gap_of(base) if gap is None else gap
-    limits = SolveOptions(gap=target, time_limit_s=time_limit_s, node_limit=node_limit)
-    path = varied[0].strip()
-    scenarios = scenarios_along(base, path, values)  # a fault shows before a folder is made
-    if schemes is not None:
-        for scheme in wanted:
-            for _, at_value in scenarios:
-                scheme.require_applicable(at_value)
-    return SweepPlan(base, path, values, wanted, prepare_folder(out), seed, limits if certify else None)
+    scenarios = scenarios_along(base, varied[0], values)  # a fault shows before a folder is made
+    for scheme in wanted if schemes is not None else ():
+        for _, at_value in scenarios:
+            scheme.require_applicable(at_value)
+    return SweepPlan(base, varied[0], values, wanted, prepare_folder(out), options)

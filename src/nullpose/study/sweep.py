@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from types import MappingProxyType
+from typing import Unpack
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.solve import (
-    NODE_LIMIT,
-    PAPER_SCHEMES,
-    TIME_LIMIT_S,
-    Scheme,
-    Solution,
-    solve,
-)
+from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.solve import SolveKeywords, solve
+from nullpose.study.grid import solved_grid
 from nullpose.study.table import SweepRow, SweepTable
 
 __all__ = ["scenarios_along", "sweep"]
@@ -26,12 +22,8 @@ def sweep(
     values: Sequence[float],
     *,
     schemes: Sequence[str] = PAPER_SCHEMES,
-    gap: float | None = None,
-    time_limit_s: float = TIME_LIMIT_S,
-    node_limit: int = NODE_LIMIT,
-    certify: bool = True,
-    seed: int = 0,
     on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
 ) -> SweepTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
@@ -43,12 +35,8 @@ def sweep(
         path: the setting, as in ``jammers.M.power_w``.
         values: what to set it to, in its own unit.
         schemes: which cases to solve.
-        gap: relative gap at which each proof is done; without it, by the number of nodes.
-        time_limit_s: seconds after which each proof stops.
-        node_limit: boxes after which each proof stops.
-        certify: whether to prove anything.
-        seed: the random seed of every solve.
         on_progress: called after each solve with how many are done and how many there are.
+        options: as for :func:`nullpose.solve`.
 
     Raises:
         ScenarioError: the path does not exist, or a value makes no valid scenario.
@@ -59,28 +47,19 @@ def sweep(
     wanted = [Scheme(scheme) for scheme in schemes]
     reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in wanted}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
-    solved = [scheme for scheme in wanted if not reasons[scheme]]
-    if not solved:
+    applicable = [scheme for scheme in wanted if not reasons[scheme]]
+    if not applicable:
         raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
-    rows: list[SweepRow] = []
-    total = len(scenarios) * len(solved)
-    for value, varied in scenarios:
-        for scheme in solved:
-            solution = solve(
-                varied,
-                scheme,
-                gap=gap,
-                time_limit_s=time_limit_s,
-                node_limit=node_limit,
-                certify=certify,
-                seed=seed,
-            )
-            if solution.interrupted:
-                raise KeyboardInterrupt
-            rows.append(_row(value, solution))
-            if on_progress is not None:
-                on_progress(len(rows), total)
-    return SweepTable(path=path, rows=tuple(rows), left_out=MappingProxyType(left_out))
+
+    def solved(point: tuple[float, Scenario], scheme: Scheme) -> SweepRow:
+        value, varied = point
+        result = solve(varied, scheme, **options)
+        if result.interrupted:
+            raise KeyboardInterrupt
+        return SweepRow.of(value, result)
+
+    rows = tuple(solved_grid(scenarios, applicable, solved, on_progress))
+    return SweepTable(path=path, rows=rows, left_out=MappingProxyType(left_out))
 
 
 def scenarios_along(
@@ -111,12 +90,9 @@ def scenarios_along(
 
 def _not_applicable_along(scenarios: Sequence[tuple[float, Scenario]], scheme: Scheme) -> str:
     """Return why a scheme has no meaning at some value, and at which; empty if it has at all of them."""
-    reasons = [(value, scheme.not_applicable(varied)) for value, varied in scenarios]
-    found = [(value, reason) for value, reason in reasons if reason is not None]
-    if not found:
-        return ""
-    value, reason = found[0]
-    return reason if len(found) == len(reasons) else f"{reason} (at {value:g})"
+    reasons = {value: reason for value, varied in scenarios if (reason := scheme.not_applicable(varied))}
+    value, reason = next(iter(reasons.items()), (0.0, ""))
+    return reason if len(reasons) in (0, len(scenarios)) else f"{reason} (at {value:g})"
 
 
 def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
@@ -125,16 +101,3 @@ def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
     others = len(found) - 1
     more = f" and {others} other value{'s' * (others > 1)}" if others else ""
     return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
-
-
-def _row(value: float, solution: Solution) -> SweepRow:
-    return SweepRow(
-        value=value,
-        scheme=str(solution.scheme),
-        status=solution.status.value,
-        objective=solution.objective,
-        pose=solution.pose,
-        links=solution.links,
-        note=solution.note,
-        reason=solution.reason,
-    )

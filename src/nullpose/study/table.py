@@ -10,8 +10,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from nullpose.files import replacing
-from nullpose.physics import Link, Pose, to_db
-from nullpose.solve import Objective
+from nullpose.objectives import RECORDS, USUAL, Quantity
+from nullpose.physics import Link, Pose
+from nullpose.solve import Objective, Result
 
 __all__ = ["SweepRow", "SweepTable"]
 
@@ -40,19 +41,36 @@ class SweepRow:
     note: str = ""
     reason: str = ""
 
+    @classmethod
+    def of(cls, value: float, result: Result) -> SweepRow:
+        """Return the row of what was found at a value.
+
+        Args:
+            value: the swept setting.
+            result: of a solve there.
+        """
+        return cls(
+            value=value,
+            scheme=str(result.scheme),
+            status=result.status.value,
+            objective=result.objective,
+            pose=result.pose,
+            links=result.links,
+            note=result.note,
+            reason=result.reason,
+        )
+
     @property
     def min_sinr(self) -> float:
         """The smallest SINR over the nodes, a power ratio; a node's SNR where the drone transmits."""
-        if self.objective.name == "min_sinr":
+        if self.objective.quantity == _SINR:
             return self.objective.value
         return min(link.sinr for link in self.links)
 
     @property
     def min_sinr_db(self) -> float:
         """The same, dB."""
-        if self.objective.name == "min_sinr":
-            return self.objective.value_db
-        return min(link.sinr_db for link in self.links)
+        return _SINR.in_unit(self.min_sinr)
 
     @property
     def upper_bound(self) -> float | None:
@@ -62,9 +80,8 @@ class SweepRow:
     @property
     def upper_bound_db(self) -> float | None:
         """The same, dB; None for a rate, or if nothing is proved."""
-        if self.upper_bound is None or self.objective.quantity.is_rate:
-            return None
-        return float(to_db(self.upper_bound))
+        quantity, bound = self.objective.quantity, self.upper_bound
+        return None if bound is None or quantity.is_rate else quantity.in_unit(bound)
 
     @property
     def relative_gap(self) -> float | None:
@@ -74,27 +91,20 @@ class SweepRow:
     def to_dict(self) -> dict[str, object]:
         """Return the row as plain data, angles in radians."""
         objective = self.objective
-        own = {} if objective.name == "min_sinr" else {objective.name: objective.value}
         return {
             "value": self.value,
             "scheme": self.scheme,
             "status": self.status,
-            "rigour": self.objective.rigour.value,
+            "rigour": objective.rigour.value,
             "reason": self.reason,
             "objective": objective.name,
-            **own,
+            objective.name: objective.value,
             "min_sinr": self.min_sinr,
             "min_sinr_db": self.min_sinr_db,
             "upper_bound": self.upper_bound,
             "upper_bound_db": self.upper_bound_db,
             "relative_gap": self.relative_gap,
-            "pose": {
-                "position_m": [float(x) for x in self.pose.position_m],
-                "roll_rad": self.pose.roll_rad,
-                "pitch_rad": self.pose.pitch_rad,
-                "yaw_rad": self.pose.yaw_rad,
-                "antenna_axis": [float(x) for x in self.pose.antenna_axis],
-            },
+            "pose": self.pose.to_dict(),
             "links": [link.to_dict() for link in self.links],
             "note": self.note,
         }
@@ -170,7 +180,7 @@ class SweepTable:
         Raises:
             OutputError: the file cannot be written.
         """
-        taken = {**_NUMBERS, **self._own_numbers()}
+        taken = _NUMBERS | (_own_numbers(self.rows[0].objective.quantity) if self.rows else {})
         nodes = [link.node for link in self.rows[0].links] if self.rows else []
         links = [f"sinr_{node}_db" for node in nodes]
         with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
@@ -183,21 +193,12 @@ class SweepTable:
                 writer.writerow([*words, *texts, row.note, row.reason])
         return path
 
-    def _own_numbers(self) -> dict[str, _Number]:
-        """Return the columns of an objective other than the smallest SINR."""
-        names = {row.objective.name for row in self.rows}
-        if "min_secrecy_rate" in names:
-            return {
-                "min_secrecy_rate_bps_hz": lambda row: row.objective.value,
-                "upper_bound_bps_hz": lambda row: row.upper_bound,
-            }
-        if "min_margin" in names:
-            return {"min_margin_db": lambda row: row.objective.value_db}
-        return {}
-
 
 _Number = Callable[[SweepRow], float | None]
 
+_SINR = RECORDS[USUAL].quantities[0]
+
+# The columns of numbers that every table has.
 _NUMBERS: dict[str, _Number] = {
     "min_sinr": lambda row: row.min_sinr,
     "min_sinr_db": lambda row: row.min_sinr_db,
@@ -213,4 +214,13 @@ _NUMBERS: dict[str, _Number] = {
     "axis_y": lambda row: row.pose.antenna_axis[1],
     "axis_z": lambda row: row.pose.antenna_axis[2],
 }
-"""The columns of numbers that every table has."""
+
+
+def _own_numbers(quantity: Quantity) -> dict[str, _Number]:
+    """Return the columns of a quantity other than the SINR."""
+    if quantity == _SINR:
+        return {}
+    unit = "bps_hz" if quantity.is_rate else "db"
+    bound: dict[str, _Number] = {f"upper_bound_{unit}": lambda row: row.upper_bound}
+    value: dict[str, _Number] = {f"{quantity.name}_{unit}": lambda row: quantity.in_unit(row.objective.value)}
+    return value | (bound if quantity.is_rate else {})

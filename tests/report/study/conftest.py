@@ -13,7 +13,7 @@ from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather
 from nullpose.study.monte_carlo import StudySpec, read_study
 from nullpose.study.monte_carlo.chunk import packed
-from nullpose.study.monte_carlo.rows import Row
+from nullpose.study.monte_carlo.rows import Row, row_of
 from nullpose.study.monte_carlo.store import Store
 
 TABLES: dict[str, Any] = {
@@ -42,23 +42,27 @@ Cell = float | tuple[float, str] | str
 Make = Callable[..., Path]
 
 
-def row_of(scene: int, point: int, case: int, cell: Cell) -> Row:
+def made_row(scene: int, point: int, case: str, cell: Cell) -> Row:
     """Return a row: a value in dB, certified; a value and its status; or the reason of a failure."""
     if isinstance(cell, str):
-        return Row(scene=scene, point=point, case=case, status="failed", reason=cell)
+        return row_of(scene, point, case, "failed", reason=cell)
     level_db, status = cell if isinstance(cell, tuple) else (cell, "certified")
     value = 10.0 ** (level_db / 10.0)
     gap = {"certified": 1e-3, "gap-not-reached": 0.5, "best-found": None}[status]
-    return Row(
-        scene=scene,
-        point=point,
-        case=case,
-        status=status,
+    return row_of(
+        scene,
+        point,
+        case,
+        status,
         value=value,
         bound=None if gap is None else value * (1.0 + gap),
         gap=gap,
-        position_m=(0.0, 1.0, 10.0),
-        attitude_rad=(0.1, 0.2, 0.0),
+        x_m=0.0,
+        y_m=1.0,
+        z_m=10.0,
+        roll_rad=0.1,
+        pitch_rad=0.2,
+        yaw_rad=0.0,
         binding_node="S1",
         boxes=100,
         seconds=0.01 * (scene + 1),
@@ -86,10 +90,10 @@ def make(tmp_path: Path) -> Make:
         for first in range(0, len(cells), 4):
             last = min(first + 4, len(cells)) - 1
             rows = [
-                row_of(scene, point, case, cell)
+                made_row(scene, point, case, cell)
                 for scene in range(first, last + 1)
                 for point, at_point in enumerate(cells[scene])
-                for case, cell in enumerate(at_point)
+                for case, cell in zip(spec.case_names, at_point, strict=True)
             ]
             store.add(packed(spec, rows, first, last, 1.0))
         return tmp_path / "study"

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from nullpose.report.study import values as values_module
-from nullpose.report.study.values import STATUSES, gather, quantity_of
+from nullpose.report.study.values import STATUSES, gather
 from nullpose.study.monte_carlo import read_study
 
 Make = Callable[..., Path]
@@ -43,4 +43,4 @@ def test_reasons_are_counted_up_to_a_number(make: Make, monkeypatch: pytest.Monk
 
 def test_what_is_maximised(make: Make) -> None:
     """By the study's own word for it."""
-    assert quantity_of(read_study(make([[[1.0, 2.0, 3.0]]]))).noun == "SINR"
+    assert read_study(make([[[1.0, 2.0, 3.0]]])).quantity.noun == "SINR"

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 from nullpose.study.monte_carlo import StudySpec, read_study, run_study, study_status
-from nullpose.study.monte_carlo.engine import KILLED
+from nullpose.study.monte_carlo.chunk import KILLED
 
 Rows = Callable[[Path], pd.DataFrame]
 SpecFile = Callable[..., Path]
@@ -156,7 +156,8 @@ def test_ctrl_c_ends_a_run_in_order(farm: Any, spec_file: SpecFile, tmp_path: Pa
     out = tmp_path / "out"
     spec = spec_file(tmp_path, scenes=10**6)
     client = farm.start("nullpose", "study", "run", spec, "--out", out, "--workers", 1, "--chunk", 10)
-    farm.until(lambda: len(_parts(out)) >= 2)
+    journal = out / "parts.jsonl"
+    farm.until(lambda: journal.exists() and journal.read_text(encoding="utf-8").count("\n") >= 2)
     os.killpg(client.pid, signal.SIGINT)
     said, _ = client.communicate(timeout=60)
     assert client.returncode == 130

@@ -13,13 +13,18 @@ from nullpose.physics.types import FloatArray
 __all__ = ["Label", "place_labels"]
 
 _SIZE_PT = 9.0
-_LETTER = 0.6  # width of a letter, as a share of its height
 _MARKER_PT = 5.0  # half of a marker
 _AWAY_PT = 7.0  # from a point to its name
 _FARTHEST_PT = 30.0  # from a point to the end of what is drawn around it; a name stands within what is wider
 
-Box = tuple[float, float, float, float]  # left, bottom, right, top, points
-_Place = tuple[float, float, str, str]  # offset across and up, points, and where the text is held
+_SIDES = {
+    -1: "right",
+    0: "center",
+    1: "left",
+}
+_LEVELS = {-1: "top", 0: "center", 1: "bottom"}
+_ABOUT = ((0, 1), (1, 0), (-1, 0), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1))
+"""Where a name may stand about its point, across and up; of equal places the first is taken."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +37,6 @@ class Label:
         colour: of the text.
         beside: whether it is written to the right of its point if it can be, and not above.
         on: whether it is written on its point, which has no marker, if it can be.
-        size_pt: of the text.
         around_m: radius of a ball around the point that is drawn as well, metres.
     """
 
@@ -41,7 +45,6 @@ class Label:
     colour: str
     beside: bool = False
     on: bool = False
-    size_pt: float = _SIZE_PT
     around_m: float = 0.0
 
 
@@ -55,83 +58,59 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
         radius_m: of the ball.
     """
     from matplotlib.patheffects import withStroke
+    from matplotlib.transforms import Bbox
 
     axes.apply_aspect()
-    points = [_on_paper(axes, label.point_m) for label in labels]
-    taken = [_around(at, _MARKER_PT) for label, at in zip(labels, points, strict=True) if not label.on]
-    taken.append(_around(_on_paper(axes, centre_m), 0.9 * _size(axes, centre_m, radius_m)))
-    for label, at in zip(labels, points, strict=True):
-        around = _size(axes, label.point_m, label.around_m)
-        places = _places(label, around if around <= _FARTHEST_PT else 0.0)
-        boxes = [_box(label, at, place) for place in places]
-        covered = [sum(_shared(box, other) for other in taken) for box in boxes]
-        best = int(np.argmin(covered))  # the first of equals, so that habits are kept where there is room
-        across, up, side, level = places[best]
-        axes.annotate(
-            label.text.replace("$", r"\$"),
-            _flat(axes, label.point_m),
-            xytext=(across, up),
+    pixels = axes.figure.dpi / 72.0
+    spots = [_on_paper(axes, label.point_m)[1] for label in labels]
+    taken = [
+        _square(at, _MARKER_PT * pixels) for label, at in zip(labels, spots, strict=True) if not label.on
+    ]
+    taken.append(_square(_on_paper(axes, centre_m)[1], 0.9 * _radius(axes, centre_m, radius_m)))
+
+    def covered(text: Any, place: tuple[int, int], away_pt: float) -> float:
+        """Return how much a text covers, square pixels, after moving it to a place."""
+        share = away_pt * (0.7 if all(place) else 1.0)
+        text.set(position=(share * place[0], share * place[1]), ha=_SIDES[place[0]], va=_LEVELS[place[1]])
+        shared = [Bbox.intersection(text.get_window_extent(), box) for box in taken]
+        return sum(box.width * box.height for box in shared if box is not None)
+
+    for label in labels:
+        text = axes.annotate(
+            label.text,
+            _on_paper(axes, label.point_m)[0],
+            xytext=(0.0, 0.0),
             textcoords="offset points",
             color=label.colour,
-            ha=side,
-            va=level,
-            fontsize=label.size_pt,
+            fontsize=_SIZE_PT,
             zorder=8,
             annotation_clip=False,
+            parse_math=False,
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
-        taken.append(boxes[best])
+        around_pt = _radius(axes, label.point_m, label.around_m) / pixels
+        away_pt = max(_AWAY_PT, around_pt if around_pt <= _FARTHEST_PT else 0.0)
+        places = [*((0, 0),) * label.on, *((1, 0),) * label.beside, *_ABOUT]
+        covered(text, min(places, key=lambda place: covered(text, place, away_pt)), away_pt)
+        taken.append(text.get_window_extent())
 
 
-def _flat(axes: Any, point_m: FloatArray) -> tuple[float, float]:
-    """Return where a point is in the plane that the axes project on."""
+def _on_paper(axes: Any, point_m: FloatArray) -> tuple[tuple[float, float], FloatArray]:
+    """Return where a point is in the plane that the axes project on, and on the paper, pixels."""
     from mpl_toolkits.mplot3d import proj3d
 
     x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
-    return float(x), float(y)
+    return (float(x), float(y)), np.asarray(axes.transData.transform((x, y)))
 
 
-def _on_paper(axes: Any, point_m: FloatArray) -> FloatArray:
-    """Return where a point is on the paper, shape ``(2,)``, typographic points."""
-    pixels: FloatArray = np.asarray(axes.transData.transform(_flat(axes, point_m)))
-    return np.asarray(pixels * 72.0 / axes.figure.dpi)
+def _square(at: FloatArray, half: float) -> Any:
+    from matplotlib.transforms import Bbox
+
+    return Bbox([at - half, at + half])
 
 
-def _around(at: FloatArray, half: float) -> Box:
-    return at[0] - half, at[1] - half, at[0] + half, at[1] + half
-
-
-def _size(axes: Any, centre_m: FloatArray, radius_m: float) -> float:
-    """Return the radius of a ball on the paper, points."""
-    middle = _on_paper(axes, centre_m)
-    ends = [_on_paper(axes, centre_m + radius_m * side) for side in np.eye(3)]
+def _radius(axes: Any, centre_m: FloatArray, radius_m: float) -> float:
+    """Return the radius of a ball on the paper, pixels."""
+    middle = _on_paper(axes, centre_m)[1]
+    ends = [_on_paper(axes, centre_m + radius_m * side)[1] for side in np.eye(3)]
     return max(float(np.linalg.norm(end - middle)) for end in ends)
-
-
-def _places(label: Label, around_pt: float) -> list[_Place]:
-    """Return where a name may stand, the usual place first."""
-    away = max(_AWAY_PT, around_pt) + (4.0 if label.on else 0.0)
-    above, below = (0.0, away, "center", "bottom"), (0.0, -away, "center", "top")
-    right, left = (away + 1.0, 0.0, "left", "center"), (-away - 1.0, 0.0, "right", "center")
-    corners = [
-        (across * away, up * away, "left" if across > 0 else "right", "bottom" if up > 0 else "top")
-        for up in (0.7, -0.7)
-        for across in (0.7, -0.7)
-    ]
-    usual = [right, left, above, below] if label.beside else [above, right, left, below]
-    return [*([(0.0, 0.0, "center", "center")] if label.on else []), *usual, *corners]
-
-
-def _box(label: Label, at: FloatArray, place: _Place) -> Box:
-    across, up, side, level = place
-    width, height = _LETTER * label.size_pt * len(label.text), 1.1 * label.size_pt
-    left = at[0] + across - {"left": 0.0, "center": 0.5, "right": 1.0}[side] * width
-    bottom = at[1] + up - {"bottom": 0.0, "center": 0.5, "top": 1.0}[level] * height
-    return left, bottom, left + width, bottom + height
-
-
-def _shared(one: Box, other: Box) -> float:
-    """Return the area that two boxes share, square points."""
-    across = min(one[2], other[2]) - max(one[0], other[0])
-    up = min(one[3], other[3]) - max(one[1], other[1])
-    return max(0.0, across) * max(0.0, up)

@@ -1,15 +1,21 @@
-"""Poses in 3-D with the radiation pattern: of one solution, at several jamming levels, or robust."""
+"""Poses in 3-D with the pattern: of one result, at several jamming levels, under errors, of an array."""
 
 from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.report.figures.pattern import draw_pattern
+from nullpose.physics.array import element_positions
+from nullpose.physics.types import FloatArray
+from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.scene import (
     ALONE,
     DRONE,
@@ -18,24 +24,31 @@ from nullpose.report.figures.scene import (
     SURFACE,
     Stage,
     draw_line,
-    draw_names,
-    draw_scene,
+    draw_panels,
 )
-from nullpose.report.figures.style import house_style
+from nullpose.report.figures.style import INK
 from nullpose.report.geometry import null_angle_rad
-from nullpose.report.numbers import MINUS
+from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.words import error_words
-from nullpose.scenario import Scenario
-from nullpose.solve import Objective, Solution
-from nullpose.solve.robust import GuardedPose, RobustSolution
+from nullpose.scenario import Eavesdropper, Jammer, Scenario
+from nullpose.solve import Objective, Result
 from nullpose.study import SweepRow
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_pose", "draw_poses", "draw_robust", "draw_stages", "escaped", "plain_name"]
+__all__ = ["draw_array", "draw_pose", "draw_poses", "draw_robust"]
 
 _LETTERS = 100  # in a line of a title
+_CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
+_SURFACE = "radiation pattern, near side cut away"
+
+# Lengths drawn, as shares of the scene's extent.
+_AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
+_ARRAY = 0.10  # from the middle to the outermost element
+_UPRIGHT = 0.018  # half of an element
+_HEADING = _BEAM = 0.20  # the heading's arrow, and the beam where the gain is largest
+_ELSEWHERE_DEG = ALONE.azimuth_deg + 27.0  # where the camera stands if the array would be seen end on
 
 
 def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
@@ -45,26 +58,25 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
         scenario: the scene, with one jammer or more.
         rows: the poses to draw, each at its own jamming level.
     """
-    words = [f"{_value_words(row.objective)}, {_angle_words(scenario, row.pose, first=True)}" for row in rows]
-    titles = [f"$P_M/P$ = {row.value:g}\n{each}" for row, each in zip(rows, words, strict=True)]
+    titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
     poses = [row.pose for row in rows]
-    return _draw([Stage(scenario=scenario, poses=(pose,), view=PANELS) for pose in poses], poses, titles)
+    stages = [Stage(scenario=scenario, poses=(pose,), view=PANELS) for pose in poses]
+    return draw_panels(stages, poses, _draw_dipole, surface=_SURFACE, titles=titles)
 
 
-def draw_pose(solution: Solution) -> Figure:
+def draw_pose(solution: Result) -> Figure:
     """Return the figure of one solution: the scene, its fence and its no-fly zones, the pose and its pattern.
 
     Args:
         solution: what was found.
     """
     scenario, pose = solution.scenario, solution.pose
-    angles = _angle_words(scenario, pose)
-    words = f"{_value_words(solution.objective)}{f', {angles}' if angles else ''}"
-    head = f"{plain_name(scenario)}\n{textwrap.fill(words, _LETTERS)}"
-    return _draw([Stage(scenario=scenario, poses=(pose,), view=ALONE)], [pose], [], head.strip())
+    words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
+    stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
+    return draw_panels([stage], [pose], _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
 
 
-def draw_robust(solution: RobustSolution) -> Figure:
+def draw_robust(solution: Result) -> Figure:
     """Return the figure of a robust solution: its pose, and beside it the one that is best as stated.
 
     Both panels show the same space, with the sets that jammers and eavesdroppers may be anywhere in.
@@ -72,122 +84,86 @@ def draw_robust(solution: RobustSolution) -> Figure:
     Args:
         solution: what was found.
     """
-    scenario, both = solution.scenario, (solution.robust, solution.nominal)
-    poses = [one.pose for one in both]
+    scenario, quantity = solution.scenario, Quantity.of(solution.scenario)
+    both = {"robust pose": solution.details.robust, "best pose as stated": solution.details.nominal}
+    poses = [one.pose for one in both.values()]
+    titles = []
+    for name, one in both.items():
+        guaranteed = with_unit(quantity.in_unit(one.guaranteed), quantity)
+        stated = with_unit(quantity.in_unit(one.nominal), quantity)
+        titles.append(f"{name}\n{guaranteed} guaranteed, {stated} without errors")
+    errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
+    head = f"{scenario.name}\n{textwrap.shorten(errors, _LETTERS, placeholder=' ...')}"
     stage = Stage(scenario=scenario, poses=tuple(poses), view=PAIR, uncertain=True)
-    titles = [
-        f"{name}\n{_guarantee_words(scenario, one)}"
-        for name, one in zip(("robust pose", "best pose as stated"), both, strict=True)
-    ]
-    errors = f"{Quantity.of(scenario).smallest}; errors: {error_words(scenario)}"
-    words = escaped(textwrap.shorten(errors, _LETTERS, placeholder=" ..."))
-    return _draw([stage, stage], poses, titles, f"{plain_name(scenario)}\n{words}".strip())
+    return draw_panels([stage, stage], poses, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
 
 
-def escaped(text: str) -> str:
-    """Return a text that Matplotlib writes as it is, and does not take for a formula.
-
-    Args:
-        text: any.
-    """
-    return text.replace("$", r"\$")
-
-
-def plain_name(scenario: Scenario) -> str:
-    """Return a scenario's name as Matplotlib writes it.
-
-    Args:
-        scenario: any.
-    """
-    return escaped(scenario.name)
+def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
+    """Return the value at a pose, and how far its null is off the jammers, or the eavesdroppers."""
+    quantity = objective.quantity
+    points: tuple[Jammer | Eavesdropper, ...] = scenario.eavesdroppers or scenario.jammers
+    angles_deg = [math.degrees(null_angle_rad(pose, point.position_m)) for point in points]
+    nulls = [f"{angle:.1f}° off {point.name}" for angle, point in zip(angles_deg, points, strict=True)]
+    value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
+    return f"{value}, null {', '.join(nulls)}" if nulls else value
 
 
-def _value_words(objective: Objective) -> str:
-    if objective.quantity.is_rate:
-        return f"{objective.quantity.smallest} {objective.value:.3f} bits/s/Hz"
-    return f"{objective.quantity.smallest} {objective.value_db:.2f} dB".replace("-", MINUS)
-
-
-def _guarantee_words(scenario: Scenario, one: GuardedPose) -> str:
-    """Return what a pose guarantees, and what it gives without errors, in the quantity's unit."""
-    quantity = Quantity.of(scenario)
-    digits = 3 if quantity.is_rate else 2
-    guaranteed, stated = (
-        f"{quantity.in_unit(value):.{digits}f}".replace("inf", "\N{INFINITY}").replace("-", MINUS)
-        for value in (one.guaranteed, one.nominal)
-    )
-    return f"{guaranteed} {quantity.unit} guaranteed, {stated} {quantity.unit} without errors"
-
-
-def _angle_words(scenario: Scenario, pose: Pose, *, first: bool = False) -> str:
-    """Return how far the null is off the jammers, or the eavesdroppers; of the first only if asked for."""
-    eavesdrop = bool(scenario.eavesdroppers)
-    points_m = scenario.eavesdropper_positions_m if eavesdrop else scenario.jammer_positions_m
-    names = scenario.eavesdropper_names if eavesdrop else scenario.jammer_names
-    kind = "eavesdropper" if eavesdrop else "jammer"
-    if not len(points_m):
-        return ""
-    angles = [f"{math.degrees(null_angle_rad(pose, point)):.1f}°" for point in points_m]
-    if first or len(angles) == 1:
-        return f"null {angles[0]} off the {kind}"
-    each = (f"{angle} off {escaped(name)}" for angle, name in zip(angles, names, strict=True))
-    return f"null {', '.join(each)}"
-
-
-def draw_stages(
-    stages: Sequence[Stage],
-    poses: Sequence[Pose],
-    titles: Sequence[str],
-    head: str = "",
-    *,
-    vehicle: Callable[[Any, Stage, Pose], None],
-    radius: float,
-    surface: str,
-) -> Figure:
-    """Return a figure with a panel for each pose: the scene, the vehicle, and the names of points.
-
-    Args:
-        stages: what each panel has to show; all have the same view.
-        poses: one for each panel.
-        titles: of the panels; none for no titles.
-        head: title of the figure; empty for none.
-        vehicle: draws the vehicle at a pose.
-        radius: of its pattern, which names keep off, as a share of the scene's extent.
-        surface: what the pattern is called in the legend.
-    """
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
-
-    view = stages[0].view
-    with house_style():
-        figure = Figure(figsize=(view.width_inch * len(poses), view.height_inch))
-        figure.subplots_adjust(left=0.016, right=0.962, bottom=view.bottom, top=view.top, wspace=view.between)
-        for index, (stage, pose) in enumerate(zip(stages, poses, strict=True)):
-            axes: Any = figure.add_subplot(1, len(poses), index + 1, projection="3d", computed_zorder=False)
-            draw_scene(axes, stage, pose)
-            vehicle(axes, stage, pose)
-            draw_names(axes, stage, pose, radius * stage.extent_m)
-            if titles:
-                axes.set_title(titles[index], fontsize=10, y=0.96)
-        if head:
-            figure.suptitle(head, fontsize=10)
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        once = dict(zip(labels, handles, strict=True))
-        handles = [*once.values(), Patch(color=SURFACE, alpha=0.8, label=surface)]
-        columns = min(len(handles), view.columns)
-        figure.legend(handles=handles, loc="lower center", ncols=columns, frameon=False, handlelength=2.6)
-    return figure
-
-
-def _draw(stages: Sequence[Stage], poses: Sequence[Pose], titles: Sequence[str], head: str = "") -> Figure:
-    words, radius = "radiation pattern, near side cut away", stages[0].view.pattern
-    return draw_stages(stages, poses, titles, head, vehicle=_draw_vehicle, radius=radius, surface=words)
-
-
-def _draw_vehicle(axes: Any, stage: Stage, pose: Pose) -> None:
-    view, extent_m, position = stage.view, stage.extent_m, pose.position_m
-    reach = view.axis * extent_m * pose.antenna_axis
-    label = "antenna axis (null)"
-    draw_line(axes, position - reach, position + reach, color=DRONE, linewidth=1.8, zorder=6.5, label=label)
-    draw_pattern(axes, pose, view.pattern * extent_m, view)
+def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
+    """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen."""
+    radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
+    reach = _AXIS * radius_m * pose.antenna_axis
+    look = {"linewidth": 1.8, "zorder": 6.5, "label": "antenna axis (null)"}
+    draw_line(axes, position - reach, position + reach, color=DRONE, **look)
+    around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)
+    surface = pattern_surface_m(pose, radius_m, around, stage.view.camera)
+    draw_surface(axes, surface, SURFACE, (surface[:, :, 0], surface[:, :, -1]), DRONE)
     axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")
+
+
+def draw_array(solution: Result) -> Figure:
+    """Return the figure of an array: the scene, its elements larger than life, its heading and its beam.
+
+    Digital combining has a beam for each node; the one drawn is that of the node with the smallest value.
+
+    Args:
+        solution: what was found.
+    """
+    array, quantity, yaw_rad = solution.details, solution.objective.quantity, solution.pose.yaw_rad
+    elements = element_positions(array.elements, array.layout, array.spacing_wavelengths, yaw_rad)
+    weights, whose = array.weights, ""
+    if weights.ndim == 2:
+        weights = weights[[link.node for link in solution.links].index(solution.binding_node)]
+        whose = f" for {solution.binding_node}"
+    azimuth_deg = ALONE.azimuth_deg
+    if array.layout == "linear":  # seen more from the side
+        places = (azimuth_deg, _ELSEWHERE_DEG)
+        azimuth_deg = max(places, key=lambda deg: abs(math.sin(yaw_rad - math.radians(deg))))
+    value = with_unit(quantity.in_unit(solution.objective.value), quantity)
+    yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
+    view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
+    return draw_panels(
+        [Stage(scenario=solution.scenario, poses=(solution.pose,), view=view)],
+        [solution.pose],
+        lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
+        surface=f"gain of the beam{whose}, horizontal cut as a line",
+        head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}",
+    )
+
+
+def _draw_array(
+    axes: Any, stage: Stage, pose: Pose, elements: FloatArray, weights: NDArray[np.complex128]
+) -> None:
+    """Draw an array's beam with its horizontal cut, its heading, and its elements as upright lines."""
+    extent_m, position = stage.extent_m, pose.position_m
+    surface = beam_surface_m(position, elements, weights, _BEAM * extent_m)
+    draw_surface(axes, surface, SURFACE, [surface[:, surface.shape[1] // 2]], DRONE)
+    ahead = _HEADING * extent_m * np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
+    look = {"linewidth": 1.2, "arrow_length_ratio": 0.16, "zorder": 7.1, "label": "heading (yaw)"}
+    axes.quiver(*position, *ahead, color=INK, **look)
+    reach = max(float(np.linalg.norm(elements, axis=1).max()), 1e-9)
+    places = position + _ARRAY * extent_m / reach * elements
+    up = np.array([0.0, 0.0, _UPRIGHT * extent_m])
+    for place in places:
+        draw_line(axes, place - up, place + up, color=DRONE, linewidth=1.4, zorder=7.2)
+    dots = {"edgecolors": "white", "linewidths": 0.5, "s": 22, "zorder": 7.3, "depthshade": False}
+    axes.scatter(*places.T, color=DRONE, label="elements, larger than life", **dots)

@@ -26,7 +26,7 @@ from nullpose.report.study.statistics import (
     resampled,
     share_interval,
 )
-from nullpose.report.study.values import STATUSES, StudyValues, quantity_of
+from nullpose.report.study.values import STATUSES, StudyValues
 from nullpose.study.monte_carlo import StudySpec, StudyTable
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def summarise(
     return Summary(
         spec=spec,
         values=values,
-        quantity=quantity_of(table),
+        quantity=table.quantity,
         cases=cases,
         points=SweptPoints.of(spec),
         requirement=requirement,

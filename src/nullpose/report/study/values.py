@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
 from nullpose.study.monte_carlo import StudyTable
@@ -18,7 +17,7 @@ from nullpose.study.monte_carlo import StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["FAILED", "STATUSES", "StudyValues", "gather", "quantity_of"]
+__all__ = ["FAILED", "STATUSES", "StudyValues", "gather"]
 
 STATUSES = ("certified", "gap-not-reached", "best-found", "failed")  # a status is kept as its place here
 FAILED = STATUSES.index("failed")
@@ -56,16 +55,6 @@ class StudyValues:
         return {name: int(np.sum(self.status == code)) for code, name in enumerate(STATUSES)}
 
 
-def quantity_of(table: StudyTable) -> Quantity:
-    """Return what the study made as large as it can be.
-
-    Args:
-        table: the study's rows.
-    """
-    name = str(table.manifest["objective"])
-    return Quantity.named({"secrecy-rate": "min_secrecy_rate"}.get(name, name.replace("-", "_")))
-
-
 def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], None] | None = None) -> StudyValues:
     """Return the values of all rows that are done, reading them once, part by part.
 
@@ -76,7 +65,7 @@ def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], None] | None = 
     Raises:
         UsageError: a part is damaged.
     """
-    spec, quantity = table.spec, quantity_of(table)
+    spec, quantity = table.spec, table.quantity
     inner = (len(spec.points), len(spec.cases))
     shape = (table.scenes_done, *inner)
     kinds = {"value": float, "bound": float, "gap": np.float32, "status": np.uint8, "seconds": np.float32}

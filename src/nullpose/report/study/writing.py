@@ -17,7 +17,7 @@ from nullpose.report.study.answer import answer_of, certainty_of, outage_words, 
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of
 from nullpose.report.study.summary import Summary, summarise
-from nullpose.report.study.values import gather, quantity_of
+from nullpose.report.study.values import gather
 from nullpose.study.monte_carlo import read_study
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def report_study(
         OutputError: a file cannot be written.
     """
     table = read_study(folder)
-    requirement = _requirement(quantity_of(table), requirement_db, requirement_bps_hz)
+    requirement = _requirement(table.quantity, requirement_db, requirement_bps_hz)
     if against is not None and against not in table.spec.case_names:
         raise UsageError(f"against: given {against!r}; allowed: {', '.join(table.spec.case_names)}")
     target = prepare_folder(Path(folder) / "report" if out is None else Path(out))

@@ -1,204 +1,182 @@
-"""The worst error case of one ratio at a pose: its value at errors, and a descent over them.
+"""The worst error case of one ratio at a pose: its value under an error, and a descent over the errors.
 
-A ratio is ``(a + c |y x v|^2) / (1 + sum_j b_j L_j)``, ``v`` the inverted point of the numerator and ``L_j``
-the strongest link that jammer j's set allows. Errors are an axis y within a cone about the nominal one and an
-offset d of the position, |d| at most so much; a jammer's place within its set is worst for itself.
-
-A ratio travels as ``(a, c, node, b, centres, radii, axes, semi)``: the node and the centres of the jammers'
-sets from the nominal position, a ball of radius ``radii[j]`` or, where that is negative, an ellipsoid with
-the columns of ``axes[j]`` as its axes and the half lengths ``semi[j]``; both None if all are balls. Errors
-travel as ``(frame, cosine, sine, reach)``: rows of the frame are the nominal axis and two across it.
+Everything is seen from the nominal position. A point's set is moved by an error of the position; the point's
+place within it is worst for itself.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
-from nullpose.solve.kernels.worst_case_links import loudest
+from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.vectors import (
+    along,
+    combination,
+    components,
+    cross,
+    dot,
+    minus,
+    norm,
+    row,
+    scaled,
+    store,
+    unit,
+)
+from nullpose.solve.kernels.worst_case_links import Sets, strongest_link
 
-__all__ = ["descend", "into_cone", "ratio_at", "worst_found"]
+__all__ = ["Errors", "Ratio", "descend", "into_ball", "into_cone", "ratio_at", "worst_found"]
 
 _LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
 _STEPS = 200
+_TRIES = 40
 _SMALL = 1e-13
+_NO_OFFSET = (0.0, 0.0, 0.0)
+
+FloatArray = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+
+class Ratio(NamedTuple):
+    """A ratio ``(a + c |y x v|^2) / (1 + sum_j b_j L_j)``: v the node's inverted point, L_j set j's link."""
+
+    isotropic: float  # a
+    weight: float  # c
+    node: Vector
+    shares: FloatArray  # (n,) b_j
+    centres: FloatArray  # (n, 3) of the sets
+    sets: Sets
+
+
+class Errors(NamedTuple):
+    """Axes within a cone about the nominal one, and offsets of the position no longer than a reach."""
+
+    frame: tuple[Vector, Vector, Vector]  # the nominal axis, and two across it
+    cosine: float  # of the cone
+    sine: float
+    reach: float
 
 
 @inner_kernel
-def link_gradient(y, q, scale, by_axis, by_offset):
-    """Add the derivatives, by the axis and by an offset of the position, of ``scale |y x q|^2 / |q|^4``."""
-    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
-    along = y[0] * q[0] + y[1] * q[1] + y[2] * q[2]
+def link_with_slopes(y, q):
+    """Return ``|y x q|^2 / |q|^4`` and its derivatives by the axis and by an offset of the position."""
+    square, ahead = dot(q, q), dot(y, q)
     quartic = square * square
-    link = (square - along * along) / quartic
-    for i in range(3):
-        by_axis[i] += 2.0 * scale * (y[i] * square - along * q[i]) / quartic
-        by_offset[i] -= scale * (2.0 * (q[i] - along * y[i]) / quartic - 4.0 * link * q[i] / square)
+    link = (square - ahead * ahead) / quartic
+    by_axis = scaled(2.0 / quartic, along(scaled(square, y), -ahead, q))
+    by_offset = along(scaled(4.0 * link / square, q), -2.0 / quartic, along(q, -ahead, y))
+    return link, by_axis, by_offset
 
 
-@inner_heap_kernel
-def ratio_at(ratio, y, offset, places, by_axis, by_offset):
-    """Return the ratio at an axis y (unit) and an offset, the jammers at their worst.
+@inner_kernel
+def ratio_at(ratio, y, offset, places):
+    """Return the ratio at an axis y (unit) and an offset, the sets at their worst, and its derivatives.
 
-    Fills the jammers' places from the actual position and the derivatives by the axis and by the offset.
+    Fills the sets' places from the actual position.
     """
-    a, c, node, b, centres, radii, axes, semi = ratio
-    n_links = b.shape[0]
-    q = np.empty(3)
-    jamming_y, jamming_d = np.zeros(3), np.zeros(3)
-    denominator = 1.0
-    for j in range(n_links):
-        for i in range(3):
-            q[i] = centres[j, i] - offset[i]
-        link, _ = loudest(radii[j], axes, semi, j, y, q, _LOOSE, places[j])
-        denominator += b[j] * link * link
-        if link < math.inf:
-            link_gradient(y, places[j], b[j], jamming_y, jamming_d)
-    for i in range(3):
-        q[i] = node[i] - offset[i]
-        by_axis[i] = by_offset[i] = 0.0
-    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
-    if not (square > 0.0 and denominator < math.inf):
-        return 0.0
-    w0, w1, w2 = y[1] * q[2] - y[2] * q[1], y[2] * q[0] - y[0] * q[2], y[0] * q[1] - y[1] * q[0]
-    value = (a + c * (w0 * w0 + w1 * w1 + w2 * w2) / (square * square)) / denominator
-    link_gradient(y, q, c, by_axis, by_offset)
-    for i in range(3):
-        by_axis[i] = (by_axis[i] - value * jamming_y[i]) / denominator
-        by_offset[i] = (by_offset[i] - value * jamming_d[i]) / denominator
-    return value
+    below, below_y, below_d = 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for j in range(ratio.shares.shape[0]):
+        root, _, place = strongest_link(ratio.sets, j, y, minus(row(ratio.centres, j), offset), _LOOSE)
+        store(place, places[j])
+        below += ratio.shares[j] * root * root
+        if root < math.inf:
+            _, by_axis, by_offset = link_with_slopes(y, place)
+            below_y = along(below_y, ratio.shares[j], by_axis)
+            below_d = along(below_d, ratio.shares[j], by_offset)
+    q = minus(ratio.node, offset)
+    square = dot(q, q)
+    if not (square > 0.0 and below < math.inf):
+        return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    w = cross(y, q)
+    value = (ratio.isotropic + ratio.weight * dot(w, w) / (square * square)) / below
+    _, by_axis, by_offset = link_with_slopes(y, q)
+    by_axis = along(scaled(ratio.weight, by_axis), -value, below_y)
+    by_offset = along(scaled(ratio.weight, by_offset), -value, below_d)
+    return value, scaled(1.0 / below, by_axis), scaled(1.0 / below, by_offset)
 
 
-@inner_heap_kernel
+@inner_kernel
 def into_cone(errors, y):
-    """Overwrite y with the unit vector of the cone that is nearest to its line."""
-    frame, cosine, sine = errors[:3]
-    part = np.zeros(3)
-    for m in range(3):
-        for i in range(3):
-            part[m] += frame[m, i] * y[i]
-    if part[0] < 0.0:
-        for m in range(3):
-            part[m] = -part[m]
-    across = math.sqrt(part[1] * part[1] + part[2] * part[2])
-    length = math.sqrt(part[0] * part[0] + across * across)
-    if across > 0.0 and across * cosine > part[0] * sine:
-        part[0], part[1], part[2] = cosine, sine * part[1] / across, sine * part[2] / across
-        length = 1.0
-    for i in range(3):
-        y[i] = (part[0] * frame[0, i] + part[1] * frame[1, i] + part[2] * frame[2, i]) / length
+    """Return the unit vector of the cone that is nearest to the line of y."""
+    ahead, first, second = components(errors.frame, y)
+    if ahead < 0.0:
+        ahead, first, second = -ahead, -first, -second
+    across = math.sqrt(first * first + second * second)
+    if across * errors.cosine > ahead * errors.sine:
+        scale = errors.sine / across
+        return combination(errors.frame, (errors.cosine, scale * first, scale * second))
+    return unit(combination(errors.frame, (ahead, first, second)))
 
 
 @inner_kernel
 def into_ball(reach, offset):
-    """Overwrite an offset with the nearest one that is no longer than the reach."""
-    length = math.sqrt(offset[0] ** 2 + offset[1] ** 2 + offset[2] ** 2)
-    if length > reach:
-        for i in range(3):
-            offset[i] *= reach / length
+    """Return the nearest offset that is no longer than the reach."""
+    length = norm(offset)
+    return scaled(reach / length, offset) if length > reach else offset
 
 
-@inner_heap_kernel
+@inner_kernel
 def descend(ratio, errors, y, offset, places):
-    """Return the ratio at a local minimum over the errors, downhill from y and offset, which it overwrites.
+    """Return a local minimum of the ratio over the errors, downhill from y and offset, and where it is.
 
     Projected gradient, each error measured by its largest size, with steps that grow and shrink.
     """
-    angle, reach = math.atan2(errors[2], errors[1]), errors[3]
-    gy, gd, hy, hd = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    y_new, d_new = np.empty(3), np.empty(3)
-    value = ratio_at(ratio, y, offset, places, gy, gd)
+    angle, reach = math.atan2(errors.sine, errors.cosine), errors.reach
+    value, by_axis, by_offset = ratio_at(ratio, y, offset, places)
     step = -1.0
     for _ in range(_STEPS):
-        along = gy[0] * y[0] + gy[1] * y[1] + gy[2] * y[2]
-        slope_y = slope_d = 0.0
-        for i in range(3):
-            gy[i] -= along * y[i]
-            slope_y += gy[i] * gy[i]
-            slope_d += gd[i] * gd[i]
-        slope = angle * math.sqrt(slope_y) + reach * math.sqrt(slope_d)
+        by_axis = along(by_axis, -dot(by_axis, y), y)
+        slope = angle * norm(by_axis) + reach * norm(by_offset)
         if not slope > _SMALL * value:
             break
         if step < 0.0:
             step = 4.0 / slope
-        moved = False
-        for _ in range(40):
-            for i in range(3):
-                y_new[i] = y[i] - step * angle * angle * gy[i]
-                d_new[i] = offset[i] - step * reach * reach * gd[i]
-            into_cone(errors, y_new)
-            into_ball(reach, d_new)
-            new = ratio_at(ratio, y_new, d_new, places, hy, hd)
-            if new < value:
-                moved = True
+        gain = 0.0
+        for _ in range(_TRIES):
+            new_y = into_cone(errors, along(y, -step * angle * angle, by_axis))
+            new_offset = into_ball(reach, along(offset, -step * reach * reach, by_offset))
+            new, new_by_axis, new_by_offset = ratio_at(ratio, new_y, new_offset, places)
+            gain = value - new
+            if gain > 0.0:
                 break
             step *= 0.25
-        if not moved:
+        if not gain > 0.0:
             break
-        gain = value - new
-        value = new
-        for i in range(3):
-            y[i], offset[i], gy[i], gd[i] = y_new[i], d_new[i], hy[i], hd[i]
+        value, y, offset, by_axis, by_offset = new, new_y, new_offset, new_by_axis, new_by_offset
         step *= 2.0
         if gain < _SMALL * value:
             break
-    return value
+    return value, y, offset
 
 
 @inner_kernel
-def null_within_reach(ratio, errors, y, offset):
-    """Return whether some error points the null at the node; fills it if so."""
-    node, reach = ratio[2], errors[3]
-    square = along = 0.0
-    for i in range(3):
-        y[i] = node[i]
-        square += node[i] * node[i]
-    into_cone(errors, y)
-    for i in range(3):
-        along += y[i] * node[i]
-    side = 0.0
-    for i in range(3):
-        offset[i] = node[i] - along * y[i]
-        side += offset[i] * offset[i]
-    spare = 0.5 * math.sqrt(max(0.0, reach * reach - side))
-    if abs(along) < spare:  # not onto the node itself
-        for i in range(3):
-            offset[i] += (along - spare) * y[i]
-    return side <= reach * reach or side <= 1e-28 * square
+def null_within_reach(node, errors):
+    """Return whether some error points the null at the node, and the axis and offset that come closest."""
+    y = into_cone(errors, node)
+    ahead = dot(y, node)
+    offset = along(node, -ahead, y)
+    side, reach = norm(offset), errors.reach
+    spare = 0.5 * math.sqrt(max(0.0, reach * reach - side * side))
+    if abs(ahead) < spare:  # not onto the node itself
+        offset = along(offset, ahead - spare, y)
+    return side <= reach or side <= 1e-14 * norm(node), y, offset
 
 
-@inner_heap_kernel
-def worst_found(ratio, errors, y, offset):
-    """Return the smallest ratio that descents from several errors end at, and fill that error.
-
-    Args:
-        ratio: the ratio, as above.
-        errors: what may be wrong, as above.
-        y: output, (3,): the actual axis, of unit length.
-        offset: output, (3,): the position's error.
-    """
-    frame, cosine, sine = errors[:3]
-    n_links = ratio[3].shape[0]
-    places = np.empty((n_links, 3))
-    if ratio[0] == 0.0 and null_within_reach(ratio, errors, y, offset):
-        return 0.0
+@inner_kernel
+def worst_found(ratio, errors, places):
+    """Return the smallest ratio that descents from several errors end at, and the axis and offset there."""
+    silent, y, offset = null_within_reach(ratio.node, errors)
+    if ratio.isotropic == 0.0 and silent:
+        return 0.0, y, offset
     best = math.inf
-    trial, shift = np.empty(3), np.empty(3)
-    n_starts = np.int64(5 if sine > 0.0 else 1)
-    for start in range(n_starts):
-        turn = 0.5 * math.pi * start
-        lean = sine if start > 0 else 0.0
-        for i in range(3):
-            shift[i] = 0.0
-            trial[i] = frame[0, i] * (cosine if start > 0 else 1.0) + lean * (
-                math.cos(turn) * frame[1, i] + math.sin(turn) * frame[2, i]
-            )
-        into_cone(errors, trial)
-        value = descend(ratio, errors, trial, shift, places)
+    for start in range(5 if errors.sine > 0.0 else 1):  # the nominal axis, then four of the cone's rim
+        angle = 0.5 * math.pi * start
+        rim = (errors.cosine, errors.sine * math.cos(angle), errors.sine * math.sin(angle))
+        begin = combination(errors.frame, rim if start > 0 else (1.0, 0.0, 0.0))
+        value, new_y, new_offset = descend(ratio, errors, into_cone(errors, begin), _NO_OFFSET, places)
         if value < best:
-            best = value
-            for i in range(3):
-                y[i], offset[i] = trial[i], shift[i]
-    return best
+            best, y, offset = value, new_y, new_offset
+    return best, y, offset

@@ -1,351 +1,278 @@
-"""A lower bound on one ratio over all errors: branch and bound on the axis and the offset.
+"""A lower bound on one ratio over all errors: branch and bound on the axis and the offset, by lemma 4.
 
-The axis is ``y = f0 + x1 f1 + x2 f2``, of any length, on a face of a cube about the drone. The ratio is at
-least t over a cell if ``F = (a - t) |y|^2 + c |y x v|^2 - t sum_j b_j |y|^2 L_j`` is not negative there. F
-less half of a bound on its second derivatives times the squared distance from the cell's centre is concave,
-whatever the places of the jammers, and so smallest at a corner of the cell. The cone and the ball of offsets
-enter with multipliers. Proofs: docs/robust.md.
+The axis is ``y = x0 f0 + x1 f1 + x2 f2`` with ``x0 = 1``, of any length, on a face of a cube about the drone.
+The ratio is at least t over a cell if ``F = (a - t) |y|^2 + c |y x v|^2 - t sum_j b_j |y|^2 L_j`` is not
+negative there. F less half of a bound on its second derivatives times the squared distance from the cell's
+centre is concave, whatever the places of the jammers, and so smallest at a corner of the cell. The cone and
+the ball of offsets enter with multipliers. Proofs: docs/robust.md.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solve.kernels.worst_case import descend, into_ball, into_cone, ratio_at, worst_found
-from nullpose.solve.kernels.worst_case_links import ROUND, across, clearance, loudest
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solve.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
+from nullpose.solve.kernels.worst_case import (
+    FloatArray,
+    Vector,
+    descend,
+    into_ball,
+    into_cone,
+    ratio_at,
+    worst_found,
+)
+from nullpose.solve.kernels.worst_case_links import ROUND, clearance, strongest_link
 
 __all__ = ["worst_case"]
 
-_SLACK = 1e-12
-_COLUMNS = 11  # face, centre and half sides on the face, centre and half sides of the offset
+_SLACK = 1e-12  # relative: more than rounding takes from a sum
+_BETTER = 1e-9  # relative: less is no reason to descend anew
+_SIDES = 5  # of a cell: two of the axis, three of the offset
+_CENTRE, _HALF = 1, 1 + _SIDES  # columns of a cell's row, after its face
+_COLUMNS = _HALF + _SIDES
 _DEPTH = 512
 
 
-@inner_kernel
-def axis_at(errors, face, x1, x2, y):
-    """Fill the axis of a point of a face."""
-    frame = errors[0]
-    first, second = (face + 1) % 3, (face + 2) % 3
-    for i in range(3):
-        y[i] = frame[face, i] + x1 * frame[first, i] + x2 * frame[second, i]
+class Cell(NamedTuple):
+    """A rectangle of axes on a face, times a box of offsets: centres and half sides."""
+
+    face: int
+    x: Vector
+    x_half: Vector
+    d: Vector
+    d_half: Vector
 
 
-@inner_heap_kernel
-def curvatures(ratio, c, level, cell, most_across, out):
-    """Fill bounds A, B, C: the second derivative of F along (x, d) is at most A|x|^2 + 2B|x||d| + C|d|^2.
+class Corners(NamedTuple):
+    """What holds at the corners of a cell: ``m`` of the axis, ``e`` of the offset."""
 
-    Returns whether the cell keeps clear of all jammers. The weight c of the node is 0 where it is not clear.
-    """
-    a, _, node, b, centres, radii, axes, semi = ratio
-    lean = math.sqrt(cell[3] * cell[3] + cell[4] * cell[4])
-    swing = math.sqrt(cell[8] * cell[8] + cell[9] * cell[9] + cell[10] * cell[10])
-    length = 1.0
-    for i in range(2):
-        length += (abs(cell[1 + i]) + cell[3 + i]) * (abs(cell[1 + i]) + cell[3 + i])
-    length = math.sqrt(length)
-    inverse = 1.0 / (distance_from(node, cell) - swing) if c > 0.0 else 0.0
-    square = inverse * inverse
-    out[0] = 2.0 * max(0.0, a - level + c * square)
-    out[1] = 4.0 * c * length * square * inverse
-    out[2] = 6.0 * c * length * length * square * square
-    q = np.empty(3)
-    for j in range(b.shape[0]):
-        for i in range(3):
-            q[i] = centres[j, i] - cell[5 + i]
-        near = clearance(radii[j], axes, semi, j, q) - swing
-        if not near > 0.0:
-            return False
-        inverse = 1.0 / near
-        w = most_across[j] + lean * inverse + swing * length * inverse * inverse  # no corner is farther off
-        w *= 2.0 * level * b[j] * inverse * inverse
-        out[1] += w
-        out[2] += 2.0 * w * length * inverse
-    return True
+    values: FloatArray  # (m, e) F, from below
+    sizes: FloatArray  # (m, e) the sizes of its terms
+    cone: FloatArray  # (m,) G, negative outside the cone
+    ball: FloatArray  # (e,) H, negative outside the ball of offsets
+    across: FloatArray  # (n,) W_j, the largest |y x v_j|
 
 
 @inner_kernel
-def distance_from(point, cell):
-    """Return the distance from the centre of a cell's offsets to a point."""
-    total = 0.0
-    for i in range(3):
-        total += (point[i] - cell[5 + i]) ** 2
-    return math.sqrt(total)
+def cell_of(cells, i):
+    """Return a row as a cell."""
+    r = cells[i]
+    return Cell(int(r[0]), (1.0, r[1], r[2]), (0.0, r[6], r[7]), (r[3], r[4], r[5]), (r[8], r[9], r[10]))
+
+
+@inner_kernel
+def ahead(face):
+    """Return which of a face's three coordinates lies along the nominal axis."""
+    return (3 - face) % 3
+
+
+@inner_kernel
+def axis_at(errors, face, x):
+    """Return the axis of a point of a face."""
+    frame = errors.frame
+    return combination((frame[face], frame[(face + 1) % 3], frame[(face + 2) % 3]), x)
+
+
+@inner_kernel
+def signs(corner):
+    """Return on which sides of a cell's three coordinates a corner lies."""
+    return 1.0 if corner & 1 else -1.0, 1.0 if corner & 2 else -1.0, 1.0 if corner & 4 else -1.0
+
+
+@inner_kernel
+def corner_of(centre, half, corner):
+    """Return a corner of three of a cell's coordinates."""
+    way = signs(corner)
+    return centre[0] + way[0] * half[0], centre[1] + way[1] * half[1], centre[2] + way[2] * half[2]
+
+
+@inner_kernel
+def nearest(centre, half):
+    """Return how near each coordinate comes to zero."""
+    return (
+        max(0.0, abs(centre[0]) - half[0]),
+        max(0.0, abs(centre[1]) - half[1]),
+        max(0.0, abs(centre[2]) - half[2]),
+    )
+
+
+@inner_kernel
+def farthest(centre, half):
+    """Return how far each coordinate goes from zero."""
+    return abs(centre[0]) + half[0], abs(centre[1]) + half[1], abs(centre[2]) + half[2]
 
 
 @inner_kernel
 def empty_of_errors(errors, cell):
     """Return whether a cell lies outside the cone or outside the ball of offsets."""
-    cosine, sine, reach = errors[1:]
-    least = 0.0
-    for i in range(3):
-        low = max(0.0, abs(cell[5 + i]) - cell[8 + i])
-        least += low * low
-    if least > reach * reach * (1.0 + _SLACK):
+    d = nearest(cell.d, cell.d_half)
+    if dot(d, d) > errors.reach**2 * (1.0 + _SLACK):
         return True
-    face = np.int64(cell[0])
-    ahead = rest = 0.0
-    for m in range(3):
-        low = high = 1.0
-        if m > 0:
-            low = max(0.0, abs(cell[m]) - cell[2 + m])
-            high = abs(cell[m]) + cell[2 + m]
-        if (face + m) % 3 == 0:
-            ahead = high * high
-        else:
-            rest += low * low
-    return ahead * sine * sine * (1.0 + _SLACK) < rest * cosine * cosine
+    low, high = nearest(cell.x, cell.x_half), farthest(cell.x, cell.x_half)
+    rest = 0.0
+    for i in range(3):
+        if i != ahead(cell.face):
+            rest += low[i] ** 2
+    along_cone = (high[ahead(cell.face)] * errors.sine) ** 2
+    return along_cone * (1.0 + _SLACK) < rest * errors.cosine**2
 
 
-@inner_heap_kernel
-def evaluate_corners(ratio, c, errors, level, cell, tolerance, values, sizes, cone, ball, most_across):
-    """Fill F from below, the sizes of its terms, and both constraints, at the corners; False near a jammer.
-
-    Fills also a bound on ``|y x v|`` over the cell for each jammer.
-    """
-    a, _, node, b, centres, radii, axes, semi = ratio
-    cosine, reach = errors[1], errors[3]
-    n_links = b.shape[0]
-    n_y, n_d = values.shape
-    face = np.int64(cell[0])
-    ys, lengths = np.empty((n_y, 3)), np.empty(n_y)
-    unit, offset, q, point = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    for m in range(n_y):
-        s1 = 0.0 if n_y == 1 else (1.0 if m & 1 else -1.0)
-        s2 = 0.0 if n_y == 1 else (1.0 if m & 2 else -1.0)
-        x1, x2 = cell[1] + s1 * cell[3], cell[2] + s2 * cell[4]
-        axis_at(errors, face, x1, x2, ys[m])
-        lengths[m] = math.sqrt(1.0 + x1 * x1 + x2 * x2)
-        ahead = 1.0 if face == 0 else (x2 if face == 1 else x1)
-        cone[m] = ahead * ahead - cosine * cosine * lengths[m] ** 2
-    for j in range(n_links):
-        most_across[j] = 0.0
-    for e in range(n_d):
-        square = 0.0
-        for i in range(3):
-            sign = 0.0 if n_d == 1 else (1.0 if (e >> i) & 1 else -1.0)
-            offset[i] = cell[5 + i] + sign * cell[8 + i]
-            square += offset[i] * offset[i]
-            q[i] = node[i] - offset[i]
-        ball[e] = reach * reach - square
-        square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
-        for m in range(n_y):
+@inner_kernel
+def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
+    """Fill what holds at the corners; return False near a jammer. The node's weight is 0 if left out."""
+    n_axes, n_offsets = corners.values.shape
+    for e in range(n_offsets):
+        offset = corner_of(cell.d, cell.d_half, e)
+        node = minus(ratio.node, offset)
+        corners.ball[e] = errors.reach**2 - dot(offset, offset)
+        for m in range(n_axes):
+            x = corner_of(cell.x, cell.x_half, 2 * m)
+            y, square, length = axis_at(errors, cell.face, x), dot(x, x), norm(x)
+            corners.cone[m] = x[ahead(cell.face)] ** 2 - errors.cosine**2 * square
             w = 0.0
-            if c > 0.0:
-                w = max(0.0, across(ys[m], q) - ROUND * lengths[m] * math.sqrt(square)) / square
-            sizes[m, e] = lengths[m] * lengths[m]
-            values[m, e] = a * sizes[m, e] + c * w * w
-        for j in range(n_links):
-            for i in range(3):
-                q[i] = centres[j, i] - offset[i]
-            for m in range(n_y):
-                for i in range(3):
-                    unit[i] = ys[m, i] / lengths[m]
-                _, w = loudest(radii[j], axes, semi, j, unit, q, tolerance, point)
-                if not w < math.inf:
+            if weight > 0.0:
+                w = max(0.0, norm(cross(y, node)) - ROUND * length * norm(node)) / dot(node, node)
+            signal, noise = ratio.isotropic * square + weight * w * w, square
+            for j in range(ratio.shares.shape[0]):
+                q = minus(row(ratio.centres, j), offset)
+                _, root, _ = strongest_link(ratio.sets, j, scaled(1.0 / length, y), q, tolerance)
+                if not root < math.inf:
                     return False
-                if radii[j] >= 0.0:
-                    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
-                    w += ROUND * math.sqrt(square) / (square - radii[j] * radii[j])
-                w *= lengths[m]
-                most_across[j] = max(most_across[j], w)
-                sizes[m, e] += b[j] * w * w
-    for m in range(n_y):
-        for e in range(n_d):
-            signal, noise = values[m, e], level * sizes[m, e]
-            values[m, e] = signal - noise
-            sizes[m, e] = signal + noise
+                noise += ratio.shares[j] * (length * root) ** 2
+                before = corners.across[j] if e + m > 0 else 0.0
+                corners.across[j] = max(before, length * root)
+            corners.values[m, e] = signal - level * noise
+            corners.sizes[m, e] = signal + level * noise
     return True
 
 
 @inner_kernel
-def slopes(values, cell, gradient):
-    """Fill the gradient by the two coordinates of the axis and the three of the offset, from the corners."""
-    n_y, n_d = values.shape
-    for i in range(5):
-        gradient[i] = 0.0
-    for m in range(n_y):
-        for e in range(n_d):
-            for i in range(2):
-                if n_y > 1:
-                    gradient[i] += values[m, e] * (1.0 if (m >> i) & 1 else -1.0)
-            for i in range(3):
-                if n_d > 1:
-                    gradient[2 + i] += values[m, e] * (1.0 if (e >> i) & 1 else -1.0)
-    for i in range(5):
-        half = cell[3 + i] if i < 2 else cell[6 + i]
-        gradient[i] = gradient[i] / (n_y * n_d * half) if half > 0.0 else 0.0
+def curvatures(ratio, weight, level, cell, across):
+    """Return lemma 4's A, B and C; infinite unless the cell keeps clear of all sets."""
+    lean, swing, length = norm(cell.x_half), norm(cell.d_half), norm(farthest(cell.x, cell.x_half))
+    kappa = 1.0 / (norm(minus(ratio.node, cell.d)) - swing) if weight > 0.0 else 0.0
+    square = kappa * kappa
+    a = 2.0 * max(0.0, ratio.isotropic - level + weight * square)
+    b = 4.0 * weight * length * kappa * square
+    c = 6.0 * weight * (length * square) ** 2
+    for j in range(ratio.shares.shape[0]):
+        near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
+        if not near > 0.0:
+            return math.inf, math.inf, math.inf
+        kappa = 1.0 / near
+        most = across[j] + lean * kappa + swing * length * kappa**2  # no corner is farther off
+        part = 2.0 * level * ratio.shares[j] * most * kappa**2
+        b += part
+        c += 2.0 * part * length * kappa
+    return a, b, c
 
 
 @inner_kernel
-def multipliers(errors, cell, gradient):
+def multiplier(slope, of_constraint):
+    """Return the multiplier of a constraint that cancels a slope along its own, if positive."""
+    square = dot(of_constraint, of_constraint)
+    return max(0.0, dot(slope, of_constraint) / square) if square > 0.0 else 0.0
+
+
+@inner_kernel
+def slope_of(total, half, count):
+    """Return the slope by three coordinates from the sum of the values, with their signs, at the corners."""
+    return (
+        total[0] / (count * half[0]) if half[0] > 0.0 else 0.0,
+        total[1] / (count * half[1]) if half[1] > 0.0 else 0.0,
+        total[2] / (count * half[2]) if half[2] > 0.0 else 0.0,
+    )
+
+
+@inner_kernel
+def multipliers(errors, cell, values):
     """Return the multipliers of the cone and of the ball that flatten F at the cell's centre, if positive."""
-    cosine = errors[1]
-    face = np.int64(cell[0])
-    ahead = 0 if face == 0 else 3 - face  # coordinate of the face that lies along the nominal axis
-    dot = square = 0.0
-    for i in range(1, 3):
-        slope = -2.0 * cosine * cosine * cell[i]
-        if i == ahead:
-            slope += 2.0 * cell[i]
-        dot += gradient[i - 1] * slope
-        square += slope * slope
-    cone = max(0.0, dot / square) if square > 0.0 else 0.0
-    dot = square = 0.0
-    for i in range(3):
-        dot -= 2.0 * gradient[2 + i] * cell[5 + i]
-        square += 4.0 * cell[5 + i] * cell[5 + i]
-    return cone, (max(0.0, dot / square) if square > 0.0 else 0.0)
-
-
-@inner_kernel
-def least_corner(values, sizes, cone, ball, nu, mu):
-    """Return the least of F less the weighted constraints at the corners, rounding taken off."""
-    least = math.inf
+    by_x, by_d = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for m in range(values.shape[0]):
         for e in range(values.shape[1]):
-            rounding = _SLACK * (sizes[m, e] + nu * (1.0 + abs(cone[m])) + mu * abs(ball[e]))
-            least = min(least, values[m, e] - nu * cone[m] - mu * ball[e] - rounding)
+            by_x, by_d = along(by_x, values[m, e], signs(2 * m)), along(by_d, values[m, e], signs(e))
+    share = errors.cosine**2
+    first = (1.0 if ahead(cell.face) == 1 else 0.0) - share
+    second = (1.0 if ahead(cell.face) == 2 else 0.0) - share
+    of_cone = (0.0, 2.0 * first * cell.x[1], 2.0 * second * cell.x[2])
+    nu = multiplier(slope_of(by_x, cell.x_half, values.size), of_cone)
+    return nu, multiplier(slope_of(by_d, cell.d_half, values.size), scaled(-2.0, cell.d))
+
+
+@inner_kernel
+def least_corner(corners, nu, mu):
+    """Return the least of ``F - nu G - mu H`` at the corners, rounding taken off."""
+    least = math.inf
+    for m in range(corners.values.shape[0]):
+        for e in range(corners.values.shape[1]):
+            cone, ball = corners.cone[m], corners.ball[e]
+            rounding = _SLACK * (corners.sizes[m, e] + nu * (1.0 + abs(cone)) + mu * abs(ball))
+            least = min(least, corners.values[m, e] - nu * cone - mu * ball - rounding)
     return least
 
 
 @inner_kernel
-def side_to_split(cell, bends, nu, mu):
-    """Return the side whose halving takes most off the remainder."""
-    lean = math.sqrt(cell[3] ** 2 + cell[4] ** 2)
-    swing = math.sqrt(cell[8] ** 2 + cell[9] ** 2 + cell[10] ** 2)
-    by_axis = bends[0] + 2.0 * nu + (bends[1] * swing / lean if lean > 0.0 else 0.0)
-    by_offset = bends[2] + 2.0 * mu + (bends[1] * lean / swing if swing > 0.0 else 0.0)
-    side, most = np.int64(0), -1.0
-    for i in range(5):
-        at = 3 + i if i < 2 else 6 + i
-        weight = (by_axis if i < 2 else by_offset) * cell[at] * cell[at]
+def side_to_split(cell, by_axis, by_offset):
+    """Return the side whose halving takes most off a remainder of such curvatures."""
+    side, most = 0, -1.0
+    for i in range(_SIDES):
+        weight = by_axis * cell.x_half[1 + i] ** 2 if i < 2 else by_offset * cell.d_half[i - 2] ** 2
         if weight > most:
-            most, side = weight, at
+            side, most = i, weight
     return side
 
 
-@inner_heap_kernel
-def holds(ratio, errors, level, cell, tolerance, values, sizes, cone, ball, most_across):
+@inner_kernel
+def holds(ratio, errors, level, cell, tolerance, corners):
     """Return (whether the ratio is at least the level all over a cell, the side to split otherwise)."""
-    bends, gradient = np.zeros(3), np.empty(5)
-    cosine, c = errors[1], ratio[1]
-    swing = math.sqrt(cell[8] * cell[8] + cell[9] * cell[9] + cell[10] * cell[10])
-    distance = distance_from(ratio[2], cell)
-    if not distance > swing:
-        c = 0.0  # the signal, which has no bound there, is left out
-    clear = evaluate_corners(
-        ratio, c, errors, level, cell, tolerance, values, sizes, cone, ball, most_across
-    ) and curvatures(ratio, c, level, cell, most_across, bends)
-    if not clear:
-        bends[0] = distance * distance
-        bends[2] = 1.0
-        return False, side_to_split(cell, bends, 0.0, 0.0)
-    slopes(values, cell, gradient)
-    nu, mu = multipliers(errors, cell, gradient)
-    lean = cell[3] ** 2 + cell[4] ** 2
-    swing = cell[8] ** 2 + cell[9] ** 2 + cell[10] ** 2
-    rest = 0.5 * (bends[0] * lean + 2.0 * bends[1] * math.sqrt(lean * swing) + bends[2] * swing)
-    rest *= 1.0 + _SLACK
+    lean, swing = norm(cell.x_half), norm(cell.d_half)
+    distance = norm(minus(ratio.node, cell.d))
+    # the signal, which has no bound where the drone may be at the node, is left out there
+    weight = ratio.weight if distance > swing else 0.0
+    a = math.inf
+    if evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
+        a, b, c = curvatures(ratio, weight, level, cell, corners.across)
+    if not a < math.inf:
+        return False, side_to_split(cell, distance**2, 1.0)
+    nu, mu = multipliers(errors, cell, corners.values)
+    rest = 0.5 * (a * lean**2 + 2.0 * b * lean * swing + c * swing**2)
     for trial in range(4):
-        one = nu if trial & 1 else 0.0
-        two = mu if trial & 2 else 0.0
-        bound = least_corner(values, sizes, cone, ball, one, two)
-        if bound - rest - (one * cosine * cosine * lean + two * swing) * (1.0 + _SLACK) >= 0.0:
-            return True, np.int64(0)
-    return False, side_to_split(cell, bends, nu, mu)
+        of_cone, of_ball = nu if trial & 1 else 0.0, mu if trial & 2 else 0.0
+        more = rest + of_cone * (errors.cosine * lean) ** 2 + of_ball * swing**2
+        if least_corner(corners, of_cone, of_ball) - more * (1.0 + _SLACK) >= 0.0:
+            return True, 0
+    by_axis = a + 2.0 * nu + (b * swing / lean if lean > 0.0 else 0.0)
+    return False, side_to_split(cell, by_axis, c + 2.0 * mu + (b * lean / swing if swing > 0.0 else 0.0))
 
 
 @inner_kernel
-def first_cells(errors, stack):
+def first_cells(errors, cells):
     """Fill the cells that cover the cone and the ball of offsets; return how many."""
-    cosine, sine, reach = errors[1:]
-    faces = np.int64(3 if sine > 0.999 * cosine else 1)
+    faces = 3 if errors.sine > 0.999 * errors.cosine else 1
     for face in range(faces):
-        half = min(1.0, 1.001 * sine / cosine) if face == 0 and cosine > 0.0 else 1.0
-        for i in range(_COLUMNS):
-            stack[face, i] = 0.0
-        stack[face, 0] = face
-        for i in range(2):
-            stack[face, 3 + i] = half
-        for i in range(3):
-            stack[face, 8 + i] = reach * (1.0 + _SLACK)
+        half = 1.0
+        if face == 0 and errors.cosine > 0.0:
+            half = min(1.0, 1.001 * errors.sine / errors.cosine)
+        cells[face, 0] = face
+        for i in range(_SIDES):
+            cells[face, _CENTRE + i] = 0.0
+            cells[face, _HALF + i] = half if i < 2 else errors.reach * (1.0 + _SLACK)
     return faces
 
 
-@inner_heap_kernel
-def bound_below(ratio, errors, worst, accuracy, most, y, offset):
-    """Return (lower bound on the ratio over all errors, least ratio found, cells examined).
-
-    Args:
-        ratio: the ratio, see ``worst_case``.
-        errors: what may be wrong.
-        worst: the least ratio found so far, positive.
-        accuracy: the bound aimed at is ``worst (1 - accuracy)``.
-        most: cells after which the level is halved, so that it ends.
-        y: in and out, (3,): the actual axis that gives the least ratio found.
-        offset: in and out, (3,): its offset.
-    """
-    sine, reach = errors[2:]
-    n_links = ratio[3].shape[0]
-    values = np.empty((np.int64(4 if sine > 0.0 else 1), np.int64(8 if reach > 0.0 else 1)))
-    sizes = np.empty(values.shape)
-    cone, ball, most_across = np.empty(values.shape[0]), np.empty(values.shape[1]), np.empty(n_links)
-    stack, cell = np.empty((_DEPTH, _COLUMNS)), np.empty(_COLUMNS)
-    places, trial, shift = np.empty((n_links, 3)), np.empty(3), np.empty(3)
-    level, scale, short = worst * (1.0 - accuracy), 1.0, accuracy
-    top, cells = first_cells(errors, stack), np.int64(0)
-    while top > 0 and level > 0.0:
-        top -= 1
-        for i in range(_COLUMNS):
-            cell[i] = stack[top, i]
-        if empty_of_errors(errors, cell):
-            continue
-        cells += 1
-        proved, side = holds(
-            ratio, errors, level, cell, 0.2 * accuracy, values, sizes, cone, ball, most_across
-        )
-        if proved:
-            continue
-        axis_at(errors, np.int64(cell[0]), cell[1], cell[2], trial)
-        for i in range(3):
-            shift[i] = cell[5 + i]
-        into_cone(errors, trial)
-        into_ball(reach, shift)
-        if better(ratio, errors, worst, trial, shift, places):
-            worst = descend(ratio, errors, trial, shift, places)
-            level = min(level, scale * worst * (1.0 - accuracy))
-            for i in range(3):
-                y[i], offset[i] = trial[i], shift[i]
-        if not cell[side] > 0.0:  # nothing left to split: what is missing is precision
-            level -= short * level
-            short *= 2.0
-            top += 1
-            continue
-        if cells % most == 0 or top + 2 > _DEPTH:
-            scale *= 0.5
-            level *= 0.5
-        if top + 2 > _DEPTH:
-            level = 0.0
-            break
-        for i in range(_COLUMNS):
-            stack[top, i] = stack[top + 1, i] = cell[i]
-        half = 0.5 * cell[side]
-        middle = side - 2 if side < 5 else side - 3
-        stack[top, side] = stack[top + 1, side] = half * (1.0 + 1e-15)
-        stack[top, middle] -= half
-        stack[top + 1, middle] += half
-        top += 2
-    return max(0.0, level), worst, cells
-
-
-@inner_heap_kernel
-def better(ratio, errors, worst, y, offset, places):
-    """Return whether the ratio at an error is below the worst found."""
-    slope_y, slope_d = np.empty(3), np.empty(3)
-    return ratio_at(ratio, y, offset, places, slope_y, slope_d) < worst * (1.0 - 1e-9)
+@inner_kernel
+def split(cells, i, side):
+    """Put the halves of cell i in its place and behind it."""
+    half = 0.5 * cells[i, _HALF + side]
+    cells[i, _HALF + side] = half * (1.0 + 1e-15)
+    for column in range(_COLUMNS):
+        cells[i + 1, column] = cells[i, column]
+    cells[i, _CENTRE + side] -= half
+    cells[i + 1, _CENTRE + side] += half
 
 
 @heap_kernel
@@ -353,18 +280,48 @@ def worst_case(ratio, errors, accuracy, most, y, offset, places):
     """Return (lower bound on the ratio over all errors, least ratio found, cells examined).
 
     Args:
-        ratio: the ratio, see the module ``worst_case``.
+        ratio: the ratio.
         errors: what may be wrong.
         accuracy: the bound aimed at is ``least found (1 - accuracy)``; 1 or more asks for no bound.
         most: cells after which the level is halved, so that it ends.
         y: output, (3,): the actual axis of the least ratio found, of unit length.
         offset: output, (3,): its offset of the position.
-        places: output, (K, 3): the jammers' places from the actual position.
+        places: output, (n, 3): the jammers' places from the actual position.
     """
-    worst = worst_found(ratio, errors, y, offset)
-    lower, cells = 0.0, np.int64(0)
-    if worst > 0.0 and accuracy < 1.0:
-        lower, worst, cells = bound_below(ratio, errors, worst, accuracy, most, y, offset)
-    slope_y, slope_d = np.empty(3), np.empty(3)
-    value = ratio_at(ratio, y, offset, places, slope_y, slope_d)
-    return lower, min(worst, value), cells
+    worst, at_y, at_offset = worst_found(ratio, errors, places)
+    n_axes, n_offsets = 4 if errors.sine > 0.0 else 1, 8 if errors.reach > 0.0 else 1
+    table = np.empty((2, n_axes, n_offsets))
+    across = np.empty(ratio.shares.shape[0])
+    corners = Corners(table[0], table[1], np.empty(n_axes), np.empty(n_offsets), across)
+    cells = np.empty((_DEPTH, _COLUMNS))
+    level, scale, short, examined = worst * max(0.0, 1.0 - accuracy), 1.0, accuracy, 0
+    top = first_cells(errors, cells)
+    while top > 0 and level > 0.0:
+        top -= 1
+        cell = cell_of(cells, top)
+        if empty_of_errors(errors, cell):
+            continue
+        examined += 1
+        proved, side = holds(ratio, errors, level, cell, 0.2 * accuracy, corners)
+        if proved:
+            continue
+        centre = into_cone(errors, axis_at(errors, cell.face, cell.x)), into_ball(errors.reach, cell.d)
+        if ratio_at(ratio, centre[0], centre[1], places)[0] < worst * (1.0 - _BETTER):
+            worst, at_y, at_offset = descend(ratio, errors, centre[0], centre[1], places)
+            level = min(level, scale * worst * (1.0 - accuracy))
+        if not cells[top, _HALF + side] > 0.0:  # nothing left to split: what is missing is precision
+            level -= short * level
+            short *= 2.0
+            top += 1
+            continue
+        if examined % most == 0:
+            scale *= 0.5
+            level *= 0.5
+        if top + 2 > _DEPTH:
+            level = 0.0
+            break
+        split(cells, top, side)
+        top += 2
+    store(at_y, y)
+    store(at_offset, offset)
+    return max(0.0, level), min(worst, ratio_at(ratio, at_y, at_offset, places)[0]), examined

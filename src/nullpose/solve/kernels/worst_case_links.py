@@ -1,324 +1,273 @@
-"""The strongest link that a point known only up to a set can have: closed form for a ball.
+"""The strongest link that a point known only up to a set can have: lemmas 1 to 3 of docs/robust.md.
 
 The link ``|y x q|^2 / |q|^4`` of a point at q is ``|y x v|^2`` with ``v = q / |q|^2``: the squared distance
-of the inverted point from the line of the axis. Inversion takes the ball of radius rho about q to the ball of
-radius ``rho / (|q|^2 - rho^2)`` about ``q / (|q|^2 - rho^2)``. Proofs: docs/robust.md.
+of the inverted point from the line of the axis (lemma 1).
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.vectors import (
+    along,
+    combination,
+    components,
+    cross,
+    dot,
+    norm,
+    perpendicular,
+    row,
+    rows,
+    scaled,
+    times,
+    unit,
+)
 
-__all__ = ["ROUND", "across", "clearance", "loudest", "loudest_ball", "loudest_ellipsoid"]
+__all__ = ["ROUND", "Sets", "clearance", "root_link", "strongest_link"]
 
 ROUND = 4e-15  # of a cross product of two vectors, relative to the product of their lengths
+_HAIR = 1e-13  # of a bound: what its few operations may lose
 _ARCS = 8
 _MOST_ARCS = 64
+_NARROWEST = 1e-4  # arc that is still halved, radians
 _ITERATIONS = 40
 _QUICK = 12
 _CLIMB = 6
+_ORIGIN = (0.0, 0.0, 0.0)
+
+FloatArray = NDArray[np.float64]
 
 
-@inner_kernel
-def across(y, q):
-    """Return ``|y x q|``."""
-    a = y[1] * q[2] - y[2] * q[1]
-    b = y[2] * q[0] - y[0] * q[2]
-    c = y[0] * q[1] - y[1] * q[0]
-    return math.sqrt(a * a + b * b + c * c)
+class Sets(NamedTuple):
+    """The sets that points are known up to, about a centre each: balls and ellipsoids.
 
-
-@inner_kernel
-def loudest_ball(y, q, radius, point):
-    """Return the largest ``|y x q'| / |q'|^2`` over the ball of a radius about q, y a unit vector.
-
-    Fills the place where it is attained. Infinite if the ball reaches the origin.
+    Where all are balls, the axes are None, and what ellipsoids need is not even compiled.
     """
-    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
-    clear = square - radius * radius
+
+    radii: FloatArray  # (n,) of a ball; negative for an ellipsoid
+    axes: FloatArray | None  # (n, 3, 3) an ellipsoid's axes, as rows
+    semi: FloatArray | None  # (n, 3) and its half lengths
+
+
+class Touching(NamedTuple):
+    """What the point of an ellipsoid farthest along a normal says about lemma 3's support function h."""
+
+    attained: float  # ``w.v`` there: h is not below
+    upper: float  # and not above
+    x: tuple[float, float, float]  # the point ``q + semi x``
+    normal: tuple[float, float, float]  # of the level of ``w.v`` there
+
+
+@inner_kernel
+def root_link(y, q):
+    """Return ``|y x q| / |q|^2``, the square root of a link."""
+    return norm(cross(y, q)) / dot(q, q)
+
+
+@inner_kernel
+def strongest_in_ball(y, q, radius):
+    """Return lemma 2, the largest root link over a ball about q and where it is attained.
+
+    Infinite if the ball reaches the origin.
+    """
+    clear = dot(q, q) - radius * radius
     if not clear > 0.0:
-        for i in range(3):
-            point[i] = 0.0
-        return math.inf
-    along = y[0] * q[0] + y[1] * q[1] + y[2] * q[2]
-    side = 0.0
-    for i in range(3):
-        point[i] = q[i] - along * y[i]
-        side += point[i] * point[i]
-    side = math.sqrt(side)
-    if not side > 1e-12 * math.sqrt(square):  # the axis points at the centre: any direction across it
-        least = 0
-        for i in range(1, 3):
-            if abs(y[i]) < abs(y[least]):
-                least = i
-        i, j = (least + 1) % 3, (least + 2) % 3
-        side = math.sqrt(y[i] * y[i] + y[j] * y[j])
-        point[least], point[i], point[j] = 0.0, y[j], -y[i]
-    norm = 0.0
-    for i in range(3):
-        point[i] = (q[i] + radius * point[i] / side) / clear
-        norm += point[i] * point[i]
-    for i in range(3):
-        point[i] /= norm
-    return (across(y, q) + radius) / clear
+        return math.inf, _ORIGIN
+    side = along(q, -dot(q, y), y)
+    # where the axis points at the centre any direction across it will do
+    side = unit(side) if norm(side) > 1e-12 * norm(q) else perpendicular(y)
+    inverted = scaled(1.0 / clear, along(q, radius, side))
+    return (norm(cross(y, q)) + radius) / clear, scaled(1.0 / dot(inverted, inverted), inverted)
 
 
 @inner_kernel
-def touching(w, q, semi, normal, x):
-    """Return (s, an upper bound on the largest s) where an ellipsoid is farthest along a normal.
-
-    ``s = (w.q') / |q'|^2`` at ``q' = q + semi x``; fills x. The ellipsoid lies in the half-space that touches
-    it there, which inverted is a ball. Overwrites the normal with that of the level of s.
-    """
-    reach = length = dot = away = size = 0.0
-    for i in range(3):
-        reach += (semi[i] * normal[i]) ** 2
-        length += normal[i] * normal[i]
-        dot += w[i] * normal[i]
-        away -= normal[i] * q[i]
-        size += q[i] * q[i]
-    reach, length = math.sqrt(reach), math.sqrt(length)
-    # |n| - w.n without cancellation
-    wedge = length - dot
-    if dot > 0.0:
-        a = w[1] * normal[2] - w[2] * normal[1]
-        b = w[2] * normal[0] - w[0] * normal[2]
-        c = w[0] * normal[1] - w[1] * normal[0]
-        wedge = (math.sqrt(a * a + b * b + c * c) + ROUND * length) ** 2 / (length + dot)
-    away -= reach + ROUND * (length * math.sqrt(size) + reach)
-    s = square = 0.0
-    for i in range(3):
-        x[i] = semi[i] * normal[i] / reach
-        at = q[i] + semi[i] * x[i]
-        s += w[i] * at
-        square += at * at
-    s /= square
-    for i in range(3):
-        normal[i] = w[i] - 2.0 * s * (q[i] + semi[i] * x[i])
-    return s, (wedge / (2.0 * away) * (1.0 + 1e-13) if away > 0.0 else math.inf)
+def touching(w, q, semi, normal):
+    """Return lemma 3 (2): what the point of an ellipsoid that is farthest along a normal says about h(w)."""
+    spread = times(semi, normal)
+    reach, length, ahead = norm(spread), norm(normal), dot(w, normal)
+    wedge = length - ahead  # without cancellation:
+    if ahead > 0.0:
+        wedge = (norm(cross(w, normal)) + ROUND * length) ** 2 / (length + ahead)
+    delta = -dot(normal, q) - reach - ROUND * (length * norm(q) + reach)
+    x = scaled(1.0 / reach, spread)
+    place = along(q, 1.0, times(semi, x))
+    attained = dot(w, place) / dot(place, place)
+    upper = wedge / (2.0 * delta) * (1.0 + _HAIR) if delta > 0.0 else math.inf
+    return Touching(attained, upper, x, along(w, -2.0 * attained, place))
 
 
 @inner_kernel
-def support(w, q, semi, tolerance, normal, x):
-    """Return (s, rigorous upper bound on it) for s the largest ``(w.q') / |q'|^2`` over an ellipsoid.
+def support(w, q, semi, tolerance):
+    """Return (attained, upper bound, x) of h(w), w a unit vector, for the ellipsoid ``q + semi x``.
 
-    ``q' = q + semi x`` with ``|x| <= 1``, in the frame of the ellipsoid's axes; w a unit vector. The gradient
-    of the quotient is along ``w - 2 s q'``: the touching point moves to where that is the normal, which
-    settles at once for a small set; Dinkelbach's method, a trust region problem in each step, for a large
-    one.
+    The touching point moves to where the gradient is the normal, which settles at once for a small set;
+    Dinkelbach's method, a trust region problem in each step, for a large one.
     """
-    ahead = reach = 0.0
-    for i in range(3):
-        ahead += w[i] * q[i]
-        reach += (semi[i] * w[i]) ** 2
-        normal[i] = w[i]
-    if not ahead + math.sqrt(reach) > 0.0:
-        return 0.0, ROUND * math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
-    s, upper = touching(w, q, semi, normal, x)
+    if not dot(w, q) + norm(times(semi, w)) > 0.0:
+        return 0.0, ROUND * norm(q), _ORIGIN
+    at = first = touching(w, q, semi, w)
     for _ in range(_QUICK):
-        if upper <= s * (1.0 + tolerance):
-            return s, max(s, upper)
-        s, upper = touching(w, q, semi, normal, x)
-    for i in range(3):
-        normal[i] = w[i]
-    s, _ = touching(w, q, semi, normal, x)
+        if at.upper <= at.attained * (1.0 + tolerance):
+            return at.attained, max(at.attained, at.upper), at.x
+        at = touching(w, q, semi, at.normal)
+    best, normal = first.attained, first.normal
     for _ in range(_ITERATIONS):
-        sphere_step(w, q, semi, s, x)
-        dot = square = 0.0
-        for i in range(3):
-            at = q[i] + semi[i] * x[i]
-            dot += w[i] * at
-            square += at * at
-            normal[i] = w[i] - 2.0 * dot / square * at
-        done = not dot / square > s * (1.0 + 1e-14)
-        s = max(s, dot / square)
-        if done:
+        place = along(q, 1.0, times(semi, sphere_step(w, q, semi, best)))
+        new = dot(w, place) / dot(place, place)
+        normal = along(w, -2.0 * max(best, new), place)
+        if not new > best * (1.0 + 1e-14):
             break
-    for i in range(3):
-        normal[i] = w[i] - 2.0 * s * (q[i] + semi[i] * x[i])
-    s, upper = touching(w, q, semi, normal, x)
-    return s, max(s, upper)
+        best = new
+    at = touching(w, q, semi, normal)
+    return at.attained, max(at.attained, at.upper), at.x
 
 
 @inner_kernel
-def sphere_step(w, q, semi, s, x):
-    """Fill the x of the unit ball with the largest ``w.q' - s |q'|^2``, ``q' = q + semi x``."""
+def sphere_step(w, q, semi, s):
+    """Return the x of the unit ball with the largest ``w.q' - s |q'|^2``, ``q' = q + semi x``."""
+    slope, bend = times(semi, along(scaled(0.5, w), -s, q)), scaled(s, times(semi, semi))
     shift = 0.0
     for i in range(3):
-        x[i] = semi[i] * (0.5 * w[i] - s * q[i])
-        shift = max(shift, abs(x[i]) - s * semi[i] * semi[i])
+        shift = max(shift, abs(slope[i]) - bend[i])
     for _ in range(_ITERATIONS):
-        norm = slope = 0.0
+        square = change = 0.0
         for i in range(3):
-            d = s * semi[i] * semi[i] + shift
-            if d > 0.0:
-                norm += (x[i] / d) ** 2
-                slope += (x[i] / d) ** 2 / d
-        if not norm > 1.0 + 1e-15:
+            if bend[i] + shift > 0.0:
+                part = (slope[i] / (bend[i] + shift)) ** 2
+                square += part
+                change += part / (bend[i] + shift)
+        if not square > 1.0 + 1e-15:
             break
-        step = norm * (math.sqrt(norm) - 1.0) / slope
+        step = square * (math.sqrt(square) - 1.0) / change
         shift += step
         if not step > 1e-16 * shift:
             break
-    norm = 0.0
-    for i in range(3):
-        d = s * semi[i] * semi[i] + shift
-        x[i] = x[i] / d if d > 0.0 else 0.0
-        norm += x[i] * x[i]
-    if norm > 1.0:
-        for i in range(3):
-            x[i] /= math.sqrt(norm)
+    x = (
+        slope[0] / (bend[0] + shift) if bend[0] + shift > 0.0 else 0.0,
+        slope[1] / (bend[1] + shift) if bend[1] + shift > 0.0 else 0.0,
+        slope[2] / (bend[2] + shift) if bend[2] + shift > 0.0 else 0.0,
+    )
+    return scaled(1.0 / max(1.0, norm(x)), x)
 
 
 @inner_kernel
 def arc_bound(low, high, width):
-    """Return a bound on a support function over an arc of unit vectors from its values at the ends.
+    """Return lemma 3 (3): what h does not exceed on an arc, by its values at the ends.
 
-    It is sublinear, so between the ends it lies under the sinusoid through both values.
+    It lies under the sinusoid through both.
     """
     c, s = math.cos(width), math.sin(width)
     if high - low * c > 0.0 and low - high * c > 0.0:
-        return math.sqrt(max(0.0, low * low + high * high - 2.0 * low * high * c)) / s * (1.0 + 1e-13)
+        return math.sqrt(max(0.0, low * low + high * high - 2.0 * low * high * c)) / s * (1.0 + _HAIR)
     return max(low, high)
 
 
-@inner_heap_kernel
-def loudest_ellipsoid(y, q, axes, semi, tolerance, point):
-    """Return (attained, upper bound) of the largest ``|y x q'| / |q'|^2`` over an ellipsoid about q.
+@inner_kernel
+def climb(y, q, semi, best, x):
+    """Return a local maximum of the root link over the ellipsoid, uphill from x, and its x."""
+    for _ in range(_CLIMB):
+        place = along(q, 1.0, times(semi, x))
+        w = unit(along(place, -dot(place, y), y))
+        at = touching(w, q, semi, along(w, -2.0 * best, place))
+        if not at.attained > best:
+            break
+        gain, best, x = at.attained - best, at.attained, at.x
+        if gain < 1e-12 * best:
+            break
+    return best, x
 
-    ``|y x q'|`` is the largest ``w.q'`` over the unit vectors w across the unit vector y: a support function
-    on a circle, bounded arc by arc until the bound is within the tolerance. Fills where it is attained.
+
+@inner_kernel
+def on_circle(y, angle):
+    """Return the unit vector across y at an angle."""
+    first = perpendicular(y)
+    return along(scaled(math.cos(angle), first), math.sin(angle), cross(y, first))
+
+
+@kernel
+def strongest_in_ellipsoid(y, q, frame, semi, tolerance):
+    """Return (attained, upper bound, place) of the largest root link over an ellipsoid about q.
+
+    By lemma 3 (1) it is the largest h(w) over the unit vectors w across y: a circle, bounded arc by arc until
+    the bound is within the tolerance.
     """
-    scratch = np.zeros((8, 3))
-    turned, centre, first, second = scratch[0], scratch[1], scratch[2], scratch[3]
-    w, x, normal, most = scratch[4], scratch[5], scratch[6], scratch[7]
-    square = along = 0.0
-    for i in range(3):
-        turned[i] = axes[0, i] * y[0] + axes[1, i] * y[1] + axes[2, i] * y[2]
-        centre[i] = axes[0, i] * q[0] + axes[1, i] * q[1] + axes[2, i] * q[2]
-        square += (centre[i] / semi[i]) ** 2
-        point[i] = 0.0
-    if not square > 1.0 + 1e-9:
-        return math.inf, math.inf
-    least = 0
-    for i in range(1, 3):
-        if abs(turned[i]) < abs(turned[least]):
-            least = i
-    i, j = (least + 1) % 3, (least + 2) % 3
-    along = math.sqrt(turned[i] * turned[i] + turned[j] * turned[j])
-    first[least], first[i], first[j] = 0.0, turned[j] / along, -turned[i] / along
-    second[0] = turned[1] * first[2] - turned[2] * first[1]
-    second[1] = turned[2] * first[0] - turned[0] * first[2]
-    second[2] = turned[0] * first[1] - turned[1] * first[0]
-    arcs = np.empty((4, _MOST_ARCS))
-    start, width, low, high = arcs[0], arcs[1], arcs[2], arcs[3]
+    y, q = components(frame, y), components(frame, q)
+    if not (q[0] / semi[0]) ** 2 + (q[1] / semi[1]) ** 2 + (q[2] / semi[2]) ** 2 > 1.0 + 1e-9:
+        return math.inf, math.inf, _ORIGIN
+    start, width = scratch(_MOST_ARCS), scratch(_MOST_ARCS)
+    low, high = scratch(_MOST_ARCS), scratch(_MOST_ARCS)
     best = upper = 0.0
+    most = _ORIGIN
     for a in range(_ARCS):
         start[a], width[a] = 2.0 * math.pi * a / _ARCS, 2.0 * math.pi / _ARCS
-        for m in range(3):
-            w[m] = math.cos(start[a]) * first[m] + math.sin(start[a]) * second[m]
-        s, low[a] = support(w, centre, semi, 0.2 * tolerance, normal, x)
+        s, low[a], x = support(on_circle(y, start[a]), q, semi, 0.2 * tolerance)
         high[(a - 1) % _ARCS] = low[a]
         if s > best:
-            best = s
-            for m in range(3):
-                most[m] = x[m]
-    best = climb(turned, centre, semi, best, w, normal, x, most)
-    top = np.int64(_ARCS)
+            best, most = s, x
+    best, most = climb(y, q, semi, best, most)
+    top = _ARCS
     while top > 0:
-        top -= 1
-        a = top
+        a = top = top - 1
         bound = arc_bound(low[a], high[a], width[a])
-        if bound <= best * (1.0 + tolerance) or width[a] < 1e-4 or top + 2 > _MOST_ARCS:
+        if bound <= best * (1.0 + tolerance) or width[a] < _NARROWEST or top + 2 > _MOST_ARCS:
             upper = max(upper, bound)
             continue
         half = 0.5 * width[a]
-        for m in range(3):
-            w[m] = math.cos(start[a] + half) * first[m] + math.sin(start[a] + half) * second[m]
-        s, between = support(w, centre, semi, 0.2 * tolerance, normal, x)
+        s, between, x = support(on_circle(y, start[a] + half), q, semi, 0.2 * tolerance)
         if s > best * (1.0 + 1e-9):
-            for m in range(3):
-                most[m] = x[m]
-            best = climb(turned, centre, semi, s, w, normal, x, most)
+            best, most = climb(y, q, semi, s, x)
         start[a + 1], width[a + 1], low[a + 1], high[a + 1] = start[a] + half, half, between, high[a]
         width[a], high[a] = half, between
         top += 2
-    square = 0.0
-    for m in range(3):
-        w[m] = centre[m] + semi[m] * most[m]
-        square += w[m] * w[m]
-        for i in range(3):
-            point[i] += axes[i, m] * w[m]
-    best = across(turned, w) / square
+    place = along(q, 1.0, times(semi, most))
     # w is across y up to rounding only, and no point inverted is longer than 1 over the least distance
-    return best, upper * (1.0 + 1e-13) + ROUND / least_distance(centre, semi)
+    upper = upper * (1.0 + _HAIR) + ROUND / least_distance(q, semi)
+    return root_link(y, place), upper, combination(frame, place)
 
 
 @inner_kernel
 def least_distance(q, semi):
     """Return a lower bound on the distance from the origin to an ellipsoid about q; negative if inside."""
-    size = outer = form = normal = 0.0
-    for i in range(3):
-        size += q[i] * q[i]
-        outer = max(outer, semi[i])
-        form += (q[i] / semi[i]) * (q[i] / semi[i])
-        normal += (q[i] / (semi[i] * semi[i])) * (q[i] / (semi[i] * semi[i]))
+    size = (q[0] / semi[0], q[1] / semi[1], q[2] / semi[2])
+    normal = norm((size[0] / semi[0], size[1] / semi[1], size[2] / semi[2]))
     # the tangent plane across the line to the centre, as the ellipsoid's form sees it
-    return 0.999 * max(math.sqrt(size) - outer, (form - math.sqrt(form)) / math.sqrt(normal))
-
-
-@heap_kernel
-def clearance(radius, axes, semi, j, q):
-    """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
-    if axes is not None:  # noqa: SIM102 - alone, so that the branch is left out of the types without axes
-        if radius < 0.0:
-            centre = np.empty(3)
-            for i in range(3):
-                centre[i] = axes[j, 0, i] * q[0] + axes[j, 1, i] * q[1] + axes[j, 2, i] * q[2]
-            return least_distance(centre, semi[j])
-    return math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) - radius
-
-
-@kernel
-def loudest(radius, axes, semi, j, y, q, tolerance, point):
-    """Return (attained, upper bound) of the square root of the strongest link of set j about q.
-
-    Where there are no ellipsoids their axes are None, and the branch for them is not even compiled.
-    """
-    if axes is not None:  # noqa: SIM102 - alone, so that the branch is left out of the types without axes
-        if radius < 0.0:
-            return loudest_ellipsoid(y, q, axes[j], semi[j], tolerance, point)
-    value = loudest_ball(y, q, radius, point)
-    return value, value
+    return 0.999 * max(
+        norm(q) - max(semi[0], max(semi[1], semi[2])), norm(size) * (norm(size) - 1.0) / normal
+    )
 
 
 @inner_kernel
-def climb(y, q, semi, best, w, normal, new, x):
-    """Return the link's square root at a local maximum over the ellipsoid, uphill from x, overwritten."""
-    for _ in range(_CLIMB):
-        along = norm = 0.0
-        for i in range(3):
-            w[i] = q[i] + semi[i] * x[i]
-            along += w[i] * y[i]
-        for i in range(3):
-            w[i] -= along * y[i]
-            norm += w[i] * w[i]
-        norm = math.sqrt(norm)
-        for i in range(3):
-            w[i] /= norm
-        for i in range(3):
-            normal[i] = w[i] - 2.0 * best * (q[i] + semi[i] * x[i])
-        s, _ = touching(w, q, semi, normal, new)
-        if not s > best:
-            break
-        gain = s - best
-        best = s
-        for i in range(3):
-            x[i] = new[i]
-        if gain < 1e-12 * best:
-            break
-    return best
+def clearance_of(radius, axes, semi, j, q):
+    """Return what ``clearance`` does; compiled without the branch where there are no axes."""
+    if axes is not None:  # noqa: SIM102
+        if radius < 0.0:
+            return least_distance(components(rows(axes[j]), q), row(semi, j))
+    return norm(q) - radius
+
+
+@inner_kernel
+def strongest_of(radius, axes, semi, j, y, q, tolerance):
+    """Return what ``strongest_link`` does; compiled without the branch where there are no axes."""
+    if axes is not None:  # noqa: SIM102
+        if radius < 0.0:
+            return strongest_in_ellipsoid(y, q, rows(axes[j]), row(semi, j), tolerance)
+    attained, place = strongest_in_ball(y, q, radius)
+    return attained, attained + ROUND * norm(q) / (dot(q, q) - radius * radius), place
+
+
+@kernel
+def clearance(sets, j, q):
+    """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
+    return clearance_of(sets.radii[j], sets.axes, sets.semi, j, q)
+
+
+@kernel
+def strongest_link(sets, j, y, q, tolerance):
+    """Return (attained, upper bound, place) of the largest root link of set j about q, y a unit vector."""
+    return strongest_of(sets.radii[j], sets.axes, sets.semi, j, y, q, tolerance)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,29 +83,32 @@ class Inner:
         return len(self.family.numerator_point)
 
     def _worst(self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float) -> Worst:
+        from nullpose.solve.kernels.worst_case import Errors, Ratio
         from nullpose.solve.kernels.worst_case_bound import worst_case
+        from nullpose.solve.kernels.worst_case_links import Sets
 
         family, n_nodes = self.family, len(self.scenario.nodes)
         group = family.denominator_of[ratio]
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
-        round_sets = bool(np.all(self.radii[points] >= 0.0))
-        numbers = (
-            float(family.numerator_isotropic[ratio] / family.denominator_isotropic[group]),
-            float(family.numerator_weight[ratio] / family.denominator_isotropic[group]),
-            family.points_m[family.numerator_point[ratio]] - p,
-            family.denominator_weight[entries] / family.denominator_isotropic[group],
-            family.points_m[points] - p,
-            self.radii[points],
-            None if round_sets else self.axes[points],
-            None if round_sets else self.semi[points],
+        noise = float(family.denominator_isotropic[group])
+        node_m = family.points_m[family.numerator_point[ratio]] - p
+        numbers = Ratio(
+            isotropic=float(family.numerator_isotropic[ratio]) / noise,
+            weight=float(family.numerator_weight[ratio]) / noise,
+            node=tuple(node_m.tolist()),
+            shares=family.denominator_weight[entries] / noise,
+            centres=family.points_m[points] - p,
+            sets=Sets(self.radii[points], self.axes[points], self.semi[points])
+            if np.any(self.radii < 0.0)
+            else Sets(self.radii[points], None, None),
         )
-        errors = (_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
-        if round_sets and self.angle_rad == self.reach_m == 0.0:
+        errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
+        if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
         lower, worst, cells = worst_case(numbers, errors, accuracy, _MOST_CELLS, y, offset, places)
-        case = self._case(u, y, offset, points, places - (numbers[4] - offset))
+        case = self._case(u, y, offset, points, places - (numbers.centres - offset))
         node = int(family.numerator_point[ratio])
         eavesdropper = int(points[0]) - n_nodes if self.scenario.objective == "secrecy-rate" else 0
         # a null on the node is exact in the case, not in its rounded evaluation
@@ -136,11 +140,11 @@ class Inner:
         )
 
 
-def _frame(u: FloatArray) -> FloatArray:
-    """Return the axis and two unit vectors across it, as rows."""
+def _frame(u: FloatArray) -> Any:
+    """Return the axis and two unit vectors across it."""
     first = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
     first /= np.linalg.norm(first)
-    return np.array([u, first, np.cross(u, first)])
+    return tuple(tuple(each.tolist()) for each in (u, first, np.cross(u, first)))
 
 
 def _shapes(sets_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -150,4 +154,4 @@ def _shapes(sets_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     is_ball = np.all(semi >= largest * (1.0 - _ROUND_SET), axis=1)
     grown = largest[:, 0] * (1.0 + 4.0 * np.finfo(float).eps)  # what rounding may have taken off
     semi = np.maximum(semi, _FLATTEST * largest) * (1.0 + 4.0 * np.finfo(float).eps)
-    return np.where(is_ball, grown, -1.0), np.ascontiguousarray(axes), semi
+    return np.where(is_ball, grown, -1.0), np.ascontiguousarray(np.swapaxes(axes, 1, 2)), semi

@@ -14,11 +14,12 @@ from pydantic_core import CoreSchema, core_schema
 from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
-from nullpose.scenario.choice import Choice
 from nullpose.scenario.faults import Place, rejection
 from nullpose.scenario.names import Label
+from nullpose.scenario.rules import Choice, Count, Quantity
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import AttitudeDegrees, Count, Position, Quantity
+from nullpose.scenario.units import AttitudeDegrees, Position
+from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described, listed, nearest
 from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
@@ -145,14 +146,9 @@ class StudyCase(Section):
 
     header: ClassVar[str] = "a case, in a table of its own headed [[cases]]"
     letter: ClassVar[str] = "C"
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("airframe", "array"),
-        ("robust", "array"),
-        ("robust", "pose"),
-        ("array", "pose"),
-        ("scheme", "robust"),
-        ("scheme", "array"),
-        ("scheme", "pose"),
+    ways: ClassVar[tuple[Ways, ...]] = (
+        at_most_one("airframe", "array"),
+        at_most_one("scheme", "robust", "array", "pose"),
     )
 
     name: Label = Field(
@@ -201,14 +197,11 @@ class StudyCase(Section):
         """Returns the raw table without what says no more than leaving it out would."""
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        yield from super().cross_faults(data)
-        if data.get("pose") is not None:
-            for key in ("certify", "gap", "time_limit_s"):
-                if data.get(key) is not None:
-                    yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the fault that something is asked of a proof where there is none."""
+        for key in ("certify", "gap", "time_limit_s"):
+            if self.pose is not None and getattr(self, key) is not None:
+                yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
 
     @property
     def is_best_pose(self) -> bool:

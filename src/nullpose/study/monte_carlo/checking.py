@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Scenario
 from nullpose.scenario.faults import path_of
 from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import StudyCase
-from nullpose.study.monte_carlo.draw import Draws, draw_scene
+from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["require_sound", "spec_faults"]
@@ -38,79 +36,61 @@ def spec_faults(spec: StudySpec) -> list[Fault]:
     Args:
         spec: the study.
     """
-    index, faults = _drawable(spec)
-    if faults:
-        return faults
-    found = [fault for path, values in spec.sweep for fault in _sweep_faults(spec, index, path, values)]
-    if found:
-        return found
-    ends = [_at(spec, index, point) for point in {0, len(spec.points) - 1}]
-    return [
-        Fault(path_of(("cases", place)), message)
-        for place, case in enumerate(spec.cases)
-        for message in _case_faults(case, ends)
-    ]
-
-
-def _drawable(spec: StudySpec) -> tuple[int, list[Fault]]:
-    """Return a scene that can be drawn, or why the first cannot."""
-    faults: list[Fault] = []
+    draws, index, faults = Draws(spec), 0, list[Fault]()
     for index in range(min(_TRIED_SCENES, spec.n_scenes)):
-        try:
-            draw_scene(spec, index)
-        except ScenarioError as error:
-            faults = faults or [Fault(f"scene {index}: {each.path}", each.message) for each in error.faults]
-        else:
-            return index, []
-    return 0, faults
+        unsound = _faults_at(draws, index, None)
+        if not unsound:
+            faults = _sweep_faults(spec, index)
+            return faults or _cases_faults(spec, [draws.at(index, 0), draws.at(index, -1)])
+        faults = faults or [Fault(f"scene {index}: {each.path}", each.message) for each in unsound]
+    return faults
 
 
-def _sweep_faults(spec: StudySpec, index: int, path: str, values: tuple[float, ...]) -> Iterator[Fault]:
-    """Yield the faults that the values of one path lead to, each once."""
-    told: set[str] = set()
-    step = max(1, len(values) // _TRIED_VALUES)
-    for value in (*values[::step], values[-1]):
-        one = spec.model_copy(update={"sweep": ((path, (value,)),)})
-        for fault in _faults_of(lambda one=one: _at(one, index, 0)):  # type: ignore[misc]
-            if fault.path not in told:
-                told.add(fault.path)
-                yield Fault(path_of(("sweep", path)), f"{fault.message} (at {value:g})")
-
-
-def _faults_of(attempt: Callable[[], object]) -> tuple[Fault, ...]:
+def _faults_at(draws: Draws, index: int, point: int | None) -> tuple[Fault, ...]:
     try:
-        attempt()
+        draws.base(index) if point is None else draws.at(index, point)
     except ScenarioError as error:
         return error.faults
     return ()
 
 
-def _at(spec: StudySpec, index: int, point: int) -> Scenario:
-    return Draws(spec).at(index, point)
+def _sweep_faults(spec: StudySpec, index: int) -> list[Fault]:
+    """Return the faults that the values of each path lead to, each once."""
+    told: dict[tuple[str, str], Fault] = {}
+    for path, values in spec.sweep:
+        step = max(1, len(values) // _TRIED_VALUES)
+        tried = (*values[::step], values[-1])
+        draws = Draws(spec.model_copy(update={"sweep": ((path, tuple(dict.fromkeys(tried))),)}))
+        for point, value in enumerate(dict.fromkeys(tried)):
+            for fault in _faults_at(draws, index, point):
+                message = f"{fault.message} (at {value:g})"
+                told.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
+    return list(told.values())
 
 
-def _case_faults(case: StudyCase, ends: list[Scenario]) -> Iterator[str]:
-    """Yield why a case has no meaning in the scenes at the ends of the sweep."""
-    for scene in ends:
-        try:
-            reason = _meaningless(case, case.on(scene))
-        except (ScenarioError, UsageError) as error:
-            reason = str(error)
-        if reason:
-            yield reason
-            return
+def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
+    """Return why cases have no meaning in some scenes."""
+    reasons = {
+        place: next(filter(None, (_meaningless(case, scene) for scene in scenes)), "")
+        for place, case in enumerate(spec.cases)
+    }
+    return [Fault(path_of(("cases", place)), reason) for place, reason in reasons.items() if reason]
 
 
 def _meaningless(case: StudyCase, scene: Scenario) -> str:
-    if case.robust:
-        if not scene.is_uncertain:
-            return (
-                "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
-                "receiver.attitude_error_deg or receiver.position_error_m to the scene"
-            )
+    try:
+        vehicle = case.on(scene)
+    except (ScenarioError, UsageError) as error:
+        return str(error)
+    if case.robust and not vehicle.is_uncertain:
+        return (
+            "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
+            "receiver.attitude_error_deg or receiver.position_error_m to the scene"
+        )
+    if case.array is not None and vehicle.objective_record.transmits:
+        return "an array is for a drone that receives, not for this objective"
+    if case.robust or case.array is not None or case.pose is not None:
         return ""
-    if case.array is not None:
-        return "" if scene.objective == "min-sinr" else "an array is for hearing nodes (min-sinr) only"
     scheme = case.scheme or Scheme.OPTIMUM
-    reason = None if case.pose is not None else scheme.not_applicable(scene)
+    reason = scheme.not_applicable(vehicle)
     return f"scheme {scheme.value}: {reason}; try another scheme" if reason else ""

@@ -2,91 +2,126 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from nullpose.errors import ScenarioError
+from nullpose.scenario import Scenario
 from nullpose.study.monte_carlo.draw import Draws
-from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, as_table
+from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, failed_rows
 from nullpose.study.monte_carlo.solving import reason_of, solved_row
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.together import Instance, solved_together
+from nullpose.study.monte_carlo.together import At, solved_together
 from nullpose.study.monte_carlo.versions import fingerprint
 
-__all__ = ["Done", "failed_rows", "joined", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
+__all__ = ["KILLED", "Done", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
+
+KILLED = "every worker that took this scene died; it may need more memory than they have"
+"""The reason of the rows of a scene that no worker survives."""
 
 _TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
 _CALIBRATED_S = 0.3  # so much work tells how long a scene takes
 _MOST_CALIBRATED = 1000
 
+# Below 10^15, which is above all counts that there are, and below what a float cannot hold.
+Count = Annotated[int, Field(ge=0, lt=10**15)]
 
-@dataclass(frozen=True, slots=True)
-class Done:
-    """The rows of some scenes.
+
+class Part(BaseModel):
+    """The rows of some scenes in a file, as the journal lists it.
 
     Args:
         first: the first scene.
         last: the last scene.
         rows: how many rows there are.
         failed: how many of them are failures.
-        seconds: how long the work took.
-        content: the rows as a Parquet file; empty if there are none.
+        seconds: how long a worker took for it.
+        size: the file's size in bytes.
+        sha256: the file's checksum.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    first: Count
+    last: Count
+    rows: Count
+    failed: Count
+    seconds: Annotated[float, Field(ge=0.0, lt=1e15)]
+    size: Count
+    sha256: str
+
+    @model_validator(mode="after")
+    def _is_in_order(self) -> Part:
+        if self.last < self.first:
+            raise ValueError("the last scene comes before the first")
+        return self
+
+    @property
+    def scenes(self) -> int:
+        """How many scenes it has."""
+        return self.last - self.first + 1
+
+    @property
+    def name(self) -> str:
+        """The file's name."""
+        return f"part-{self.first:09d}-{self.last:09d}.parquet"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Done:
+    """What a worker made of some scenes.
+
+    Args:
         fingerprint: which nullpose did it; none is done by another than the client's.
+        part: what there is; None if there is nothing.
+        content: the rows as a Parquet file.
         fault: what went wrong beyond a scene of its own; empty if nothing did.
     """
 
-    first: int
-    last: int
-    rows: int
-    failed: int
-    seconds: float
-    content: bytes
     fingerprint: str
+    part: Part | None = None
+    content: bytes = b""
     fault: str = ""
 
 
-def rows_of(spec: StudySpec, first: int, last: int) -> Iterator[Row]:
+def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()) -> Iterator[Row]:
     """Yield the rows of some scenes, by scene, combination of swept values and case.
 
     Args:
         spec: the study.
         first: the first scene.
         last: the last scene.
+        deadly: scenes among them that are not touched, since no worker survives them.
     """
-    draws = Draws(spec)
-    for start in range(first, last + 1, block := max(1, _TOGETHER // len(spec.points))):
-        instances: list[Instance] = []
-        faults: dict[tuple[int, int], str] = {}
-        indices = range(start, min(start + block, last + 1))
-        for index, point in product(indices, range(len(spec.points))):
-            try:
-                instances.append((index, point, draws.at(index, point)))
-            except ScenarioError as error:
-                faults[index, point] = reason_of(error)
-        scenes = {(index, point): scene for index, point, scene in instances}
-        rows = solved_together(spec, instances) if instances else {}
-        for at in product(indices, range(len(spec.points))):
-            if at in faults:
-                yield from failed_rows(spec, *at, faults[at])
+    draws, points = Draws(spec), range(len(spec.points))
+    block = max(1, _TOGETHER // len(points))
+    for start in range(first, last + 1, block):
+        places = list(product(range(start, min(start + block, last + 1)), points))
+        drawn = {at: KILLED if at[0] in deadly else _drawn(draws, at) for at in places}
+        scenes = {at: scene for at, scene in drawn.items() if not isinstance(scene, str)}
+        together = solved_together(spec, scenes)
+        for at in places:
+            if at not in scenes:
+                yield from failed_rows(spec, *at, str(drawn[at]))
                 continue
-            for place in range(len(spec.cases)):
-                yield rows.get((*at, place)) or solved_row(spec, scenes[at], *at, place)
+            for case in spec.cases:
+                yield together.get((*at, case.name)) or solved_row(spec, scenes[at], *at, case)
 
 
-def failed_rows(spec: StudySpec, index: int, point: int, reason: str) -> Iterator[Row]:
-    """Yield the rows of a scene at a combination of swept values of which nothing can be solved.
-
-    Args:
-        spec: the study.
-        index: the scene's number.
-        point: the combination's number.
-        reason: why.
-    """
-    for place in range(len(spec.cases)):
-        yield Row(scene=index, point=point, case=place, status=FAILED, reason=reason)
+def _drawn(draws: Draws, at: At) -> Scenario | str:
+    """Return a scene at a combination of swept values, or why there is none."""
+    try:
+        return draws.at(*at)
+    except ScenarioError as error:
+        return reason_of(error)
 
 
 def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: float) -> Done:
@@ -99,34 +134,20 @@ def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: flo
         last: the last scene.
         seconds: how long the work took.
     """
-    failed = sum(row.status == FAILED for row in rows)
-    content = as_parquet(as_table(spec, rows))
-    return Done(first, last, len(rows), failed, seconds, content, fingerprint())
-
-
-def joined(pieces: list[Done]) -> Done:
-    """Return parts that follow one another as one.
-
-    Args:
-        pieces: at least one, in order.
-    """
-    import io
-
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    return Done(
-        pieces[0].first,
-        pieces[-1].last,
-        sum(piece.rows for piece in pieces),
-        sum(piece.failed for piece in pieces),
-        sum(piece.seconds for piece in pieces),
-        as_parquet(pa.concat_tables([pq.read_table(io.BytesIO(piece.content)) for piece in pieces])),
-        pieces[0].fingerprint,
+    content = as_parquet(spec, rows)
+    part = Part(
+        first=first,
+        last=last,
+        rows=len(rows),
+        failed=sum(row["status"] == FAILED for row in rows),
+        seconds=seconds,
+        size=len(content),
+        sha256=hashlib.sha256(content).hexdigest(),
     )
+    return Done(fingerprint=fingerprint(), part=part, content=content)
 
 
-def solve_chunk(spec_json: str, expected: str, first: int, last: int) -> Done:
+def solve_chunk(spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()) -> Done:
     """Return the rows of some scenes; this is what is sent to a worker.
 
     It raises nothing: not every exception finds its way from one process to another.
@@ -136,16 +157,17 @@ def solve_chunk(spec_json: str, expected: str, first: int, last: int) -> Done:
         expected: the fingerprint of the client's nullpose.
         first: the first scene.
         last: the last scene.
+        deadly: scenes among them that no worker survives.
     """
     if fingerprint() != expected:
-        return Done(first, last, 0, 0, 0.0, b"", fingerprint())
+        return Done(fingerprint=fingerprint())
     began = time.perf_counter()
     try:
         spec = _spec(spec_json)
-        rows = list(rows_of(spec, first, last))
+        rows = list(rows_of(spec, first, last, deadly))
         return packed(spec, rows, first, last, time.perf_counter() - began)
     except Exception as error:
-        return Done(first, last, 0, 0, 0.0, b"", expected, fault=reason_of(error))
+        return Done(fingerprint=expected, fault=reason_of(error))
 
 
 def seconds_per_scene(spec_json: str) -> float:
@@ -154,14 +176,11 @@ def seconds_per_scene(spec_json: str) -> float:
     Args:
         spec_json: the study as JSON.
     """
-    spec = _spec(spec_json)
-    for _ in rows_of(spec, 0, 0):
-        pass
-    scenes, spent = 1, 0.0
+    spec, scenes = _spec(spec_json), 1
+    list(rows_of(spec, 0, 0))
     while True:
         began = time.perf_counter()
-        for _ in rows_of(spec, 0, scenes - 1):
-            pass
+        list(rows_of(spec, 0, scenes - 1))
         spent = time.perf_counter() - began
         if spent >= _CALIBRATED_S or 2 * scenes > min(spec.n_scenes, _MOST_CALIBRATED):
             return spent / scenes
@@ -170,6 +189,4 @@ def seconds_per_scene(spec_json: str) -> float:
 
 @lru_cache(maxsize=4)
 def _spec(spec_json: str) -> StudySpec:
-    import json
-
     return StudySpec.from_dict(json.loads(spec_json))

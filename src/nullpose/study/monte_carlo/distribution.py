@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from nullpose.scenario.faults import Place, as_error_details, collected, rejection
+from nullpose.scenario.faults import Place, collected, rejection
+from nullpose.scenario.rules import Quantity
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Quantity
-from nullpose.scenario.wording import described, listed, plain
+from nullpose.scenario.ways import Ways, exactly_one
+from nullpose.scenario.wording import described, plain
 
 __all__ = ["Distribution", "Drawn"]
 
@@ -61,6 +62,7 @@ class Distribution(Section):
     """
 
     header: ClassVar[str] = "a number, or a table such as { uniform = [0.5, 2.0] }"
+    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("fixed", "uniform", "log_uniform", "normal", "choice"),)
 
     fixed: Annotated[float, _NUMBER] | None = Field(
         default=None, description="The same for all; a number in place of the table means this.", examples=[1]
@@ -82,20 +84,13 @@ class Distribution(Section):
         default=None, description="One of these numbers, each as likely.", examples=[[0.1, 1.0, 10.0]]
     )
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        given = [key for key in cls.model_fields if data.get(key) is not None]
-        if len(given) > 1 or (not given and not set(data) - set(cls.model_fields)):
-            got = f"{' and '.join(given)} are given" if given else "none is given"
-            yield (), f"exactly one of {listed(cls.model_fields)} must be given, but {got}"
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the fault that the two numbers of a range are none."""
         for key in ("uniform", "log_uniform"):
-            ends = plain(data.get(key))
-            if not (isinstance(ends, list | tuple) and len(ends) == 2 and all(map(_is_number, ends))):
-                continue
-            if not ends[0] < ends[1]:
-                yield (key,), f"got [{ends[0]!r}, {ends[1]!r}], must be two numbers, the lower first"
-            elif key == "log_uniform" and ends[0] <= 0.0:
+            ends = getattr(self, key)
+            if ends is not None and not ends[0] < ends[1]:
+                yield (key,), f"got {list(ends)}, must be two numbers, the lower first"
+            elif ends is not None and key == "log_uniform" and ends[0] <= 0.0:
                 yield (key,), f"got a lower end of {ends[0]!r}, must be above 0, as its logarithm is taken"
 
     @property
@@ -128,10 +123,6 @@ class Distribution(Section):
         return np.asarray(low + (high - low) * shares)
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 @dataclass(frozen=True, slots=True)
 class Drawn:
     """A quantity that is fixed or drawn, as metadata of an annotated Distribution.
@@ -153,16 +144,14 @@ class Drawn:
                 f"a normal distribution falls below what is allowed, {self.quantity.allowed}; use uniform or "
                 "log_uniform, or for a power the key that ends in _dbm"
             )
-            raise collected("", [as_error_details(("normal",), message)])
+            raise collected("", [(("normal",), message)])
         if drawn.normal is not None and drawn.normal[1] < 0.0:
-            raise collected(
-                "", [as_error_details(("normal",), "the standard deviation is below 0; it must be 0 or more")]
-            )
+            raise collected("", [(("normal",), "the standard deviation is below 0; it must be 0 or more")])
         key = next(iter(drawn.to_dict()))
         wrong = [each for each in drawn.values if not self.quantity.low <= each <= self.quantity.high]
         if wrong:
             message = f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
-            raise collected("", [as_error_details((key,), message)])
+            raise collected("", [((key,), message)])
         return drawn
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

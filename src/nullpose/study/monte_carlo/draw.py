@@ -5,24 +5,28 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
-from nullpose.study.monte_carlo.scene import POINT_LISTS
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["MOST_DRAWS", "Draws", "draw_scene", "scene_at"]
+__all__ = ["MOST_DRAWS", "Draws", "draw_scene", "quantity_of", "scene_at"]
 
 FloatArray = NDArray[np.float64]
 
 MOST_DRAWS = 100
 """How often the points of one kind are drawn before their scene is given up."""
+
+_TRIED = 5  # scenes that tell what is maximised: one that cannot be drawn tells nothing
 
 # The streams of chance. Their numbers are part of what a seed means: never change one.
 _KINDS = {kind: number for number, kind in enumerate(POINT_LISTS)}
@@ -71,6 +75,20 @@ def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
     """
     known = _known("scene", index, spec.n_scenes), _known("point", point, len(spec.points))
     return Draws(spec).at(*known)
+
+
+def quantity_of(spec: StudySpec) -> Quantity:
+    """Return what a study makes as large as it can be: the margin, if the nodes of any scene have one.
+
+    Args:
+        spec: the study.
+    """
+    draws, found = Draws(spec), set[Quantity]()
+    for index in range(min(spec.n_scenes, max(spec.scene.size, _TRIED))):
+        with suppress(ScenarioError):  # a scene that cannot be drawn has rows that say so
+            found.add(Quantity.of(draws.at(index, 0)))
+    quantities = [one for record in RECORDS.values() for one in record.quantities]
+    return max(found or quantities[:1], key=quantities.index)
 
 
 def _known(noun: str, number: int, count: int) -> int:
@@ -153,8 +171,7 @@ def _of_point(
 
 def _replacing(points: Points, key: str, value: float) -> dict[str, object]:
     """Return the update that sets a key and drops the one that states the same in another unit."""
-    pairs = (*points.pairs, *points.alternatives)
-    others = {one if key == other else other for one, other in pairs if key in (one, other)}
+    others = {other for ways in points.ways for other in ways.others(key)}
     return {**dict.fromkeys(others), key: value}
 
 

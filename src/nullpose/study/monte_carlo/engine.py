@@ -1,71 +1,90 @@
-"""Parts handed to a cluster's workers, a few at a time, and taken back as they are done."""
+"""Who solves the parts of a study: this process, or a cluster that is handed a few at a time."""
 
 from __future__ import annotations
 
-import queue
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Protocol
 
 from nullpose.errors import ClusterError
-from nullpose.study.monte_carlo.chunk import (
-    Done,
-    failed_rows,
-    joined,
-    packed,
-    seconds_per_scene,
-    solve_chunk,
-)
-from nullpose.study.monte_carlo.cluster import connected
+from nullpose.study.monte_carlo.chunk import Done, seconds_per_scene, solve_chunk
 from nullpose.study.monte_carlo.ledger import Ledger
 from nullpose.study.monte_carlo.versions import fingerprint
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["KILLED", "run_on_cluster"]
-
-KILLED = "every worker that took this scene died; it may need more memory than they have"
-"""The reason of the rows of a scene that no worker survives."""
+__all__ = ["Solver", "solver_of"]
 
 _IN_FLIGHT = 2  # parts for each worker's thread: one at work and one in store
 _LOOK_S = 0.5  # between two looks at the cluster
 
 
-def run_on_cluster(
-    ledger: Ledger,
-    begin: Callable[[Callable[[], float]], None],
-    scheduler: str | None,
-    workers: int | None,
-) -> None:
-    """Solve what is to do on a cluster.
+class Solver(Protocol):
+    """What solves parts."""
+
+    def seconds_per_scene(self) -> float:
+        """Return how long a scene takes."""
+
+    def solved(self, parts: Iterable[tuple[int, int]]) -> Iterator[Done]:
+        """Yield what is made of parts, given by their first and last scene, as they are done.
+
+        Raises:
+            ClusterError: they cannot be worked on.
+        """
+
+
+@contextmanager
+def solver_of(ledger: Ledger, scheduler: str | None, workers: int | None) -> Iterator[Solver]:
+    """Yield what solves a study's parts.
 
     Args:
-        ledger: what is to do.
-        begin: opens the ledger, given what tells how long a scene takes.
+        ledger: of the study; it is told what goes on.
         scheduler: address of a running scheduler; None for an embedded cluster.
-        workers: processes of the embedded cluster; None for one on each processor.
+        workers: processes of the embedded cluster; None for one on each processor, 0 for this process alone.
 
     Raises:
         ClusterError: no scheduler answers, it went away, or its workers cannot do the work.
-        OutputError: a part cannot be written.
     """
-    if not ledger.is_open or not ledger.is_complete:
-        with connected(scheduler, workers) as client:
-            dispatch = _Dispatch(client, ledger, scheduler)
-            dispatch.require_same_code()
-            begin(dispatch.seconds_per_scene)
-            dispatch.run()
+    if workers == 0:
+        yield _Here(ledger)
+        return
+    from nullpose.study.monte_carlo.cluster import connected
+
+    with connected(scheduler, workers) as client:
+        cluster = _Cluster(client, ledger, scheduler or "this machine")
+        cluster.require_same_code()
+        yield cluster
 
 
-class _Dispatch:
-    """The parts in flight."""
+def _sound(done: Done, first: int, last: int) -> Done:
+    """Return what was made of a part, if something was."""
+    if done.fault:
+        raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {done.fault}")
+    return done
 
-    def __init__(self, client: Client, ledger: Ledger, scheduler: str | None) -> None:
-        self._client, self._ledger = client, ledger
-        self._where = scheduler or "this machine"
-        self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
-        self._pending: dict[str, tuple[Future, int, int]] = {}
+
+class _Here:
+    """This process, one part after the other."""
+
+    def __init__(self, ledger: Ledger) -> None:
+        self._ledger = ledger
+        ledger.workers = 1
+
+    def seconds_per_scene(self) -> float:
+        return seconds_per_scene(self._ledger.json)
+
+    def solved(self, parts: Iterable[tuple[int, int]]) -> Iterator[Done]:
+        for part in parts:
+            yield _sound(solve_chunk(self._ledger.json, fingerprint(), *part), *part)
+
+
+class _Cluster:
+    """The workers of a cluster."""
+
+    def __init__(self, client: Client, ledger: Ledger, where: str) -> None:
+        self._client, self._ledger, self._where = client, ledger, where
         self._looked = 0.0
 
     def require_same_code(self) -> None:
@@ -81,92 +100,65 @@ class _Dispatch:
             self._require(address, other)
 
     def seconds_per_scene(self) -> float:
-        """Return how long a scene takes on a worker."""
         future = self._client.submit(seconds_per_scene, self._ledger.json, pure=False)
-        self._wait(future)
+        self._first_done([future])
         if future.status == "error":  # whatever it is, it will show again at the scene's own part
             return float("inf")
         return float(self._result(future))
 
-    def run(self) -> None:
-        """Hand out what is to do, and keep what comes back."""
-        to_do = self._ledger.to_do()
+    def solved(self, parts: Iterable[tuple[int, int]]) -> Iterator[Done]:
+        to_do, pending = iter(parts), dict[Any, tuple[int, int]]()
         while True:
-            for first, last in to_do:
-                self._submit(first, last)
-                if len(self._pending) >= _IN_FLIGHT * max(1, self._ledger.workers):
+            while len(pending) < _IN_FLIGHT * max(1, self._ledger.workers):
+                part = next(to_do, None)
+                if part is None:
                     break
-            if not self._pending:
+                pending[self._submit(*part)] = part
+            if not pending:
                 return
-            self._take()
+            for future in self._first_done(pending):
+                yield self._done(future, *pending.pop(future))
+            if time.monotonic() - self._looked > _LOOK_S:
+                self._look()
 
-    def _submit(self, first: int, last: int) -> None:
-        arguments = (self._ledger.json, self._ledger.fingerprint, first, last)
+    def _submit(self, first: int, last: int, deadly: Collection[int] = ()) -> Future:
+        arguments = (self._ledger.json, fingerprint(), first, last, deadly)
         # Earlier parts first: what a run leaves behind has no holes but those of its last seconds.
-        future = self._client.submit(solve_chunk, *arguments, pure=False, priority=-first)
-        self._pending[future.key] = (future, first, last)
-        future.add_done_callback(lambda done: self._finished.put(done.key))
+        return self._client.submit(solve_chunk, *arguments, pure=False, priority=-first)
 
-    def _take(self) -> None:
-        """Keep the next part that is done, looking at the cluster now and then."""
-        try:
-            key = self._finished.get(timeout=_LOOK_S)
-        except queue.Empty:
-            self._look()
-            return
-        future, first, last = self._pending.pop(key)
-        self._ledger.add(self._done(future, first, last))
-        if time.monotonic() - self._looked > _LOOK_S:
-            self._look()
+    def _first_done(self, futures: Iterable[Future]) -> Collection[Future]:
+        """Return those futures that are done first, looking at the cluster now and then."""
+        from distributed import CancelledError, wait
+
+        while True:
+            try:
+                with self._client.as_current():
+                    done: set[Future] = wait(list(futures), _LOOK_S, "FIRST_COMPLETED").done
+            except TimeoutError:
+                self._look()
+            except CancelledError as error:
+                raise self._lost() from error
+            else:
+                return done
 
     def _done(self, future: Future, first: int, last: int) -> Done:
-        """Return what a worker made of a part."""
-        from distributed import KilledWorker
-
+        """Return what a worker made of a part; one whose workers died is done without the scenes at fault."""
+        if _is_killed(future):
+            self._ledger.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
+            deadly = []
+            for index in range(first, last + 1):
+                alone = self._submit(index, index)
+                self._first_done([alone])
+                if _is_killed(alone):
+                    deadly.append(index)
+            future = self._submit(first, last, deadly)
+            self._first_done([future])
         if future.status == "error":
             error = future.exception()
-            if isinstance(error, KilledWorker):
-                return self._one_by_one(first, last)
             raise self._unable(error) from error
         done: Done = self._result(future)
         self._require("a worker", done.fingerprint)
-        if done.fault:
-            raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {done.fault}")
-        return done
-
-    def _one_by_one(self, first: int, last: int) -> Done:
-        """Return the rows of a part whose workers died, each scene by itself, to lose only those at fault."""
-        from distributed import KilledWorker
-
-        spec = self._ledger.spec
-        self._ledger.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
-        pieces = []
-        for index in range(first, last + 1):
-            arguments = (self._ledger.json, self._ledger.fingerprint, index, index)
-            future = self._client.submit(solve_chunk, *arguments, pure=False, priority=-first)
-            self._wait(future)
-            if future.status == "error" and isinstance(future.exception(), KilledWorker):
-                rows = [
-                    row
-                    for point in range(len(spec.points))
-                    for row in failed_rows(spec, index, point, KILLED)
-                ]
-                pieces.append(packed(spec, rows, index, index, 0.0))
-            else:
-                pieces.append(self._done(future, index, index))
-        return joined(pieces)
-
-    def _wait(self, future: Future) -> None:
-        """Wait until a future is done, looking at the cluster now and then."""
-        ready: queue.SimpleQueue[str] = queue.SimpleQueue()
-        future.add_done_callback(lambda done: ready.put(done.key))
-        while True:
-            try:
-                ready.get(timeout=_LOOK_S)
-            except queue.Empty:
-                self._look()
-            else:
-                return
+        return _sound(done, first, last)
 
     def _result(self, future: Future) -> Any:
         if future.status != "finished":
@@ -200,10 +192,10 @@ class _Dispatch:
         )
 
     def _require(self, address: str, other: str) -> None:
-        if other != self._ledger.fingerprint:
+        if other != fingerprint():
             raise ClusterError(
-                f"workers: {address} at {self._where} has nullpose {other}, and here it is "
-                f"{self._ledger.fingerprint}; install the same on both and start the workers again"
+                f"workers: {address} at {self._where} has nullpose {other}, and here it is {fingerprint()}; "
+                "install the same on both and start the workers again"
             )
 
     def _unable(self, error: BaseException | None) -> ClusterError:
@@ -211,3 +203,10 @@ class _Dispatch:
             f"workers: those at {self._where} cannot do the work ({type(error).__name__}: {error}); they "
             "need nullpose[study] as it is here: install it and start them again"
         )
+
+
+def _is_killed(future: Future) -> bool:
+    """Return whether every worker that took a part died."""
+    from distributed import KilledWorker
+
+    return future.status == "error" and isinstance(future.exception(), KilledWorker)

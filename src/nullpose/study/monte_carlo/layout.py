@@ -9,24 +9,22 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from nullpose.scenario.choice import Choice
 from nullpose.scenario.faults import Place, rejection
 from nullpose.scenario.names import Label
-from nullpose.scenario.rewording import meant_keys
+from nullpose.scenario.rules import Choice, Count, Quantity
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
-    Count,
     DecibelMilliwatts,
     ErrorMetres,
     Metres,
     PlanePoint,
-    Quantity,
     RadiusMetres,
     Range,
     RatioDecibels,
     Watts,
     Weight,
 )
+from nullpose.scenario.ways import Ways, at_most_one, exactly_one
 from nullpose.scenario.wording import described, plain
 from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
@@ -142,25 +140,23 @@ class Points(Section):
         examples=["M"],
     )
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        yield from super().cross_faults(data)
-        layout = data.get("layout")
-        if layout not in _NEEDED or not isinstance(layout, str):
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between the layout and the keys that place its points."""
+        if self.layout is None:
             return
-        given = [key for key in _PLACING if data.get(key) is not None]
-        meant = meant_keys(data, cls.model_fields)
-        for key in _NEEDED[layout]:
-            if key not in given and key not in meant:
-                field = cls.model_fields[key]
-                yield (key,), f'missing; layout "{layout}" needs it: {(field.description or "").rstrip(".")}'
-        may = {*_NEEDED[layout]} | ({*_REGIONS[0], *_REGIONS[1]} if layout in _NEEDED_REGION else set())
+        needed = _NEEDED[self.layout]
+        in_a_region = self.layout in _NEEDED_REGION
+        may = {*needed} | ({*_REGIONS[0], *_REGIONS[1]} if in_a_region else set())
+        given = [key for key in _PLACING if getattr(self, key) is not None]
+        for key in needed:
+            if key not in given:
+                description = type(self).model_fields[key].description or ""
+                yield (key,), f'missing; layout "{self.layout}" needs it: {description.rstrip(".")}'
         for key in given:
             if key not in may:
-                yield (key,), f'has no meaning with layout "{layout}"; remove it'
-        if layout in _NEEDED_REGION:
-            yield from _region_faults(layout, given, meant)
+                yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
+        if in_a_region:
+            yield from (((), message) for message in Ways(_REGIONS).faults(given))
 
     @property
     def may_be_several(self) -> bool:
@@ -181,18 +177,6 @@ class Points(Section):
 _NEEDED_REGION = ("poisson", "clusters")
 
 
-def _region_faults(layout: str, given: list[str], meant: set[str]) -> Iterable[tuple[Place, str]]:
-    """Yields what is wrong with the area of a layout that takes a disc or a rectangle."""
-    begun = [region for region in _REGIONS if any(key in given or key in meant for key in region)]
-    if len(begun) != 1:
-        got = "both are" if begun else "none is"
-        yield (), f'layout "{layout}" needs one area, centre_m and radius_m or x_m and y_m; {got} given'
-        return
-    for key in begun[0]:
-        if key not in given and key not in meant:
-            yield (key,), f"missing; {' and '.join(begun[0])} go together"
-
-
 class Nodes(Points):
     """Where the nodes are drawn, and how strong they are.
 
@@ -203,12 +187,11 @@ class Nodes(Points):
         min_sinr_db: what it requires [dB].
     """
 
-    header: ClassVar[str] = "a table headed [nodes]"
     letter: ClassVar[str] = "S"
     fewest: ClassVar[int] = 1
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("power_w", "power_dbm"),
-        ("weight", "min_sinr_db"),
+    ways: ClassVar[tuple[Ways, ...]] = (
+        at_most_one("power_w", "power_dbm"),
+        at_most_one("weight", "min_sinr_db"),
     )
 
     power_w: Annotated[Distribution, _drawn(Watts)] | None = Field(
@@ -236,9 +219,8 @@ class Jammers(Points):
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
 
-    header: ClassVar[str] = "a table headed [jammers]"
     letter: ClassVar[str] = "M"
-    pairs: ClassVar[tuple[tuple[str, str], ...]] = (("power_w", "power_dbm"),)
+    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
     power_w: Annotated[Distribution, _drawn(Watts)] | None = Field(
         default=None,
@@ -262,7 +244,6 @@ class Eavesdroppers(Points):
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
 
-    header: ClassVar[str] = "a table headed [eavesdroppers]"
     letter: ClassVar[str] = "E"
     fewest: ClassVar[int] = 1
 

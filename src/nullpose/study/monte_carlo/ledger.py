@@ -6,11 +6,10 @@ import json
 import time
 from collections.abc import Callable, Iterator
 
-from nullpose.study.monte_carlo.chunk import Done
+from nullpose.study.monte_carlo.chunk import Done, Part
 from nullpose.study.monte_carlo.progress import StudyProgress
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.store import Store
-from nullpose.study.monte_carlo.versions import fingerprint
 
 __all__ = ["Ledger"]
 
@@ -29,10 +28,8 @@ class Ledger:
     ) -> None:
         self.spec, self._store, self._on_progress = spec, store, on_progress
         self.json = json.dumps(spec.to_dict())
-        self.fingerprint = fingerprint()
         self.workers = 0
-        self.chunk = 1
-        self.is_open = False
+        self._chunk = 1
         self._finished = bytearray()  # a byte for each part: there may be millions
         self._done = self._rows = self._failed = self._before = 0
         self._began = time.monotonic()
@@ -46,11 +43,12 @@ class Ledger:
         Raises:
             OutputError: the folder cannot be written.
         """
-        self.chunk, self.is_open = chunk, True
+        self._chunk = chunk
         self._finished = bytearray(-(-self.spec.n_scenes // chunk))
         kept, redone = self._store.mend()
-        for part in (part for part in kept if part.last < self.spec.n_scenes):
-            self._count(part.first, part.last, part.rows, part.failed)
+        for part in kept:
+            if part.last < self.spec.n_scenes:
+                self._count(part)
         self._began, self._before = time.monotonic(), self._done
         if redone:
             self.tell(f"{redone} part{'s' * (redone > 1)} damaged or missing, to be done anew")
@@ -64,8 +62,8 @@ class Ledger:
         """Yield the first and the last scene of each part that is to do."""
         for number, finished in enumerate(self._finished):
             if not finished:
-                first = number * self.chunk
-                yield first, min(first + self.chunk, self.spec.n_scenes) - 1
+                first = number * self._chunk
+                yield first, min(first + self._chunk, self.spec.n_scenes) - 1
 
     def add(self, done: Done) -> None:
         """Keep a part, on disk before it counts.
@@ -76,8 +74,7 @@ class Ledger:
         Raises:
             OutputError: it cannot be written.
         """
-        self._store.add(done)
-        self._count(done.first, done.last, done.rows, done.failed)
+        self._count(self._store.add(done))
         self.tell()
 
     def tell(self, note: str = "") -> None:
@@ -101,8 +98,8 @@ class Ledger:
             )
         )
 
-    def _count(self, first: int, last: int, rows: int, failed: int) -> None:
-        self._finished[first // self.chunk] = 1
-        self._done += last - first + 1
-        self._rows += rows
-        self._failed += failed
+    def _count(self, part: Part) -> None:
+        self._finished[part.first // self._chunk] = 1
+        self._done += part.scenes
+        self._rows += part.rows
+        self._failed += part.failed

@@ -9,16 +9,15 @@ from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import load
-
-# The reading of TOML and its words are those of scenario files.
-from nullpose.scenario.loading import _Kind, _tables, _text, _UnusableFileError, inside
+from nullpose.scenario.loading import inside
+from nullpose.scenario.toml_file import FileKind, file_text, tables_of
 from nullpose.scenario.wording import described
 from nullpose.study.monte_carlo.checking import spec_faults
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["load_spec"]
 
-_SPEC_FILE = _Kind("the spec of a study", "study.toml", (".toml",))
+_SPEC_FILE = FileKind("the spec of a study", "study.toml")
 
 
 def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> StudySpec:
@@ -35,9 +34,9 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
     """
     source = os.fspath(path)
     try:
-        tables = _tables(_text(source, _SPEC_FILE))
-    except _UnusableFileError as error:
-        raise ScenarioError([error.fault], source) from None
+        tables = tables_of(file_text(Path(source), _SPEC_FILE))
+    except ScenarioError as error:
+        raise ScenarioError(error.faults, source) from None
     faults = _read_scenarios(tables, Path(source).parent, allow_outside)
     try:
         spec = StudySpec.from_dict(tables, source)
@@ -62,8 +61,6 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
         try:
             path = inside(folder, name, allow_outside)
             held.append(load(path, allow_outside=allow_outside).to_dict())
-        except _UnusableFileError as error:
-            faults.append(Fault(name, str(error)))
         except ScenarioError as error:
             faults += [Fault(_in_file(name, fault), fault.message) for fault in error.faults]
     if held and not faults:

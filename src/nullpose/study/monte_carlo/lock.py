@@ -8,7 +8,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from nullpose.errors import OutputError
 from nullpose.files import check_outputs
@@ -35,19 +35,17 @@ def locked(folder: Path) -> Iterator[None]:
     """
     path = folder / LOCK
     check_outputs({}, {"the study's lock": path})
-    file = path.open("a+", encoding="utf-8")
-    try:
-        if not _taken(file) or _elsewhere(file):
-            raise OutputError(_refusal(folder, _content(file)))
-        file.seek(0)
-        file.truncate()
+    with path.open("a+", encoding="utf-8") as file:
+        if other := _other(file):
+            raise OutputError(
+                f"{folder}: {other} writes this study now, or was killed doing so; wait for it, or end it; "
+                f"if it is gone, remove {path} and try again"
+            )
+        file.truncate(0)
         json.dump({"pid": os.getpid(), "host": socket.gethostname()}, file)
         file.flush()
         yield
-        file.seek(0)
-        file.truncate()
-    finally:
-        file.close()
+        file.truncate(0)
 
 
 def holder(folder: Path) -> str:
@@ -56,61 +54,31 @@ def holder(folder: Path) -> str:
     Args:
         folder: the study's folder.
     """
-    try:
-        if not (folder / LOCK).is_file():
-            return ""
-        with (folder / LOCK).open("r+", encoding="utf-8") as file:
-            if _taken(file) and not _elsewhere(file):
-                return ""
-            return _named(_content(file))
-    except OSError:
-        return ""
+    with suppress(OSError):
+        if (folder / LOCK).is_file():
+            with (folder / LOCK).open("r+", encoding="utf-8") as file:
+                return _other(file)
+    return ""
 
 
-def _taken(file: IO[str]) -> bool:
-    """Take the system's lock on a file; return whether that was possible."""
+def _other(file: IO[str]) -> str:
+    """Take the system's lock on a file; return who holds it if somebody else does."""
+    file.seek(0)
+    here, pid, host = socket.gethostname(), -1, None
+    with suppress(ValueError, RecursionError, TypeError, KeyError):
+        content = json.loads(file.read(_LONGEST))
+        pid, host = int(content["pid"]), str(content["host"])
     try:
         import fcntl
-    except ImportError:  # no such locks on Windows: what the file says has to do
-        return not _content(file) or not _alive(_content(file).get("pid"))
-    try:
+
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        taken = True
     except BlockingIOError:
-        return False
-    except OSError:  # a file system that knows no locks
-        return not _content(file) or not _alive(_content(file).get("pid"))
-    return True
+        taken = False
+    except (ImportError, OSError):  # Windows, or a file system that knows no locks: the file has to do
+        import psutil
 
-
-def _elsewhere(file: IO[str]) -> bool:
-    """Return whether the file names another machine, whose locks may not be seen from here."""
-    host = _content(file).get("host")
-    return host is not None and host != socket.gethostname()
-
-
-def _content(file: IO[str]) -> dict[str, Any]:
-    file.seek(0)
-    with suppress(ValueError, RecursionError):
-        content = json.loads(file.read(_LONGEST))
-        if isinstance(content, dict):
-            return content
-    return {}
-
-
-def _alive(pid: object) -> bool:
-    import psutil
-
-    return isinstance(pid, int) and bool(psutil.pid_exists(pid))
-
-
-def _named(content: dict[str, Any]) -> str:
-    return f"process {content.get('pid', 'unknown')} on {content.get('host', 'this machine')}"
-
-
-def _refusal(folder: Path, content: dict[str, Any]) -> str:
-    if content.get("host") not in (None, socket.gethostname()):
-        return (
-            f"{folder}: {_named(content)} writes this study, or was killed doing so; if it is gone, remove "
-            f"{folder / LOCK} and try again"
-        )
-    return f"{folder}: {_named(content)} writes this study now; wait for it, or end it, and try again"
+        taken = not psutil.pid_exists(pid)
+    if taken and host in (None, here):  # the locks of another machine may not be seen from here
+        return ""
+    return f"process {pid} on {host or here}"

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
+from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.extra import require_extra
 from nullpose.study.monte_carlo.rows import schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.store import Part, Store
+from nullpose.study.monte_carlo.store import QUANTITIES, Store
 
 if TYPE_CHECKING:
     import pandas as pd
-    import pyarrow as pa
     import xarray as xr
 
 __all__ = ["StudyTable", "read_study"]
@@ -29,17 +29,18 @@ class StudyTable:
     """
 
     def __init__(self, store: Store) -> None:
-        self._store = store
+        self._store, self._parts = store, store.parts()
         self.manifest: dict[str, Any] = store.manifest()
         """What made the study: spec, its hash, versions, seed, objective."""
         self.spec = StudySpec.from_dict(self.manifest["spec"], str(store.folder))
         """The study's spec."""
-        self._parts = sorted(store.listed().values(), key=lambda part: part.first)
+        self.quantity = QUANTITIES[self.manifest["objective"]]
+        """What was made as large as it can be."""
 
     @property
     def scenes_done(self) -> int:
         """How many scenes there are rows of."""
-        return sum(part.last - part.first + 1 for part in self._parts)
+        return sum(part.scenes for part in self._parts)
 
     @property
     def is_complete(self) -> bool:
@@ -52,11 +53,10 @@ class StudyTable:
         Raises:
             UsageError: a part is damaged.
         """
-        import pyarrow as pa
+        import pandas as pd
 
-        tables = [self._table(part) for part in self._parts]
-        whole = pa.concat_tables(tables) if tables else schema_of(self.spec).empty_table()
-        return self._as_frame(whole)
+        nothing = self._as_frame(schema_of(self.spec).empty_table())
+        return pd.concat(list(self.batches()) or [nothing], ignore_index=True)
 
     def batches(self) -> Iterator[pd.DataFrame]:
         """Yield the rows part by part, each as :meth:`frame` would have them, never holding all.
@@ -65,7 +65,7 @@ class StudyTable:
             UsageError: a part is damaged.
         """
         for part in self._parts:
-            yield self._as_frame(self._table(part))
+            yield self._read(part)
 
     def xarray(self) -> xr.Dataset:
         """Return all rows as arrays over scene, each swept parameter, and case.
@@ -77,38 +77,34 @@ class StudyTable:
 
         frame, spec = self.frame(), self.spec
         scenes = frame["scene"].to_numpy()[:: spec.rows_per_scene]
-        shape = (len(scenes), *(len(values) for _, values in spec.sweep), len(spec.cases))
-        dims = ("scene", *spec.swept, "case")
-        left_out = {"scene", "point", "case", *spec.swept}
-        columns = [str(name) for name in frame.columns if name not in left_out]
-        coordinates = {"scene": scenes, "case": list(spec.case_names)}
-        coordinates |= {path: list(values) for path, values in spec.sweep}
+        swept = {path: list(values) for path, values in spec.sweep}
+        coordinates = {"scene": scenes, **swept, "case": list(spec.case_names)}
+        shape = [len(values) for values in coordinates.values()]
+        columns = [name for name in frame.columns if name not in {"point", *coordinates}]
         return xr.Dataset(
-            {name: (dims, frame[name].to_numpy().reshape(shape)) for name in columns},
+            {name: (list(coordinates), frame[name].to_numpy().reshape(shape)) for name in columns},
             coords=coordinates,
             attrs={"name": spec.name, "objective": self.manifest["objective"]},
         )
 
-    def _table(self, part: Part) -> pa.Table:
+    def _read(self, part: Part) -> pd.DataFrame:
         import pyarrow.parquet as pq
 
+        path = self._store.parts_folder / part.name
+        again = "nullpose study run, given the same spec and folder"
         if not self._store.is_whole(part):
             raise UsageError(
-                f"{self._store.parts_folder / part.name}: damaged or missing (its checksum is not the one "
-                "listed); nullpose study run, given the same spec and folder, does it anew"
+                f"{path}: damaged or missing (its checksum is not the one listed); {again}, does it anew"
             )
-        path = self._store.parts_folder / part.name
         try:
             table = pq.read_table(path, partitioning=None)
+            if not table.schema.equals(schema_of(self.spec)):
+                raise ValueError("it has other columns than this study")
         except (OSError, ValueError) as error:
-            raise UsageError(
-                f"{path}: cannot be read ({error}); remove it, and run the study again"
-            ) from None
-        if not table.schema.equals(schema_of(self.spec)):
-            raise UsageError(f"{path}: has other columns than this study; remove it, and run the study again")
-        return table
+            raise UsageError(f"{path}: cannot be read ({error}); remove it; {again}, does it anew") from None
+        return self._as_frame(table)
 
-    def _as_frame(self, table: pa.Table) -> pd.DataFrame:
+    def _as_frame(self, table: Any) -> pd.DataFrame:
         frame = table.to_pandas()
         frame["case"] = frame["case"].astype("category").cat.set_categories(list(self.spec.case_names))
         return frame

@@ -6,12 +6,10 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from nullpose.errors import ClusterError, UsageError
+from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
 from nullpose.study.monte_carlo.checking import require_sound
-from nullpose.study.monte_carlo.chunk import seconds_per_scene, solve_chunk
 from nullpose.study.monte_carlo.extra import require_extra
-from nullpose.study.monte_carlo.ledger import Ledger
 from nullpose.study.monte_carlo.lock import locked
 from nullpose.study.monte_carlo.progress import StudyProgress
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -19,8 +17,7 @@ from nullpose.study.monte_carlo.status import StudyStatus, study_status
 
 __all__ = ["MOST_IN_A_PART", "run_study"]
 
-MOST_IN_A_PART = 5000
-"""The most scenes of a part, however quick they are: a part is held in memory whole."""
+MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
 
 _PART_S = 1.0
 
@@ -58,6 +55,8 @@ def run_study(
         ClusterError: the scheduler is not there, or went away.
     """
     require_extra()
+    from nullpose.study.monte_carlo.engine import solver_of
+    from nullpose.study.monte_carlo.ledger import Ledger
     from nullpose.study.monte_carlo.store import Store
 
     _require_options(scheduler, workers, chunk)
@@ -69,34 +68,19 @@ def run_study(
         require_sound(spec)
     with locked(prepare_folder(folder)):
         ledger = Ledger(spec, store, on_progress)
-        if store.is_begun():
+        if begun := store.is_begun():
             ledger.open(int(store.require_same(spec)["chunk"]))
-
-        def begin(calibrated: Callable[[], float]) -> None:
-            if not ledger.is_open:
-                size = _size(spec, calibrated()) if chunk is None else chunk
-                ledger.open(int(store.begin(spec, size)["chunk"]))
-
-        if ledger.is_open and ledger.is_complete:
+        if begun and ledger.is_complete:
             ledger.tell()
-        elif workers == 0:
-            _run_here(ledger, begin)
-        else:
-            from nullpose.study.monte_carlo.engine import run_on_cluster
-
-            run_on_cluster(ledger, begin, scheduler, workers)
+            return study_status(folder)
+        with solver_of(ledger, scheduler, workers) as solver:
+            if not begun:
+                size = _size(spec, solver.seconds_per_scene()) if chunk is None else chunk
+                store.begin(spec, size)
+                ledger.open(size)
+            for done in solver.solved(ledger.to_do()):
+                ledger.add(done)
     return study_status(folder)
-
-
-def _run_here(ledger: Ledger, begin: Callable[[Callable[[], float]], None]) -> None:
-    """Solve what is to do in this process."""
-    ledger.workers = 1
-    begin(lambda: seconds_per_scene(ledger.json))
-    for first, last in ledger.to_do():
-        done = solve_chunk(ledger.json, ledger.fingerprint, first, last)
-        if done.fault:
-            raise ClusterError(f"scenes {first} to {last} cannot be worked on: {done.fault}")
-        ledger.add(done)
 
 
 def _size(spec: StudySpec, seconds: float) -> int:

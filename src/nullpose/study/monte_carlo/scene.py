@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from nullpose.objectives import RECORDS, USUAL
 from nullpose.scenario import (
     Airframe,
     Airspace,
@@ -21,30 +21,16 @@ from nullpose.scenario import (
     Scenario,
     Transmitter,
 )
-from nullpose.scenario.choice import Choice
 from nullpose.scenario.faults import Place
-from nullpose.scenario.members import Members
 from nullpose.scenario.names import Label
-from nullpose.scenario.origin import located
+from nullpose.scenario.origin import POINT_LISTS, located
+from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
+from nullpose.scenario.ways import Ways, at_most_one
 
-__all__ = ["POINT_LISTS", "SceneBase"]
+__all__ = ["SceneBase"]
 
-POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
-"""The kinds of points that a study may draw."""
-
-_Objective = Annotated[
-    Literal["min-sinr", "secrecy-rate"], Choice("an objective", ("min-sinr", "secrecy-rate"))
-]
-
-
-@dataclass(frozen=True, slots=True)
-class _Scenarios(Members):
-    """A list of whole scenarios, which are not named by their place."""
-
-    def read(self, value: object) -> list[object]:
-        super(_Scenarios, self).read(value)
-        return list(value) if isinstance(value, list | tuple) else []
+_Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 
 
 class SceneBase(Section):
@@ -59,7 +45,7 @@ class SceneBase(Section):
     """
 
     header: ClassVar[str] = "a table headed [scene]"
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("file", "files"),)
+    ways: ClassVar[tuple[Ways, ...]] = (at_most_one("file", "files"),)
     unstated: ClassVar[frozenset[str]] = frozenset(
         {"objective", "scenarios", "nodes", "jammers", "eavesdroppers"}
     )
@@ -74,44 +60,37 @@ class SceneBase(Section):
         description="Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
         examples=[["north.toml", "south.toml"]],
     )
-    scenarios: Annotated[tuple[Scenario, ...], _Scenarios("scene.scenarios", "")] = Field(
+    scenarios: Annotated[tuple[Scenario, ...], list_of_tables("scene.scenarios")] = Field(
         default=(), description="What file or files hold. Filled in when the spec is read."
     )
-    objective: _Objective = Field(
-        default="min-sinr", description="As in a scenario file.", examples=["secrecy-rate"]
-    )
+    objective: _Objective = Field(default=USUAL, description="As in a scenario file.", examples=list(RECORDS))
     origin: Origin | None = Field(default=None, description="A table headed [scene.origin].")
     airspace: Airspace | None = Field(default=None, description="A table headed [scene.airspace].")
     airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
     receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
     transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
-    nodes: Annotated[tuple[Node, ...], Members("scene.nodes", Node.letter)] = Field(
+    nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(
         default=(), description="Tables headed [[scene.nodes]], where they are not drawn."
     )
-    jammers: Annotated[tuple[Jammer, ...], Members("scene.jammers", Jammer.letter)] = Field(
+    jammers: Annotated[tuple[Jammer, ...], list_of_tables("scene.jammers")] = Field(
         default=(), description="Tables headed [[scene.jammers]], where they are not drawn."
     )
-    eavesdroppers: Annotated[
-        tuple[Eavesdropper, ...], Members("scene.eavesdroppers", Eavesdropper.letter)
-    ] = Field(default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn.")
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("scene.eavesdroppers")] = Field(
+        default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn."
+    )
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Returns the raw table with the positions of points that are stated by latitude and longitude."""
-        return located(data, unknown_m=(0.0, 0.0, 0.0))
+        return located(data)
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        yield from super().cross_faults(data)
-        own = [key for key in _TABLES if data.get(key)]
-        if any(data.get(key) for key in ("file", "files", "scenarios")):
-            for key in own:
-                yield (
-                    (key,),
-                    "given together with a file, which states it; remove one, or state it in the file",
-                )
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns what is missing, or stated twice."""
+        own = [key for key in _TABLES if stated.get(key)]
+        if self.file or self.files or self.scenarios:
+            message = "given together with a file, which states it; remove one, or state it in the file"
+            yield from (((key,), message) for key in own)
             return
         for key in ("airspace", "receiver"):
             if key not in own:

@@ -10,15 +10,16 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
-from nullpose.scenario.members import Members
 from nullpose.scenario.names import Title
+from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Count
 from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
-from nullpose.study.monte_carlo.scene import POINT_LISTS, SceneBase
+from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes, points_of
 
 __all__ = ["MOST_SCENES", "StudySpec"]
@@ -86,7 +87,7 @@ class StudySpec(Section):
         default=None,
         description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
     )
-    cases: Annotated[tuple[StudyCase, ...], Members("cases", StudyCase.letter, at_least=1)] = Field(
+    cases: Annotated[tuple[StudyCase, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(StudyCase(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
         "the optimum with the scene's own vehicle.",
@@ -98,20 +99,12 @@ class StudySpec(Section):
         examples=[{"jammers.M.power_w": [0.1, 1.0, 10.0]}],
     )
 
-    @classmethod
-    def cross_faults(cls, data: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of the raw table, as far as they can be judged."""
-        scene, cases = data.get("scene"), data.get("cases")
-        if data.get("scenes") is None and isinstance(scene, Mapping) and not scene.get("files"):
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults between the parts of the spec, those that are None being at fault."""
+        if self.scenes is None and self.scene is not None and not self.scene.files:
             yield ("scenes",), "missing; it must be given: how many scenes"
-        names: dict[str, int] = {}
-        for index, case in enumerate(cases if isinstance(cases, list | tuple) else ()):
-            name = case.get("name") if isinstance(case, Mapping) else getattr(case, "name", None)
-            if isinstance(name, str) and names.setdefault(name, index) != index:
-                message = (
-                    f'got "{name}", the name of cases[{names[name]}] already; every name may be used once'
-                )
-                yield ("cases", index, "name"), message
+        cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
+        yield from shared_names(dict(cases))
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""

@@ -66,12 +66,12 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
     """
     store = Store(Path(out))
     manifest = store.manifest()
-    parts = store.listed().values()
+    parts = store.parts()
     return StudyStatus(
         folder=str(out),
         name=manifest["name"],
         scenes=manifest["scenes"],
-        done=sum(part.last - part.first + 1 for part in parts),
+        done=sum(part.scenes for part in parts),
         rows=sum(part.rows for part in parts),
         failed=sum(part.failed for part in parts),
         parts=len(parts),

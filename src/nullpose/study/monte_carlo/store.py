@@ -8,27 +8,25 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from nullpose.errors import OutputError, UsageError
 from nullpose.files import parse_json, read_bytes, refusals, replacing, write_text
-from nullpose.study.monte_carlo.chunk import Done
+from nullpose.objectives import RECORDS, Quantity
+from nullpose.study.monte_carlo.chunk import Done, Part
+from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import versions
 
-__all__ = ["FORMAT", "Part", "Store", "objective_name"]
+__all__ = ["FORMAT", "QUANTITIES", "Store"]
 
-FORMAT = 1
-"""Version of the folder's layout."""
-
+FORMAT = 1  # version of the folder's layout
 MANIFEST, JOURNAL, PARTS = "manifest.json", "parts.jsonl", "parts"
 
 _MOST_BYTES = 64_000_000  # of a manifest, which holds what all scenario files of the study say
 _LONGEST_LINE = 4096  # characters of the journal's
-_MOST = 10**15  # above all counts that there are, and below what a float cannot hold
-_OBJECTIVES = ("min-sinr", "min-margin", "secrecy-rate")
+_MOST = 10**15  # above all counts that there are
 _KEYS: dict[str, type] = {
     "name": str,
     "objective": str,
@@ -39,74 +37,13 @@ _KEYS: dict[str, type] = {
     "spec": dict,
 }
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
-    """A finished part, as the journal has it.
-
-    Args:
-        first: its first scene.
-        last: its last scene.
-        rows: how many rows it has.
-        failed: how many of them are failures.
-        seconds: how long a worker took for it.
-        size: the file's size in bytes.
-        sha256: the file's checksum.
-    """
-
-    first: int
-    last: int
-    rows: int
-    failed: int
-    seconds: float
-    size: int
-    sha256: str
-
-    @property
-    def is_sound(self) -> bool:
-        """Whether the values are of their types, and the scenes in order."""
-        counts = (self.first, self.last, self.rows, self.failed, self.size)
-        return (
-            all(type(count) is int and 0 <= count < _MOST for count in counts)
-            and self.last >= self.first
-            and isinstance(self.seconds, int | float)
-            and 0.0 <= self.seconds < _MOST
-            and isinstance(self.sha256, str)
-        )
-
-    @property
-    def name(self) -> str:
-        """The file's name."""
-        return part_name(self.first, self.last)
-
-
-def part_name(first: int, last: int) -> str:
-    """Return the name of the part of some scenes.
-
-    Args:
-        first: the first scene.
-        last: the last scene.
-    """
-    return f"part-{first:09d}-{last:09d}.parquet"
-
-
-def objective_name(spec: StudySpec) -> str:
-    """Return what a study's values are: min-sinr, min-margin or secrecy-rate.
-
-    Args:
-        spec: the study.
-    """
-    tables = spec.scene.tables(0)
-    if tables.get("objective", "min-sinr") == "secrecy-rate":
-        return "secrecy-rate"
-    weighed = spec.nodes is not None and (spec.nodes.weight is not None or spec.nodes.min_sinr_db is not None)
-    stated = spec.nodes is None and any(
-        "weight" in node or "min_sinr_db" in node
-        for index in range(spec.scene.size)
-        for node in spec.scene.tables(index).get("nodes", ())
-    )
-    swept = any(path.rsplit(".", 1)[-1] in ("weight", "min_sinr_db") for path in spec.swept)
-    return "min-margin" if weighed or stated or swept else "min-sinr"
+# What a study makes as large as it can be, by the name in its manifest: an objective, or what nodes may have
+# under it instead.
+QUANTITIES: dict[str, Quantity] = {
+    quantity.name.replace("_", "-") if place else record.name: quantity
+    for record in RECORDS.values()
+    for place, quantity in enumerate(record.quantities)
+}
 
 
 class Store:
@@ -118,11 +55,8 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-
-    @property
-    def parts_folder(self) -> Path:
-        """Where the parts are."""
-        return self.folder / PARTS
+        self.parts_folder = folder / PARTS
+        self._journal = folder / JOURNAL
 
     def manifest(self) -> dict[str, Any]:
         """Return the manifest.
@@ -146,7 +80,7 @@ class Store:
             )
         wrong = [key for key, kind in _KEYS.items() if not isinstance(content.get(key), kind)]
         wrong = wrong or [key for key in ("scenes", "chunk") if not 1 <= content[key] < _MOST]
-        if wrong or content["objective"] not in _OBJECTIVES:
+        if wrong or content["objective"] not in QUANTITIES:
             raise UsageError(f"{path}: {[*wrong, 'objective'][0]} is missing or wrong; restore this manifest")
         return content
 
@@ -154,8 +88,8 @@ class Store:
         """Return whether a study has a manifest here."""
         return (self.folder / MANIFEST).exists()
 
-    def begin(self, spec: StudySpec, chunk: int) -> dict[str, Any]:
-        """Write the manifest of a new study, and return it.
+    def begin(self, spec: StudySpec, chunk: int) -> None:
+        """Write the manifest of a new study.
 
         Args:
             spec: the study.
@@ -164,10 +98,11 @@ class Store:
         Raises:
             OutputError: the folder cannot be written.
         """
+        quantity = quantity_of(spec)
         manifest = {
             "format": FORMAT,
             "name": spec.name,
-            "objective": objective_name(spec),
+            "objective": next(name for name, one in QUANTITIES.items() if one == quantity),
             "seed": spec.seed,
             "scenes": spec.n_scenes,
             "points": len(spec.points),
@@ -179,7 +114,6 @@ class Store:
             "spec": spec.to_dict(),
         }
         write_text(self.folder / MANIFEST, json.dumps(manifest, indent=1) + "\n")
-        return manifest
 
     def require_same(self, spec: StudySpec) -> dict[str, Any]:
         """Return the manifest of the study that is here, if it is this one.
@@ -192,9 +126,11 @@ class Store:
         """
         manifest = self.manifest()
         if manifest["spec_sha256"] != spec.digest:
+            before, now = manifest["spec"], spec.to_dict()
+            keys = sorted(key for key in {*before, *now} - {"name"} if before.get(key) != now.get(key))
             raise UsageError(
-                f"{self.folder}: another study is here{_difference(manifest['spec'], spec.to_dict())}; "
-                "choose another folder with --out, or give the spec as it was"
+                f"{self.folder}: another study is here (not the same: {', '.join(keys)}); choose another "
+                "folder with --out, or give the spec as it was"
             )
         begun, here = manifest["versions"].get("nullpose"), versions()["nullpose"]
         if begun != here:
@@ -204,12 +140,10 @@ class Store:
             )
         return manifest
 
-    def listed(self) -> dict[int, Part]:
-        """Return the parts of the journal by their first scene; of lines about one part the last counts."""
-        found: dict[int, Part] = {}
-        for part in self._journal():
-            found[part.first] = part
-        return found
+    def parts(self) -> list[Part]:
+        """Return the parts that the journal lists, in order; of lines about one part the last counts."""
+        found = {part.first: part for part in self._listed()}
+        return [found[first] for first in sorted(found)]
 
     def is_whole(self, part: Part) -> bool:
         """Return whether a part's file has the size and the checksum that the journal says.
@@ -235,91 +169,69 @@ class Store:
         Raises:
             OutputError: the folder cannot be written.
         """
-        listed = self.listed()
-        kept = [part for part in listed.values() if self.is_whole(part)]
-        lines = "".join(json.dumps(asdict(part)) + "\n" for part in kept)
+        listed = self.parts()
+        kept = [part for part in listed if self.is_whole(part)]
+        lines = "".join(_line_of(part) for part in kept)
         names = {part.name for part in kept}
-        with refusals(f"cannot write {self.folder / JOURNAL}"):
+        with refusals(f"cannot write {self._journal}"):
             self.parts_folder.mkdir(exist_ok=True)
-            if not self._journal_is(lines):
-                write_text(self.folder / JOURNAL, lines)
-            for path in self.parts_folder.iterdir():
-                if path.name not in names:
-                    path.unlink()
-            for path in self.folder.glob(".*"):
-                if path.name.startswith((".manifest.", ".parts.")):
-                    path.unlink()
+            if (self._journal.read_text(errors="replace") if self._journal.exists() else "") != lines:
+                write_text(self._journal, lines)
+            left = [path for path in self.parts_folder.iterdir() if path.name not in names]
+            for path in [*left, *self.folder.glob(".manifest.*"), *self.folder.glob(".parts.*")]:
+                path.unlink()
         return kept, len(listed) - len(kept)
 
     def add(self, done: Done) -> Part:
         """Write a part whole, then list it; return what was listed.
 
         Args:
-            done: from a worker.
+            done: from a worker, with a part.
 
         Raises:
             OutputError: it cannot be written; nothing of it is left then.
         """
-        path = self.parts_folder / part_name(done.first, done.last)
-        part = Part(
-            first=done.first,
-            last=done.last,
-            rows=done.rows,
-            failed=done.failed,
-            seconds=done.seconds,
-            size=len(done.content),
-            sha256=hashlib.sha256(done.content).hexdigest(),
-        )
+        assert done.part is not None, "a worker's fault is told before"
+        path = self.parts_folder / done.part.name
         with replacing(path) as temporary, temporary.open("wb") as file:
             file.write(done.content)
             file.flush()
             os.fsync(file.fileno())
         try:
-            with refusals(f"cannot write {self.folder / JOURNAL}"):
-                _append(self.folder / JOURNAL, json.dumps(asdict(part)) + "\n")
+            with refusals(f"cannot write {self._journal}"):
+                _append(self._journal, _line_of(done.part).encode())
         except OutputError:
             with suppress(OSError):
                 path.unlink()
             raise
-        return part
+        return done.part
 
-    def _journal(self) -> Iterator[Part]:
+    def _listed(self) -> Iterator[Part]:
         try:
-            if not stat.S_ISREG((self.folder / JOURNAL).stat().st_mode):
-                raise UsageError(f"{self.folder / JOURNAL}: is no regular file; restore it")
-            with (self.folder / JOURNAL).open(encoding="utf-8", errors="replace") as file:
+            if not stat.S_ISREG(self._journal.stat().st_mode):
+                raise UsageError(f"{self._journal}: is no regular file; restore it")
+            with self._journal.open(encoding="utf-8", errors="replace") as file:
                 for line in iter(lambda: file.readline(_LONGEST_LINE), ""):
-                    # a line that a killed client did not finish
-                    with suppress(ValueError, TypeError, RecursionError):
-                        part = Part(**json.loads(line))
-                        if part.is_sound:
-                            yield part
+                    with suppress(ValueError):  # a line that a killed client did not finish
+                        yield Part.model_validate_json(line)
         except FileNotFoundError:
             return
         except OSError as error:
-            raise UsageError(f"{self.folder / JOURNAL}: cannot be read: {error.strerror or error}") from None
-
-    def _journal_is(self, lines: str) -> bool:
-        try:
-            return (self.folder / JOURNAL).read_bytes() == lines.encode()
-        except FileNotFoundError:
-            return not lines
+            raise UsageError(f"{self._journal}: cannot be read: {error.strerror or error}") from None
 
 
-def _append(path: Path, line: str) -> None:
+def _line_of(part: Part) -> str:
+    return part.model_dump_json() + "\n"
+
+
+def _append(path: Path, line: bytes) -> None:
     """Add a line to a file, or leave the file as it was."""
     with path.open("ab", buffering=0) as file:
         before = file.seek(0, os.SEEK_END)
         try:
-            if file.write(line.encode()) != len(line.encode()):
+            if file.write(line) != len(line):
                 raise OSError("No space left on device")
             os.fsync(file.fileno())
         except OSError:
             file.truncate(before)
             raise
-
-
-def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
-    """Return in words which keys differ between two specs."""
-    keys = [key for key in {**before, **now} if before.get(key) != now.get(key) and key != "name"]
-    return f" (its {', '.join(sorted(keys))} {'differs' if len(keys) == 1 else 'differ'})" if keys else ""

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import GetCoreSchemaHandler
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from nullpose.errors import UsageError
-from nullpose.scenario.choice import Choice
-from nullpose.scenario.faults import Place, as_error_details, collected, path_of, rejection
-from nullpose.scenario.units import Count, Quantity
-from nullpose.scenario.wording import described, listed, nearest, plain
+from nullpose.scenario.faults import Place, collected, path_of, rejection
+from nullpose.scenario.rules import Choice, Count, Quantity
+from nullpose.scenario.wording import described, listed, plain, unknown
 from nullpose.study.spacing import spaced
 
 __all__ = ["MOST_POINTS", "SweepAxes", "points_of"]
@@ -41,16 +40,16 @@ class _Axes:
         if not isinstance(value, Mapping):
             raise rejection(f"got {described(value)}, must be a table headed [sweep]")
         axes: list[Axis] = []
-        details: list[InitErrorDetails] = []
+        faults: list[tuple[Place, str]] = []
         for path, given in _paths(value):
             try:
                 axes.append((path, _values(plain(given))))
             except PydanticCustomError as error:
-                details.append(as_error_details((path,), error.message()))
+                faults.append(((path,), error.message()))
             except UsageError as error:
-                details.append(as_error_details((path,), str(error).replace("\n  ", "; ")))
-        if details:
-            raise collected("sweep", details)
+                faults.append(((path,), str(error).replace("\n  ", "; ")))
+        if faults:
+            raise collected("sweep", faults)
         if len(axes) and _size(axes) > MOST_POINTS:
             raise rejection(
                 f"the grid has {_size(axes)} combinations of values, at most {MOST_POINTS} are allowed"
@@ -107,9 +106,7 @@ def _values(given: object) -> tuple[float, ...]:
         )
     for key in given:
         if key not in _KEYS:
-            guess = nearest(str(key), _KEYS)
-            meant = f'; did you mean "{guess}"?' if guess else ";"
-            raise rejection(f"unknown key {key}{meant} the keys here are {listed(_KEYS)}")
+            raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
     missing = [key for key in _KEYS[:3] if key not in given]
     if missing:
         raise rejection(f"{listed(missing)} missing; a table here has from, to, points and perhaps spacing")

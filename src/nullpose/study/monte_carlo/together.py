@@ -2,108 +2,80 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario
-from nullpose.schemes import Scheme
 from nullpose.solve import ManySolutions, solve_many
 from nullpose.study.monte_carlo.case import StudyCase
-from nullpose.study.monte_carlo.rows import FAILED, Row
-from nullpose.study.monte_carlo.solving import limits_of
+from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
+from nullpose.study.monte_carlo.solving import found, options_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["Instance", "solved_together"]
+__all__ = ["At", "solved_together"]
 
-Instance = tuple[int, int, Scenario]
-"""A scene's number, a combination's number, and the scene at that combination."""
+At = tuple[int, int]
+"""A scene's number and that of a combination of swept values."""
 
 
-def solved_together(spec: StudySpec, instances: Sequence[Instance]) -> dict[tuple[int, int, int], Row]:
+def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:
     """Return the rows of those cases that can be solved together, by scene, combination and case.
 
     A row is the same whatever is solved beside it. What cannot be solved so is left out.
 
     Args:
         spec: the study.
-        instances: the scenes.
+        scenes: by number and combination.
     """
-    rows: dict[tuple[int, int, int], Row] = {}
-    for places in _groups(spec):
-        for vehicles, some in _by_vehicles(spec, places, instances):
-            for row in _rows(spec, places, vehicles, some):
-                rows[row.scene, row.point, row.case] = row
-    return rows
-
-
-def _groups(spec: StudySpec) -> list[list[int]]:
-    """Return the places of cases with one dipole and the same target and limits, group by group."""
-    groups: dict[str, list[int]] = defaultdict(list)
-    for place, case in enumerate(spec.cases):
-        if _is_usual(case):
-            groups[repr(limits_of(spec, case))].append(place)
-    return list(groups.values())
-
-
-def _is_usual(case: StudyCase) -> bool:
-    return (
-        not case.robust and case.array is None and case.pose is None and case.scheme in (None, Scheme.OPTIMUM)
-    )
-
-
-def _by_vehicles(
-    spec: StudySpec, places: Sequence[int], instances: Sequence[Instance]
-) -> Iterator[tuple[tuple[Airframe | None, ...], list[Instance]]]:
-    """Yield the scenes that have the same vehicles in all cases, with these; scenes without arrays."""
-    found: dict[tuple[Airframe | None, ...], list[Instance]] = defaultdict(list)
-    for index, point, scene in instances:
-        if scene.objective == "min-sinr":
-            vehicles = tuple(spec.cases[place].airframe or scene.airframe for place in places)
+    alike: dict[str, list[StudyCase]] = defaultdict(list)  # by target and limits
+    for case in spec.cases:
+        if case.is_best_pose:
+            alike[repr(options_of(spec, case))].append(case)
+    vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
+    for at, scene in scenes.items():
+        if not scene.objective_record.transmits:
             plain = scene if scene.array is None else scene.model_copy(update={"array": None})
-            found[vehicles].append((index, point, plain))
-    yield from found.items()
+            vehicles[scene.airframe][at] = plain
+    rows = (
+        row
+        for cases in alike.values()
+        for own, some in vehicles.items()
+        for row in _rows(spec, cases, own, some)
+    )
+    return {(row["scene"], row["point"], row["case"]): row for row in rows}
 
 
 def _rows(
-    spec: StudySpec,
-    places: Sequence[int],
-    vehicles: tuple[Airframe | None, ...],
-    instances: Sequence[Instance],
+    spec: StudySpec, cases: Sequence[StudyCase], own: Airframe | None, scenes: Mapping[At, Scenario]
 ) -> Iterator[Row]:
-    scenes = [scene for _, _, scene in instances]
-    began = time.perf_counter()
+    """Yield the rows of cases with the same target and limits in scenes with the same vehicle."""
+    began, places = time.perf_counter(), list(scenes.items())
     try:
-        found = solve_many(scenes, airframes=vehicles, **limits_of(spec, spec.cases[places[0]]))
+        many = solve_many(
+            list(scenes.values()),
+            airframes=[case.airframe or own for case in cases],
+            **options_of(spec, cases[0]),
+        )
     except Exception:  # one of them is at fault: the others are not lost, nor solved in another way
-        middle = len(instances) // 2
-        for some in (instances[:middle], instances[middle:]) if middle else ():
-            yield from _rows(spec, places, vehicles, some)
+        middle = len(places) // 2
+        for some in (places[:middle], places[middle:]) if middle else ():
+            yield from _rows(spec, cases, own, dict(some))
         return
-    seconds = (time.perf_counter() - began) / (len(scenes) * len(places))
-    for number, (index, point, scene) in enumerate(instances):
-        for column, place in enumerate(places):
-            values = _values(found, number, column, scene)
-            yield Row(scene=index, point=point, case=place, seconds=seconds, **values)
+    seconds = (time.perf_counter() - began) / (len(scenes) * len(cases))
+    for number, (at, scene) in enumerate(places):
+        for column, case in enumerate(cases):
+            yield row_of(*at, case.name, seconds=seconds, **_known(many, (number, column), scene))
 
 
-def _values(found: ManySolutions, number: int, column: int, scene: Scenario) -> dict[str, Any]:
-    at = (number, column)
-    status = found.status[at]
+def _known(many: ManySolutions, at: tuple[int, int], scene: Scenario) -> dict[str, Any]:
+    status, reason = many.status[at], str(many.reason[at])
     if status is None:
-        return {"status": FAILED, "reason": str(found.reason[at])}
-    value, bound = float(found.value[at]), float(found.upper_bound[at])
-    x_m, y_m, z_m = found.position_m[at].tolist()
-    return {
-        "status": str(status.value),
-        "reason": str(found.reason[at]),
-        "value": value,
-        "bound": bound if math.isfinite(bound) else None,
-        "gap": bound / value - 1.0 if math.isfinite(bound) else None,
-        "position_m": (x_m, y_m, z_m),
-        "attitude_rad": (float(found.roll_rad[at]), float(found.pitch_rad[at]), float(found.yaw_rad[at])),
-        "binding_node": scene.node_names[int(found.binding_node[at])],
-        "boxes": int(found.boxes[at]),
-    }
+        return {"status": FAILED, "reason": reason}
+    angles = (float(each[at]) for each in (many.roll_rad, many.pitch_rad, many.yaw_rad))
+    pose = Pose(many.position_m[at], *angles)
+    columns = found(status, pose, many.value[at], float(many.upper_bound[at]), float(many.relative_gap[at]))
+    node = scene.node_names[int(many.binding_node[at])]
+    return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}

@@ -1,13 +1,22 @@
-"""Whether a box, less balls, is empty."""
+"""Whether an airspace, less the keep-out balls, is empty."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nullpose.scenario.room import has_room
+from nullpose.scenario import Airspace
+from nullpose.scenario.reach import may_hold_a_position
 
 ROOT_THIRD = 1.0 / np.sqrt(3.0)
+
+
+def has_room(lower: np.ndarray, upper: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+    """Returns whether a box holds a position outside balls."""
+    x_m, y_m, altitude_m = ((low, high) for low, high in zip(lower.tolist(), upper.tolist(), strict=True))
+    bounds = {"x_m": x_m, "y_m": y_m, "altitude_m": altitude_m}
+    finite = {key: ends for key, ends in bounds.items() if np.isfinite(ends).all()}
+    return may_hold_a_position(Airspace(keep_out_m=radius, **finite), centres)
 
 
 def box(*ranges: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,186 @@
+"""What a value of a file must be: a number within limits, a list of so many members, a list of tables."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from nullpose.scenario.faults import rejection
+from nullpose.scenario.wording import described, nearest, plain
+
+__all__ = ["MOST_MEMBERS", "Ascending", "Choice", "Count", "ListOf", "Quantity", "Rule", "list_of_tables"]
+
+
+MOST_MEMBERS = 10_000
+"""The most members of a list, such as nodes or the corners of a polygon."""
+
+_NUMBER = re.compile(r"[-+.\deE]*\d[-+.\deE]*")
+
+
+class Rule:
+    """What a value must be, as the metadata of an annotated type."""
+
+    __slots__ = ()
+
+    def read(self, value: object) -> Any:
+        """Returns a raw value as its type takes it, or raises the fault that says what is wrong with it."""
+        return value
+
+    def judge(self, value: Any) -> Any:
+        """Returns a value of the type, or raises the fault that says what is wrong with it."""
+        return value
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Returns the JSON Schema, given that of the type."""
+        return inner
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        read = core_schema.no_info_before_validator_function(self.read, handler(source))
+        return core_schema.no_info_after_validator_function(self.judge, read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return self.schema(handler(schema))
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity(Rule):
+    """A finite number with a unit, between two limits; used as the metadata of an annotated float.
+
+    The limits are wide enough for any radio scene and narrow enough that no product of such numbers in
+    the physics overflows.
+
+    Args:
+        noun: what the number is, with its unit, as in ``a power in W``.
+        low: smallest number allowed.
+        high: largest number allowed.
+        hint: what to try when a number is outside the limits.
+    """
+
+    noun: str
+    low: float
+    high: float
+    hint: str
+
+    @property
+    def allowed(self) -> str:
+        """The allowed numbers in words."""
+        return f"{self.noun} from {self.low:g} to {self.high:g}"
+
+    def read(self, value: object) -> float:
+        """Returns the number, or raises the fault that says what is wrong with it."""
+        value = plain(value)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            is_quoted = isinstance(value, str) and _NUMBER.fullmatch(value)
+            remedy = "; write it without quotes" if is_quoted else ""
+            raise rejection(f"got {described(value)}, must be a number: {self.allowed}{remedy}")
+        if not self.low <= value <= self.high:  # also refuses NaN
+            raise rejection(f"got {described(value)}, must be {self.allowed} ({self.hint})")
+        return float(value)
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Returns the JSON Schema: the type with its limits."""
+        return {"type": inner["type"], "minimum": self.low, "maximum": self.high}
+
+
+class Count(Quantity):
+    """A whole number between two limits; used as the metadata of an annotated int."""
+
+    def read(self, value: object) -> int:
+        """Returns the whole number, or raises the fault that says what is wrong with it."""
+        number = super().read(value)
+        if not number.is_integer():
+            raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
+        return int(number)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice(Rule):
+    """One of some words, as the metadata of an annotated text.
+
+    Args:
+        noun: what is chosen, as in ``an objective``.
+        words: the words to choose from.
+    """
+
+    noun: str
+    words: tuple[str, ...]
+
+    def read(self, value: object) -> str:
+        """Returns the word, or raises the fault that names the words and the one nearest."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        guess = nearest(value, self.words) if isinstance(value, str) else ""
+        hint = f'; did you mean "{guess}"?' if guess else ""
+        allowed = " or ".join(f'"{word}"' for word in self.words)
+        raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{hint}")
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Returns the JSON Schema: a text with its allowed values."""
+        return {"type": "string", "enum": list(self.words)}
+
+
+@dataclass(frozen=True, slots=True)
+class ListOf(Rule):
+    """A list of so many members, as the metadata of an annotated tuple.
+
+    Args:
+        noun: what the list is, in words.
+        fewest: the smallest number of members.
+        most: the largest.
+    """
+
+    noun: str
+    fewest: int
+    most: int
+
+    def read(self, value: object) -> list[object]:
+        """Returns the members, or raises the fault that says what is wrong with the list."""
+        value = plain(value)
+        if not isinstance(value, list | tuple) or not self.fewest <= len(value) <= self.most:
+            raise rejection(f"got {described(value)}, must be {self.noun}")
+        return list(value)
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Returns the JSON Schema of the list."""
+        # One "items" for all members, not "prefixItems": editors that know only older drafts read it too.
+        items = inner["items"] if "items" in inner else inner["prefixItems"][0]
+        return {"type": "array", "items": items, "minItems": self.fewest, "maxItems": self.most}
+
+
+class Ascending(ListOf):
+    """A list of two numbers, the second no less than the first."""
+
+    def judge(self, value: tuple[float, float]) -> tuple[float, float]:
+        """Returns the two, or raises the fault that they are reversed."""
+        if value[0] > value[1]:
+            raise rejection(
+                f"got {list(value)}, which is reversed and so holds nothing; must be {self.noun}; "
+                f"try {list(value[::-1])}"
+            )
+        return value
+
+
+class Members(ListOf):
+    """A list of tables, as the metadata of an annotated tuple."""
+
+    def judge(self, value: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Returns the tables, each that leaves its name out being named by its letter and its place."""
+        return tuple(
+            member
+            if member.name or member.letter is None
+            else BaseModel.model_copy(member, update={"name": f"{member.letter}{place}"})
+            for place, member in enumerate(value, 1)
+        )
+
+
+def list_of_tables(key: str, fewest: int = 0) -> Members:
+    """Returns the rule of a list of so many tables that are headed by a key."""
+    least = "at least one table" if fewest else "tables"
+    return Members(f"a list of {least}, each headed [[{key}]]", fewest, MOST_MEMBERS)

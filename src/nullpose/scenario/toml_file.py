@@ -1,0 +1,137 @@
+"""Reading TOML files, in bounds, with what is wrong with those that cannot be read."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.files import MOST_BYTES, read_bytes
+from nullpose.scenario.wording import nearest
+
+__all__ = ["SCENARIO_FILE", "FileKind", "file_text", "tables_of"]
+
+_TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
+_KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")
+_MOST_PARTS = 64
+_LONGEST_WORD = 10_000
+_MOST_KEYS = 200_000  # 10,000 nodes have 120,000 at most
+_NO_WORD = re.compile(  # comments, and texts, which may be a part of a key; an open one goes on to its end
+    r"""\"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\[^\n])*"?|'[^'\n]*'?|\#[^\n]*""",
+    re.DOTALL,
+)
+_WORD = re.compile(r"[\w\-. \t]+")
+_HINTS = {
+    "Cannot overwrite a value": "a key is given twice; keep one",
+    "Cannot declare": "a table is headed twice; lists of tables, such as [[nodes]], take double brackets",
+    "Invalid value": "texts stand in quotes, lists in brackets, and numbers are written as in 8.0 or 1e-3",
+    "Expected '=' after a key": "lines are written as in power_w = 1.0",
+    "Invalid statement": "lines are written as in power_w = 1.0",
+    "Expected newline": "every key stands on a line of its own",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class FileKind:
+    """A kind of file: what it is called, what it is usually named, and how such names end."""
+
+    noun: str
+    usual_name: str
+    endings: tuple[str, ...] = (".toml",)
+
+
+SCENARIO_FILE = FileKind("a scenario file", "scenario.toml")
+
+
+def tables_of(content: bytes | str) -> dict[str, Any]:
+    """Returns the tables of a TOML file, given what it holds, of 10 MB at most.
+
+    Raises:
+        ScenarioError: it is no TOML, or would take too long to read.
+    """
+    text = content if isinstance(content, str) else _decoded(content)
+    place, message = "", ""
+    if text.count("=") > _MOST_KEYS:  # each takes the reader some 5 microseconds
+        message = f"it has more than {_MOST_KEYS} keys, the most that is read"
+    # Python's reader takes memory by the square of a key's parts, and much for a long number.
+    elif any(map(_is_monstrous, text.split("\n"))) and any(
+        map(_is_monstrous, _WORD.findall(_NO_WORD.sub("text", text)))
+    ):
+        message = f"a key has more than {_MOST_PARTS} parts, or a word more than {_LONGEST_WORD} characters"
+    else:
+        try:
+            return tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            found = _TOML_PLACE.search(str(error))
+            words = _KEY_TUPLE.sub(lambda keys: keys[1].replace("', '", "."), _TOML_PLACE.sub("", str(error)))
+            lines = text.splitlines() or [""]
+            end = f"line {len(lines)}, column {len(lines[-1]) + 1}"
+            place = found[1] if found and found[1] else end
+            hint = next((f" ({hint})" for start, hint in _HINTS.items() if words.startswith(start)), "")
+            message = f"this is not TOML: {words[:1].lower()}{words[1:]}{hint}"
+        except RecursionError:
+            message = "lists or tables are nested too deeply to be read"
+        except ValueError:  # an integer beyond what Python converts
+            message = "a number has too many digits; write it as in 1e-3"
+    raise ScenarioError([Fault(place, message)])
+
+
+def _is_monstrous(text: str) -> bool:
+    return len(text) > _LONGEST_WORD or text.count(".") > _MOST_PARTS
+
+
+def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), place: str = "") -> str:
+    """Returns the text of a file, of 10 MB at most.
+
+    Args:
+        path: the file.
+        kind: what it should be; files of this kind are suggested in place of one that is not there.
+        base: the folder from which these are named.
+        place: where the file is named, for messages.
+
+    Raises:
+        ScenarioError: it cannot be read, or is no text.
+    """
+    try:
+        content = read_bytes(path)
+    except FileNotFoundError:
+        message = f"there is no such file{_other_file(path, kind, base)}"
+    except IsADirectoryError:
+        message = f"this is a folder, must be {kind.noun}{_other_file(path / kind.usual_name, kind, base)}"
+    except OSError as error:
+        reason = error.strerror or "unknown reason"
+        message = (
+            f"the file cannot be read ({reason[:1].lower()}{reason[1:]}); check its name and permissions"
+        )
+    except ValueError:  # a null character in the name
+        message = "this cannot be the name of a file"
+    else:
+        return _decoded(content)
+    raise ScenarioError([Fault(place, message)])
+
+
+def _decoded(content: bytes) -> str:
+    if len(content) > MOST_BYTES:
+        message = f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read"
+        raise ScenarioError([Fault("", message)])
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        message = f"byte 0x{content[error.start]:02x} is not UTF-8 text; save the file as UTF-8"
+        raise ScenarioError([Fault(f"line {line}", message)]) from None
+
+
+def _other_file(path: Path, kind: FileKind, base: Path) -> str:
+    """Returns what to try instead of a file that is not there."""
+    try:
+        names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix in kind.endings)
+    except OSError:
+        return f", nor a folder {path.parent} that can be read; check the path"
+    guess = nearest(path.name, names) or (names[0] if len(names) == 1 else "")
+    seen = path.parent / guess
+    suggested = seen.relative_to(base) if seen.is_relative_to(base) else seen
+    return f"; did you mean {suggested}?" if guess else "; check the path"
