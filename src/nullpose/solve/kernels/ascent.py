@@ -206,11 +206,11 @@ def largest_shares(pool, sides, total):
 
 
 @inner_kernel
-def put_weights(pool, shares, sides, total, ratios, weights):
+def put_weights(pool, sides, total, ratios, weights):
     """Fill the multipliers of all ratios, and of the constraints after them."""
     weights[:] = 0.0
     for e in range(total):
-        weights[ratios + e if e < sides else pool.members[e]] = shares[e]
+        weights[ratios + e if e < sides else pool.members[e]] = pool.shares[e]
 
 
 @inner_kernel
@@ -242,7 +242,6 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
         ratio, share = (int(row[INDEX + s]), row[WEIGHT + s]) if row[COUNT] > 0.0 else (0, 1.0)
         total = take_in(family, level_axes, basis, row, whitening, ratio, share, pool, total)
     before = lowest = math.inf
-    kept, kept_v, held = scratch(POOL), scratch(3), total
     for _ in range(_STEPS):
         mix[:] = 0.0
         for e in range(total):
@@ -250,9 +249,8 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
                 add_scaled(shares[e], pool.forms[e], mix)
         top = top_eigenvector(mix, v)
         if top < lowest:
-            lowest, held = top, total
-            copy_into(shares, kept)
-            copy_into(v, kept_v)
+            lowest = top
+            put_weights(pool, sides, total, ratios, weights)
         if not top < before:  # a step too long, since the second eigenvalue came near
             for e in range(total):
                 shares[e] = 0.5 * (shares[e] + trial[e])
@@ -263,7 +261,6 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
         for c in range(sides):
             inside = inside and bilinear(pool.forms[c], v, v) >= -_OUTSIDE
         if inside and top - reached <= tolerance * level:
-            put_weights(pool, shares, sides, total, ratios, weights)
             return top, True, total
         for _ in range(_ADDED):
             ratio = lowest_missing(every, top, pool, sides, total)
@@ -281,8 +278,4 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
         shares[:] = 0.0
         for i in range(m):
             shares[pool.active[i]] = max(0.0, answer[i])
-    if lowest > _GOOD_ENOUGH * level:
-        return math.inf, False, total
-    copy_into(kept_v, v)
-    put_weights(pool, kept, sides, held, ratios, weights)
-    return lowest, False, total
+    return lowest if lowest <= _GOOD_ENOUGH * level else math.inf, False, total

@@ -25,7 +25,8 @@ from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polynomial import real_roots
 from nullpose.solve.kernels.scratch import scratch, zeroed
-from nullpose.solve.kernels.symmetric import copy_into, dot, eigen3, largest_eigenvalue, matrix_of, normalise
+from nullpose.solve.kernels.symmetric import copy_into, eigen3, largest_eigenvalue, matrix_of, normalise
+from nullpose.solve.kernels.vectors import dot
 
 __all__ = ["best_axis", "best_axis_of_forms"]
 

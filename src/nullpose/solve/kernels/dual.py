@@ -18,12 +18,12 @@ from nullpose.solve.kernels.symmetric import (
     cholesky_factor,
     cholesky_solve,
     copy_into,
-    dot,
     form_product,
     inner,
     matrix_of,
     smallest_of,
 )
+from nullpose.solve.kernels.vectors import dot
 
 __all__ = ["dual_multipliers", "positive_definite"]
 

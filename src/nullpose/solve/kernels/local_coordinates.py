@@ -18,12 +18,12 @@ from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import (
     add_scaled,
     copy_into,
-    dot,
     inner,
     normalise,
     squared_distance,
     tangents,
 )
+from nullpose.solve.kernels.vectors import dot
 
 __all__ = [
     "AFFINE",

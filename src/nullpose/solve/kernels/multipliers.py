@@ -24,14 +24,8 @@ from nullpose.solve.kernels.node import (
     keep_largest,
 )
 from nullpose.solve.kernels.scratch import scratch, scratch_int
-from nullpose.solve.kernels.symmetric import (
-    add_square,
-    copy_into,
-    dot,
-    form_product,
-    normalise,
-    top_eigenvector,
-)
+from nullpose.solve.kernels.symmetric import add_square, copy_into, form_product, normalise, top_eigenvector
+from nullpose.solve.kernels.vectors import dot
 from nullpose.solve.kernels.whitened import (
     axis_of,
     constraint_forms,
@@ -50,7 +44,8 @@ _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
 _LOOSE = 1e-3  # and in units of a box's size
-_GRID = 5  # of axes across a cell, along each side
+_GRID = 9  # of axes across a cell, along each side
+_MARGIN = 0.01  # by which they are inside the band, as a share of its width
 
 
 @inner_kernel
@@ -79,20 +74,19 @@ def cell_start(axis_field, basis, back, row, start):
     half = half_width(axis_field)
     least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
     u, w = scratch(3), scratch(3)
-    for point in range(_GRID * _GRID):
-        for share in (0.25, 0.75):
-            u[face] = 1.0
-            for side in range(2):
-                low, high = (row[CELL + 2 * side], row[CELL + 2 * side + 1]) if has_cell else (-1.0, 1.0)
-                place = point % _GRID if side == 0 else point // _GRID
-                u[(face + 1 + side) % 3] = low + (high - low) * (0.02 + 0.96 * place / (_GRID - 1))
-            if has_band:
-                wanted = least + share * (greatest - least)
-                normalise(u)
-                clamp_elevation(wanted, wanted, u)
-            if not has_cell or in_cell(face, row, u):
-                whiten_axis(basis, back, u, w)
-                add_square(1.0 / dot(w, w), w, start)
+    margin, grid = _MARGIN * (greatest - least), _GRID if has_band else 2
+    for point in range(grid * grid):
+        u[face] = 1.0
+        for side in range(2):
+            low, high = (row[CELL + 2 * side], row[CELL + 2 * side + 1]) if has_cell else (-1.0, 1.0)
+            place = point % grid if side == 0 else point // grid
+            u[(face + 1 + side) % 3] = low + (high - low) * (0.02 + 0.96 * place / (grid - 1))
+        if has_band:
+            normalise(u)
+            clamp_elevation(least + margin, greatest - margin, u)
+        if not has_cell or in_cell(face, row, u):
+            whiten_axis(basis, back, u, w)
+            add_square(1.0 / dot(w, w), w, start)
     if level_axes:
         start[2] += 0.1
     trace = start[0] + start[1] + start[2]
@@ -154,7 +148,7 @@ def interior_multipliers(
         # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
         primal, total = sparse_dual(forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix)
         top_eigenvector(matrix, v)
-    put_weights(pool, pool.shares, sides, total, ratios, weights)
+    put_weights(pool, sides, total, ratios, weights)
     return primal
 
 

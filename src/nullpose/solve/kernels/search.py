@@ -18,13 +18,8 @@ from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.local_coordinates import AFFINE, axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.scratch import scratch, zeroed
-from nullpose.solve.kernels.symmetric import (
-    add_scaled,
-    copy_into,
-    dot,
-    normalise,
-    top_eigenvector,
-)
+from nullpose.solve.kernels.symmetric import add_scaled, copy_into, normalise, top_eigenvector
+from nullpose.solve.kernels.vectors import dot
 
 __all__ = ["search"]
 
@@ -34,8 +29,8 @@ _SAME = 1e-9
 _ROUGH = 1e-2
 _STEP = 1e-3  # m beyond a forbidden piece's side
 _SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
-_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most turns: where what is allowed is a sliver
-_TURNS = (8, 32, 32, 32)
+_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most laps: where what is allowed is a sliver
+_LAPS = (8, 32, 32, 32)
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -55,42 +50,44 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)
 
 
-@inner_heap_kernel
+@inner_kernel
+def push_away(centre, n, reach, fallback, p):
+    """Move a position to a distance from a centre in its first n coordinates; from the centre along one."""
+    away = 0.0
+    for i in range(n):
+        away += (p[i] - centre[i]) ** 2
+    away = math.sqrt(away)
+    for i in range(n):
+        way = (p[i] - centre[i]) / away if away > 1e-9 else (1.0 if i == fallback else 0.0)
+        p[i] = centre[i] + reach * way
+
+
+@inner_kernel
 def step_outside(p, domain, step, chosen):
     """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
-    low, high, start, sides = domain.low_m, domain.high_m, domain.piece_start, domain.piece_sides
+    low, high, sides, q, best = domain.low_m, domain.high_m, domain.piece_sides, scratch(3), scratch(3)
     clear = True
     choose_sides(domain, p, chosen)
-    for c in range(start.shape[0] - 1):
+    for c in range(chosen.shape[0]):
         if side_slack(sides[chosen[c]], p) > 0.0:
             continue
-        clear = False
-        least = math.inf
-        best = p.copy()
-        q = scratch(3)
-        for s in range(start[c], start[c + 1]):  # the side that is nearest and in the box
-            side = sides[s]
-            for i in range(3):
-                q[i] = p[i]
-            if side[0] == 0.0:
-                away = side_slack(side, p)
-                for i in range(3):
-                    q[i] += (step - away) * side[1 + i]
+        clear, least = False, math.inf
+        copy_into(p, best)
+        for s in range(
+            domain.piece_start[c], domain.piece_start[c + 1]
+        ):  # beyond the nearest side in the box
+            copy_into(p, q)
+            if sides[s, 0] == 0.0:
+                add_scaled(step - side_slack(sides[s], p), sides[s, 1:4], q)
             else:
-                d = math.hypot(p[0] - side[1], p[1] - side[2])
-                x, y = ((p[0] - side[1]) / d, (p[1] - side[2]) / d) if d > 1e-9 else (1.0, 0.0)
-                q[0], q[1] = side[1] + x * (side[4] + step), side[2] + y * (side[4] + step)
-            inside = True
-            moved = 0.0
+                push_away(sides[s, 1:3], np.int64(2), sides[s, 4] + step, 0, q)
+            moved = squared_distance(q, p)
             for i in range(3):
-                inside = inside and low[i] <= q[i] <= high[i]
-                moved += (q[i] - p[i]) ** 2
-            if inside and moved < least:
+                moved = moved if low[i] <= q[i] <= high[i] else math.inf
+            if moved < least:
                 least = moved
-                for i in range(3):
-                    best[i] = q[i]
-        for i in range(3):
-            p[i] = best[i]
+                copy_into(q, best)
+        copy_into(best, p)
     return clear
 
 
@@ -101,35 +98,24 @@ def push_out(p, domain):
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     for attempt in range(len(_FINER)):
         copy_into(start, p)
-        if push_by(p, domain, _FINER[attempt], _TURNS[attempt], chosen):
+        if push_by(p, domain, _FINER[attempt], _LAPS[attempt], chosen):
             return True
     return False
 
 
 @inner_kernel
-def push_by(p, domain, share, turns, chosen):
+def push_by(p, domain, share, laps, chosen):
     """Do what ``push_out`` does, by a share of the usual steps; return whether it came to an end."""
-    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
-    keep_radius = domain.keep_out_m
-    for i in range(3):
-        p[i] = min(max(p[i], low[i]), high[i])
-    margin = (1.0 + share * _SPARE) * keep_radius
-    for _ in range(turns):
+    margin = (1.0 + share * _SPARE) * domain.keep_out_m
+    for _ in range(laps):
+        for i in range(3):
+            p[i] = min(max(p[i], domain.low_m[i]), domain.high_m[i])
         clear = step_outside(p, domain, share * _STEP, chosen)
-        for q in range(keep_points.shape[0]):
-            d = 0.0
-            for i in range(3):
-                d += (p[i] - keep_points[q, i]) ** 2
-            d = math.sqrt(d)
-            if d < margin:
+        for point in domain.keep_out_points_m:
+            if squared_distance(p, point) < margin * margin:
                 clear = False
-                rises = high[2] - keep_points[q, 2] > margin
-                for i in range(3):
-                    way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else 0.0
-                    if d <= 1e-9 and i == (2 if rises else 0):
-                        way = 1.0
-                    pushed = keep_points[q, i] + way * (1.0 + 2.0 * share * _SPARE) * margin
-                    p[i] = min(max(pushed, low[i]), high[i])
+                upwards = 2 if domain.high_m[2] - point[2] > margin else 0
+                push_away(point, np.int64(3), (1.0 + 2.0 * share * _SPARE) * margin, upwards, p)
         if clear:
             return True
     return False

@@ -8,6 +8,7 @@ import numpy as np
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.vectors import cross, dot, perpendicular, store, unit
 
 __all__ = [
     "add_scaled",
@@ -17,7 +18,6 @@ __all__ = [
     "cholesky_solve",
     "copy_into",
     "copy_table",
-    "dot",
     "eigen3",
     "form_product",
     "gauss_solve",
@@ -76,12 +76,6 @@ def inner(x, y, n):
 
 
 @inner_kernel
-def dot(x, y):
-    """Return ``x . y`` of vectors of three."""
-    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-
-
-@inner_kernel
 def squared_distance(p, q):
     """Return ``|p - q|^2`` of vectors of three."""
     return (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 + (p[2] - q[2]) ** 2
@@ -90,25 +84,14 @@ def squared_distance(p, q):
 @inner_kernel
 def normalise(v):
     """Bring a vector of three to unit length."""
-    norm = math.sqrt(dot(v, v))
-    for i in range(3):
-        v[i] /= norm
+    store(unit(v), v)
 
 
 @kernel
 def tangents(u, a, b):
     """Fill two unit vectors that make an orthogonal frame with the unit vector ``u``."""
-    least = 0
-    for i in range(1, 3):
-        if abs(u[i]) < abs(u[least]):
-            least = i
-    # a = u x e_least, normalised; b = u x a
-    i, j = (least + 1) % 3, (least + 2) % 3
-    norm = math.sqrt(u[i] * u[i] + u[j] * u[j])
-    a[least], a[i], a[j] = 0.0, u[j] / norm, -u[i] / norm
-    b[0] = u[1] * a[2] - u[2] * a[1]
-    b[1] = u[2] * a[0] - u[0] * a[2]
-    b[2] = u[0] * a[1] - u[1] * a[0]
+    store(perpendicular(u), a)
+    store(cross(u, a), b)
 
 
 @inner_kernel
