@@ -18,7 +18,13 @@ from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.local_coordinates import AFFINE, axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.scratch import scratch, zeroed
-from nullpose.solve.kernels.symmetric import add_scaled, copy_into, normalise, top_eigenvector
+from nullpose.solve.kernels.symmetric import (
+    add_scaled,
+    copy_into,
+    normalise,
+    squared_distance,
+    top_eigenvector,
+)
 from nullpose.solve.kernels.vectors import dot
 
 __all__ = ["search"]
@@ -73,9 +79,7 @@ def step_outside(p, domain, step, chosen):
             continue
         clear, least = False, math.inf
         copy_into(p, best)
-        for s in range(
-            domain.piece_start[c], domain.piece_start[c + 1]
-        ):  # beyond the nearest side in the box
+        for s in range(domain.piece_start[c], domain.piece_start[c + 1]):  # beyond the nearest
             copy_into(p, q)
             if sides[s, 0] == 0.0:
                 add_scaled(step - side_slack(sides[s], p), sides[s, 1:4], q)
