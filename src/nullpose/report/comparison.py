@@ -83,11 +83,7 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     rows: list[Mapping[str, str]] = []
     for cells in (_value_cells, _pose_cells, _link_cells):
         rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
-    others = ""
-    if scenario.array is not None:
-        others = "These cases have one dipole. For the file's array: solve, or compare --airframes"
-    elif scenario.airframe is not None:
-        others = "Other vehicles in this scene: compare --airframes"
+    others = "Each case has one dipole on the file's vehicle. Other vehicles, and arrays: compare --airframes"
     return document(
         head(scenario.name),
         table("", rows, bold=[f"smallest {quantity.short} ({quantity.unit})"]),
@@ -149,9 +145,10 @@ def _pose_cells(solution: Result, _: float) -> dict[str, str]:
 def _link_cells(solution: Result, _: float) -> dict[str, str]:
     """Return each node's SINR, margin or rate, and its ratio; a mark where the node binds."""
     quantity, links, binding = solution.objective.quantity, solution.links, binding_nodes(solution)
-    cells = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
-    for link in links:
-        mark = "*" if link.node in binding else " "
-        value = f"{quantity.in_unit(quantity.at(link)):.4f}{mark}"
-        cells[f"{quantity.short} {link.node} ({quantity.unit})"] = value
-    return cells
+    ratios = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
+    return ratios | {
+        f"{quantity.short} {link.node} ({quantity.unit})": (
+            f"{quantity.in_unit(quantity.at(link)):.4f}{'*' if link.node in binding else ' '}"
+        )
+        for link in links
+    }

@@ -22,6 +22,7 @@ __all__ = ["Override", "apply_overrides", "parse_override"]
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+_PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,18 +77,17 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     """
     data = scenario.to_dict()
     faults: list[Fault] = []
-    applied: list[Override] = []
-    for override in overrides:
+    given = list(overrides)
+    for override in given:
         try:
             parsed = parse_override(override) if isinstance(override, str) else override
-            applied.append(parsed)
             steps = _steps(parsed.path)
             _assign(Scenario, data, steps, deepcopy(plain(parsed.value)), parsed.path)
             if steps[0] == "origin":
                 _unlocate(data)
         except ScenarioError as error:
             faults += error.faults
-    source = f"override {listed([str(override) for override in applied])}"
+    source = f"override {listed([str(override) for override in given])}"
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
@@ -112,15 +112,12 @@ def _value(path: str, text: str) -> object:
 
 def _steps(path: str) -> Place:
     """Returns the path as keys, names and indices."""
-    steps: list[str | int] = []
-    end = 0
-    while end < len(path) or not steps:
-        step = _STEP.match(path, end)
-        if not step:
-            raise ScenarioError([Fault(path, "this is not a path")])
-        steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
-        end = step.end()
-    return tuple(steps)
+    if not _PATH.fullmatch(path):
+        raise ScenarioError([Fault(path, "this is not a path")])
+    found = (step.groups() for step in _STEP.finditer(path))
+    return tuple(
+        int(index) if index else double or single or bare or "" for double, single, bare, index in found
+    )
 
 
 def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object, path: str) -> None:

@@ -18,6 +18,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.scene import (
     ALONE,
+    AXIS,
     DRONE,
     PAIR,
     PANELS,
@@ -44,7 +45,6 @@ _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towa
 _SURFACE = "radiation pattern, near side cut away"
 
 # Lengths drawn, as shares of the scene's extent.
-_AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 _ARRAY = 0.10  # from the middle to the outermost element
 _UPRIGHT = 0.018  # half of an element
 _HEADING = _BEAM = 0.20  # the heading's arrow, and the beam where the gain is largest
@@ -59,9 +59,8 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
         rows: the poses to draw, each at its own jamming level.
     """
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
-    poses = [row.pose for row in rows]
-    stages = [Stage(scenario=scenario, poses=(pose,), view=PANELS) for pose in poses]
-    return draw_panels(stages, poses, _draw_dipole, surface=_SURFACE, titles=titles)
+    stage = Stage(scenario=scenario, poses=tuple(row.pose for row in rows), view=PANELS)
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, titles=titles)
 
 
 def draw_pose(solution: Result) -> Figure:
@@ -73,7 +72,7 @@ def draw_pose(solution: Result) -> Figure:
     scenario, pose = solution.scenario, solution.pose
     words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
-    return draw_panels([stage], [pose], _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
 
 
 def draw_robust(solution: Result) -> Figure:
@@ -86,7 +85,6 @@ def draw_robust(solution: Result) -> Figure:
     """
     scenario, quantity = solution.scenario, Quantity.of(solution.scenario)
     both = {"robust pose": solution.details.robust, "best pose as stated": solution.details.nominal}
-    poses = [one.pose for one in both.values()]
     titles = []
     for name, one in both.items():
         guaranteed = with_unit(quantity.in_unit(one.guaranteed), quantity)
@@ -94,8 +92,10 @@ def draw_robust(solution: Result) -> Figure:
         titles.append(f"{name}\n{guaranteed} guaranteed, {stated} without errors")
     errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
     head = f"{scenario.name}\n{textwrap.shorten(errors, _LETTERS, placeholder=' ...')}"
-    stage = Stage(scenario=scenario, poses=tuple(poses), view=PAIR, uncertain=True)
-    return draw_panels([stage, stage], poses, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
+    stage = Stage(
+        scenario=scenario, poses=tuple(one.pose for one in both.values()), view=PAIR, uncertain=True
+    )
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
 
 
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
@@ -111,7 +111,7 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
 def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen."""
     radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
-    reach = _AXIS * radius_m * pose.antenna_axis
+    reach = AXIS * radius_m * pose.antenna_axis
     look = {"linewidth": 1.8, "zorder": 6.5, "label": "antenna axis (null)"}
     draw_line(axes, position - reach, position + reach, color=DRONE, **look)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)
@@ -142,8 +142,7 @@ def draw_array(solution: Result) -> Figure:
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
     view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
     return draw_panels(
-        [Stage(scenario=solution.scenario, poses=(solution.pose,), view=view)],
-        [solution.pose],
+        Stage(scenario=solution.scenario, poses=(solution.pose,), view=view),
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
         surface=f"gain of the beam{whose}, horizontal cut as a line",
         head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}",
