@@ -168,7 +168,7 @@ GEOJSON_CASES = [
         "must be [longitude, latitude, altitude]",
     ),
     (collection(feature([14.5, None, 1])), "n.geojson: features[0].geometry.coordinates", "must be [long"),
-    (collection(feature(alt_m=3.0)), "n.geojson: features[0].properties.alt_m", "third of the coordinates"),
+    (collection(feature(alt_m=3.0)), "n.geojson: features[0].properties.alt_m", "remove this property"),
     (collection(feature(lat_deg=3.0)), "n.geojson: features[0].properties.lat_deg", "remove this property"),
     (
         collection(feature(), feature([14.5, 91.0, 1])),

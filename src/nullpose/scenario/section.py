@@ -171,8 +171,9 @@ class Section(BaseModel):
 
     def __eq__(self, other: object) -> bool:
         # Not pydantic's own comparison, which would meet the cached arrays too.
-        same = type(self) is type(other)
-        return same and all(getattr(self, key) == getattr(other, key) for key in type(self).model_fields)
+        return type(self) is type(other) and all(
+            getattr(self, key) == getattr(other, key) for key in type(self).model_fields
+        )
 
 
 def inner_section(field: FieldInfo) -> type[Section] | None:
