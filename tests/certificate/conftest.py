@@ -182,11 +182,11 @@ def make_leaves() -> Callable[..., Leaves]:
 
 @pytest.fixture(scope="session")
 def link_matrix() -> Callable[[np.ndarray], np.ndarray]:
-    """Returns a function: the form of a link, ``(|r|^2 I - r r^T) / |r|^4``, densely."""
+    """Returns a function: the forms of links, ``(|r|^2 I - r r^T) / |r|^4``, (..., 3, 3)."""
 
     def matrix(r: np.ndarray) -> np.ndarray:
-        square = r @ r
-        return (square * np.eye(3) - np.outer(r, r)) / square**2
+        square = np.sum(r * r, axis=-1)[..., None, None]
+        return (square * np.eye(3) - r[..., :, None] * r[..., None, :]) / square**2
 
     return matrix
 
@@ -212,14 +212,17 @@ def dense_forms(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[...
 
 @pytest.fixture(scope="session")
 def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., np.ndarray]:
-    """Returns a function: the ratios of a family at a pose, by dense matrices and nothing else."""
+    """Returns a function: the ratios of a family at poses, (..., ratios), by plain matrices alone."""
 
     def ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
-        u = axis / np.linalg.norm(axis)
-        gains = np.array([u @ link_matrix(point - position_m) @ u for point in family.points_m])
-        entries = family.denominator_weight * gains[family.denominator_point]
-        sums = [entries[a:b].sum() for a, b in pairwise(family.denominator_start)]
-        below = (family.denominator_isotropic + sums)[family.denominator_of]
-        return (family.numerator_isotropic + family.numerator_weight * gains[family.numerator_point]) / below
+        u = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+        gains = np.einsum(
+            "...i,...pij,...j->...p", u, link_matrix(family.points_m - position_m[..., None, :]), u
+        )
+        entries = family.denominator_weight * gains[..., family.denominator_point]
+        sums = [entries[..., a:b].sum(axis=-1) for a, b in pairwise(family.denominator_start)]
+        below = (family.denominator_isotropic + np.stack(sums, axis=-1))[..., family.denominator_of]
+        above = family.numerator_weight * gains[..., family.numerator_point]
+        return (family.numerator_isotropic + above) / below
 
     return ratios

@@ -72,7 +72,7 @@ def samples(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, edges: 
         ends = clipped(exact(edge), *rectangle)
         points += ends
         if ends:
-            points.append(tuple((a + b) / 2 for a, b in zip(*ends, strict=True)))
+            points.append(tuple((a + b) / 2 for a, b in zip(min(ends), max(ends), strict=True)))
     return points
 
 

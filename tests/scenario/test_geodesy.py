@@ -1,8 +1,6 @@
 """Places on the Earth: against ECEF coordinates worked out here, against pymap3d, and there and back."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pymap3d
@@ -129,20 +127,3 @@ def test_north_east_down() -> None:
     assert ned_from_enu([1.0, 2.0, 3.0]).tolist() == [2.0, 1.0, -3.0]
     assert ned_from_enu(ned_from_enu([[1.0, 2.0, 3.0], [4.0, 5.0, 0.0]])).tolist() == [[1, 2, 3], [4, 5, 0]]
     assert math.copysign(1.0, ned_from_enu([0.0, 0.0, 0.0])[2]) == 1.0
-
-
-def test_only_places_on_the_earth_import_the_library() -> None:
-    """A scenario in metres leaves pymap3d alone; one with latitudes imports it."""
-    code = (
-        "import sys; from nullpose.scenario import Scenario\n"
-        "data = {'airspace': {'altitude_m': [8, 30]}, 'receiver': {'noise_w': 1.0, 'frequency_hz': 1e9},\n"
-        "        'origin': {'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}, 'nodes': [{'power_w': 1.0} | {place}]}\n"
-        "Scenario.from_dict(data); print('pymap3d' in sys.modules)"
-    )
-    said = [
-        subprocess.run(
-            [sys.executable, "-c", code.replace("{place}", place)], capture_output=True, text=True, check=True
-        ).stdout.strip()
-        for place in ("{'position_m': [0, 0, 0]}", "{'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}")
-    ]
-    assert said == ["False", "True"]

@@ -3,6 +3,7 @@
 import json
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -38,14 +39,20 @@ TABLES = {
 }
 
 
+@cache
+def whole_schema() -> dict[str, Any]:
+    """Returns the schema, made once."""
+    return json_schema()
+
+
 def schema_of(table: str) -> dict[str, Any]:
     """Returns the part of the schema for one table."""
-    return json_schema()["$defs"][table]
+    return whole_schema()["$defs"][table]
 
 
 def keys() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yields every key that a file may have, with its schema."""
-    yield from json_schema()["properties"].items()
+    yield from whole_schema()["properties"].items()
     for table in TABLES:
         yield from ((f"{table}.{key}", value) for key, value in schema_of(table)["properties"].items())
 
@@ -53,7 +60,7 @@ def keys() -> Iterator[tuple[str, dict[str, Any]]]:
 def accepts(schema: dict[str, Any], value: Any) -> bool:
     """Returns whether a value fits a schema, for the few words of JSON Schema that this one uses."""
     if "$ref" in schema:
-        schema = json_schema()["$defs"][schema["$ref"].removeprefix("#/$defs/")]
+        schema = whole_schema()["$defs"][schema["$ref"].removeprefix("#/$defs/")]
     kind = schema["type"]
     if isinstance(kind, list):
         return any(accepts(schema | {"type": one}, value) for one in kind)
@@ -173,9 +180,9 @@ def test_nodes_have_a_power_unless_the_drone_transmits() -> None:
     """A node without a power fits with objective secrecy-rate only."""
     data = tomllib.loads((EXAMPLES / "paper.toml").read_text(encoding="utf-8"))
     del data["nodes"][0]["power_w"]
-    assert not accepts(json_schema(), data)
-    assert not accepts(json_schema(), data | {"objective": "min-sinr"})
-    assert accepts(json_schema(), data | {"objective": "secrecy-rate"})
+    assert not accepts(whole_schema(), data)
+    assert not accepts(whole_schema(), data | {"objective": "min-sinr"})
+    assert accepts(whole_schema(), data | {"objective": "secrecy-rate"})
 
 
 @pytest.mark.parametrize("value", [3.0, 0, [1, 2.5, 0]])
@@ -219,15 +226,15 @@ def test_editors_are_told_the_default() -> None:
 def test_examples_fit(example: Path) -> None:
     """Every example fits the schema, and stops to when a key is added, misspelt, doubled or taken away."""
     data = tomllib.loads(example.read_text(encoding="utf-8"))
-    assert accepts(json_schema(), data)
-    assert not accepts(json_schema(), data | {"node": []})
+    assert accepts(whole_schema(), data)
+    assert not accepts(whole_schema(), data | {"node": []})
     without_nodes = {key: value for key, value in data.items() if key not in ("nodes", "nodes_from")}
-    assert not accepts(json_schema(), without_nodes)
-    assert not accepts(json_schema(), data | {"receiver": {}})
+    assert not accepts(whole_schema(), without_nodes)
+    assert not accepts(whole_schema(), data | {"receiver": {}})
     assert not accepts(
-        json_schema(), data | {"receiver": data["receiver"] | {"noise_w": 1.0, "noise_dbm": 1.0}}
+        whole_schema(), data | {"receiver": data["receiver"] | {"noise_w": 1.0, "noise_dbm": 1.0}}
     )
-    assert not accepts(json_schema(), data | {"airspace": {"altitude_m": [1, 2, 3]}})
+    assert not accepts(whole_schema(), data | {"airspace": {"altitude_m": [1, 2, 3]}})
 
 
 def test_schema_is_a_new_value_each_time() -> None:

@@ -120,7 +120,7 @@ def test_utf16_is_recognised(tmp_path: Path) -> None:
     """A file saved as UTF-16 is called so."""
     path = tmp_path / "wide.toml"
     path.write_bytes('name = "a"'.encode("utf-16"))
-    assert "it looks like UTF-16" in fault_of(path).message
+    assert "is not UTF-8 text; save the file as UTF-8" in fault_of(path).message
 
 
 @pytest.mark.parametrize(

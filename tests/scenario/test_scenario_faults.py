@@ -242,8 +242,12 @@ def test_one_fault_is_one_message(one: Case, tmp_path: Path) -> None:
             "nodes",
             "missing; it must be given: Tables headed [[nodes]]",
         ),
-        ("nodes = []\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must have at least one"),
-        ("nodes = 3\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must be a list of tables"),
+        (
+            "nodes = []\n" + GOOD.split("[[nodes]]", maxsplit=1)[0],
+            "nodes",
+            "must be a list of at least one table",
+        ),
+        ("nodes = 3\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must be a list of at least one"),
         ("nodes = [1]\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes[0]", "must be a node"),
         ("jammers = 3\n" + GOOD.split("[[jammers]]", maxsplit=1)[0], "jammers", "must be a list of tables"),
         (

@@ -44,11 +44,18 @@ def test_either_stated_power_is_in_watts() -> None:
 
 
 def test_import_is_lean() -> None:
-    """Importing the room brings in no solver, no plots and no command line."""
-    heavy = "{'scipy', 'numba', 'matplotlib', 'typer', 'rich'}"
-    script = f"import nullpose.scenario, sys; print(sorted({heavy} & sys.modules.keys()))"
-    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert ran.stdout.strip() == "[]"
+    """Scenarios bring in no solver, no plots and no command line; places on the Earth alone their library."""
+    code = (
+        "import sys; from nullpose.scenario import Scenario\n"
+        "heavy = {'scipy', 'numba', 'matplotlib', 'typer', 'rich', 'pymap3d'}\n"
+        "data = {'airspace': {'altitude_m': [8, 30]}, 'receiver': {'noise_w': 1.0, 'frequency_hz': 1e9},\n"
+        "        'origin': {'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}}\n"
+        "for place in ({'position_m': [0, 0, 0]}, {'lat_deg': 1, 'lon_deg': 2, 'alt_m': 3}):\n"
+        "    Scenario.from_dict(data | {'nodes': [{'power_w': 1.0} | place]})\n"
+        "    print(sorted(heavy & sys.modules.keys()))\n"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout.splitlines() == ["[]", "['pymap3d']"]
 
 
 def test_very_many_unknown_keys_are_told_in_few_words() -> None:

@@ -16,14 +16,14 @@ def test_inside_a_ball(seed: int, radius: float) -> None:
     """A ball that reaches into the box is found, one that stays clear of it is ruled out."""
     centre = np.random.default_rng(seed).uniform([-3.0, -2.0, 3.0], [5.0, 4.0, 8.0])
     gap = np.linalg.norm(centre - np.clip(centre, LOWER, UPPER)) - radius
-    found = find_position(LOWER, UPPER, lambda at: radius - np.linalg.norm(at - centre, axis=1))
+    found, settled = find_position(LOWER, UPPER, lambda at: radius - np.linalg.norm(at - centre, axis=1))
     if abs(gap) > 1e-7:
-        assert found.settled
-        assert (found.position_m is not None) is bool(gap < 0.0)
-    if found.position_m is not None:
-        assert (found.position_m >= LOWER).all()
-        assert (found.position_m <= UPPER).all()
-        assert np.linalg.norm(found.position_m - centre) <= radius + 1e-7
+        assert settled
+        assert (found is not None) is bool(gap < 0.0)
+    if found is not None:
+        assert (found >= LOWER).all()
+        assert (found <= UPPER).all()
+        assert np.linalg.norm(found - centre) <= radius + 1e-7
 
 
 def test_outside_balls() -> None:
@@ -34,35 +34,35 @@ def test_outside_balls() -> None:
     def clearance(radius: float) -> object:
         return lambda at: np.linalg.norm(at[:, None] - centres, axis=-1).min(axis=1) - radius
 
-    found = find_position(LOWER, UPPER, clearance(corner_m - 1e-3))
-    assert found.position_m is not None
-    np.testing.assert_allclose(found.position_m[0], 1.0, atol=1e-2)
-    nothing = find_position(LOWER, UPPER, clearance(corner_m + 1e-3))
-    assert nothing.position_m is None
-    assert nothing.settled
+    found, settled = find_position(LOWER, UPPER, clearance(corner_m - 1e-3))
+    assert found is not None
+    np.testing.assert_allclose(found[0], 1.0, atol=1e-2)
+    nothing, settled = find_position(LOWER, UPPER, clearance(corner_m + 1e-3))
+    assert nothing is None
+    assert settled
 
 
 def test_touching_counts_as_found() -> None:
     """A single point that is allowed is found, to a billionth of the box."""
     point = np.array([1.0 / 3.0, 0.7, 5.1])
-    found = find_position(LOWER, UPPER, lambda at: -np.linalg.norm(at - point, axis=1))
-    np.testing.assert_allclose(found.position_m, point, atol=1e-7)
+    found, _ = find_position(LOWER, UPPER, lambda at: -np.linalg.norm(at - point, axis=1))
+    np.testing.assert_allclose(found, point, atol=1e-7)
 
 
 def test_flat_and_empty_boxes() -> None:
     """A box may be flat; a reversed one holds nothing."""
     flat = np.array([3.0, 2.0, 5.0])
-    found = find_position(LOWER, flat, lambda at: 0.01 - np.abs(at[:, 0] - 2.9))
-    assert found.position_m[2] == 5.0
-    assert abs(found.position_m[0] - 2.9) <= 0.01
-    empty = find_position(UPPER, LOWER, lambda at: np.ones(len(at)))
-    assert empty.position_m is None
-    assert empty.settled
+    found, settled = find_position(LOWER, flat, lambda at: 0.01 - np.abs(at[:, 0] - 2.9))
+    assert found[2] == 5.0
+    assert abs(found[0] - 2.9) <= 0.01
+    empty, settled = find_position(UPPER, LOWER, lambda at: np.ones(len(at)))
+    assert empty is None
+    assert settled
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])
 def test_too_fine_to_tell(depth: float) -> None:
     """A sheet that is forbidden by a hair everywhere is neither found nor ruled out in time."""
-    found = find_position(LOWER, UPPER, lambda at: -depth - np.abs(at[:, 2] - 5.37))
-    assert found.position_m is None
-    assert not found.settled
+    found, settled = find_position(LOWER, UPPER, lambda at: -depth - np.abs(at[:, 2] - 5.37))
+    assert found is None
+    assert not settled

@@ -106,10 +106,10 @@ def test_each_scene_has_its_own_airframe_unless_others_are_named() -> None:
 
 
 def test_a_long_proof_gets_its_stages(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What does not fit into the compiled loop is proved as a single solve would, and to the same gap."""
+    """What needs more than the first try is proved in stages, to the same gap."""
     scenes = [scene(np.random.default_rng(seed)) for seed in range(4)]
     straight = solve_many(scenes, gap=GAP)
-    monkeypatch.setattr(import_module("nullpose.solve.batch"), "DIRECT_NODES", 5)
+    monkeypatch.setattr(import_module("nullpose.solve.proof"), "_DIRECT_NODES", 5)
     staged = solve_many(scenes, gap=GAP, threads=1)
     assert np.all(staged.status == Status.CERTIFIED)
     assert np.all(np.abs(staged.value / straight.value - 1.0) <= GAP)

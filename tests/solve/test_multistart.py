@@ -48,7 +48,7 @@ def test_settings_bound_the_work(paper: Callable) -> None:
     frugal = SearchSettings(coarse=16, polished=2, rounds=1, patience=1)
     few = multistart(family, AxisField.free(), seed=0, settings=frugal)
     assert few.starts <= len(landmarks(family)) + 2
-    patient = dataclasses.replace(frugal, rounds=50, patience=1)
+    patient = frugal._replace(rounds=50, patience=1)
     assert multistart(family, AxisField.free(), seed=0, settings=patient).starts <= len(landmarks(family)) + 6
 
 

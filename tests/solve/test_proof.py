@@ -143,7 +143,7 @@ def test_default_gaps_loosen_with_size() -> None:
 
 def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
     """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
-    monkeypatch.setattr(import_module("nullpose.solve.proof"), "DIRECT_NODES", 10)
+    monkeypatch.setattr(import_module("nullpose.solve.proof"), "_DIRECT_NODES", 10)
     for seed in range(4):
         family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)

@@ -7,7 +7,6 @@ arithmetic; the maximum of the quadratic is bounded by its dual (see "The certif
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -18,6 +17,7 @@ from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
+    IDENTITY,
     PLACE,
     ROW,
     adjugate,
@@ -27,73 +27,16 @@ from nullpose.certificate.forms import (
     squares,
 )
 from nullpose.certificate.interval import Interval, dot, swapped
-from nullpose.certificate.mixes import group_shares, mix_slots
+from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
 __all__ = ["affine_holds", "link_jet"]
 
 _SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
 _UNIT = Interval(np.eye(3)[:, :, None])
-_SAME = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])[:, None]  # the identity as a form
 _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 
 Jet: TypeAlias = tuple[Interval, Interval, Interval, Interval]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Link:
-    """What a link is made of, at or over positions; components, then derivatives, along the first axes.
-
-    Args:
-        axis: (3, b) u.
-        matrix: (3, 3, 1) M, its derivative.
-        way: (3, b) r, whose derivative is -I.
-        cross: (3, b) u x r.
-        slopes: (3, 3, b) its derivatives.
-        bend: (3, 6, 1) its second ones, which are constant.
-    """
-
-    axis: Interval
-    matrix: Interval
-    way: Interval
-    cross: Interval
-    slopes: Interval
-    bend: Interval
-
-    @property
-    def square(self) -> Interval:
-        """``n = |u x r|^2``."""
-        return self.cross.squared().total()
-
-    @property
-    def weight(self) -> Interval:
-        """``b s^2`` with ``b = |u|^2`` and ``s = |r|^2``."""
-        return self.axis.squared().total() * self.way.squared().total().squared()
-
-    def value(self) -> Interval:
-        """Return ``n / (b s^2)``, (b,)."""
-        return self.square / self.weight
-
-    def rates(self) -> tuple[Interval, Interval, Interval]:
-        """Return the derivatives of n, those of b over b, and those of s over s, (3, b) each."""
-        of_axis = dot(self.matrix, self.axis[:, None]) * 2.0 / self.axis.squared().total()
-        of_way = self.way * -2.0 / self.way.squared().total()
-        return dot(self.slopes, self.cross[:, None]) * 2.0, of_axis, of_way
-
-    def gradient(self) -> Interval:
-        """Return the first derivatives of ``n / (b s^2)``, (3, b)."""
-        dn, beta, sigma = self.rates()
-        return (dn - self.square * (beta + sigma * 2.0)) / self.weight
-
-    def hessian(self) -> Interval:
-        """Return the second ones, (6, b): with w = 1 / (b s^2), ``w (n'' + n' l + l' n + n q)``."""
-        dn, beta, sigma = self.rates()
-        fall = -(beta + sigma * 2.0)  # l, the derivatives of log w
-        bent = swapped(squares(swapped(self.slopes))).total() + dot(self.bend, self.cross[:, None])
-        gram = dot(self.matrix[:, ROW], self.matrix[:, COLUMN]) * 2.0
-        q = (squares(beta) + outer(beta, sigma)) * 2.0 + squares(sigma) * 6.0
-        q = q - gram / self.axis.squared().total() - 4.0 * _SAME / self.way.squared().total()
-        return (bent * 2.0 + outer(dn, fall) + self.square * q) / self.weight
 
 
 def link_jet(field: AxisField, boxes: Boxes, points: FloatArray) -> Jet:
@@ -104,35 +47,56 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray) -> Jet:
         boxes: b of them.
         points: (b, 3) the ground point of each.
     """
-    at = _link(field, Interval(boxes.centre.T), points)
-    over = _over(at, _link(field, boxes.hull, points), Interval(boxes.half.T))
-    value, isotropic = over.value(), 1.0 / over.way.squared().total()
+    matrix, half = Interval(field.matrix[:, :, None]), Interval(boxes.half.T)
+    u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
+    cross, slopes = _cross(u, r), _cross(matrix, r[:, None]) - _cross(u[:, None], _UNIT)
+    bend = -(_cross(matrix[:, ROW], _UNIT[:, COLUMN]) + _cross(matrix[:, COLUMN], _UNIT[:, ROW]))
+    value, gradient, _ = _quotient(matrix, u, r, cross, slopes, bend)
+    # u x r is quadratic in the position: over the boxes it is what its expansion at the centre makes of it
+    swing = dot(Interval(np.moveaxis(bend.magnitude()[:, PLACE], 2, 0)), half[:, None, None]).high
+    steep = Interval(slopes.magnitude()) + Interval(swing) * 0.5
+    reach = dot(swapped(steep), half[:, None]).high
+    cross, slopes = cross + Interval(-reach, reach), slopes + Interval(-swing, swing)
+    u, r = _axis_and_way(field, points, boxes.hull)
+    over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
     # sin^2 <= 1, and never below zero
-    ranged = Interval(np.maximum(value.low, 0.0), np.fmin(value.high, isotropic.high))
-    return at.value(), at.gradient(), over.hessian(), ranged
+    most = np.fmin(over.high, (1.0 / r.squared().total()).high)
+    return value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most)
 
 
 def _cross(x: Interval, y: Interval) -> Interval:
     return x[_AFTER] * y[_LAST] - x[_LAST] * y[_AFTER]
 
 
-def _link(field: AxisField, p: Interval, points: FloatArray) -> _Link:
-    matrix = Interval(field.matrix[:, :, None])
+def _axis_and_way(field: AxisField, points: FloatArray, p: Interval) -> tuple[Interval, Interval]:
+    """Return ``u = o + M p`` and ``r = q - p``, (3, b) each."""
     u = dot(Interval(field.matrix.T[:, :, None]), p[:, None]) + field.offset[:, None]
-    r = Interval(points.T) - p
-    slopes = _cross(matrix, r[:, None]) - _cross(u[:, None], _UNIT)
-    bend = -(_cross(matrix[:, ROW], _UNIT[:, COLUMN]) + _cross(matrix[:, COLUMN], _UNIT[:, ROW]))
-    return _Link(u, matrix, r, _cross(u, r), slopes, bend)
+    return u, Interval(points.T) - p
 
 
-def _over(at: _Link, over: _Link, half: Interval) -> _Link:
-    """Return a link's pieces over the boxes: u x r is quadratic, its expansion at the centre exact."""
-    bend = np.moveaxis(at.bend.magnitude()[:, PLACE], 2, 0)
-    swing = dot(Interval(bend), half[:, None, None]).high
-    steep = Interval(at.slopes.magnitude()) + Interval(swing) * 0.5
-    reach = dot(swapped(steep), half[:, None]).high
-    slopes, cross = at.slopes + Interval(-swing, swing), at.cross + Interval(-reach, reach)
-    return replace(over, slopes=slopes, cross=cross)
+def _quotient(
+    matrix: Interval, u: Interval, r: Interval, cross: Interval, slopes: Interval, bend: Interval
+) -> tuple[Interval, Interval, Interval]:
+    """Return ``n / (b s^2)`` with n, b and s the squares of u x r, u and r, its gradient and its Hessian.
+
+    Args:
+        matrix: (3, 3, 1) M, the derivative of u; that of r is -I.
+        u: (3, b).
+        r: (3, b).
+        cross: (3, b) u x r.
+        slopes: (3, 3, b) its derivatives, along the second axis.
+        bend: (3, 6, 1) its second derivatives.
+    """
+    n, b, s = (vector.squared().total() for vector in (cross, u, r))
+    weight = b * s.squared()
+    dn = dot(slopes, cross[:, None]) * 2.0
+    beta, sigma = dot(matrix, u[:, None]) * 2.0 / b, r * -2.0 / s  # of log b and log s
+    fall = -(beta + sigma * 2.0)  # l, of the log of w = 1 / (b s^2)
+    bent = (swapped(squares(swapped(slopes))).total() + dot(bend, cross[:, None])) * 2.0
+    q = (squares(beta) + outer(beta, sigma)) * 2.0 + squares(sigma) * 6.0 - 4.0 * IDENTITY[:, None] / s
+    q = q - dot(matrix[:, ROW], matrix[:, COLUMN]) * 2.0 / b
+    # w (n'' + n' l + l' n + n q)
+    return n / weight, (dn + n * fall) / weight, (bent + outer(dn, fall) + n * q) / weight
 
 
 def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
@@ -144,21 +108,11 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         leaves: of the boxes, with multipliers and level.
         boxes: to be tested.
     """
-    ratio, weight = mix_slots(leaves)
-    value = Interval(np.zeros(len(boxes)))
-    terms = []
-    for k, w in zip(ratio, weight, strict=True):
-        value = value + Interval(w) * family.numerator_isotropic[k]
-        terms.append((family.numerator_point[k], Interval(w) * family.numerator_weight[k]))
-    for g, share in enumerate(group_shares(family, ratio, weight)):
-        level = share * leaves.level
-        value = value - level * family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            point = np.full(len(boxes), family.denominator_point[e])
-            terms.append((point, -(level * family.denominator_weight[e])))
+    identity, above, below = weighted_sum(family, leaves)
+    terms = above + [(point, -scale) for point, scale in below]
     jets = [(scale, link_jet(field, boxes, family.points_m[point])) for point, scale in terms]
     zero = Interval(np.zeros((6, len(boxes))))
-    starts = (value, zero[:3], zero, value)
+    starts = (identity, zero[:3], zero, identity)
     value, slopes, hessian, ranged = (
         sum((scale * jet[i] for scale, jet in jets), start) for i, start in enumerate(starts)
     )
@@ -167,11 +121,12 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         here, steep, bent = value[rows], slopes[:, rows], hessian[:, rows]
         for nu, bound in constraints:
             here, steep = here + bound.value * nu, steep + bound.slopes * nu
-            bent = bent + (2.0 * nu * bound.bend)[ROW] * _SAME
+            bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITY[:, None]
         return _quadratic_negative(boxes.half[rows].T, here, steep, bent)
 
     holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, slopes.middle)
-    return np.asarray(np.any(weight > 0.0, axis=0) & holds)
+    counts = np.any([scale.high > 0.0 for _, scale in above], axis=0)
+    return np.asarray(counts & holds)
 
 
 def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hessian: Interval) -> np.ndarray:
@@ -197,7 +152,7 @@ def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hes
 
 
 def _dual_negative(rest: Interval, g: Interval, middle: FloatArray, mu: FloatArray) -> np.ndarray:
-    a = Interval(mu[ROW] * _SAME) - middle
+    a = Interval(mu[ROW] * IDENTITY[:, None]) - middle
     _, positive, det = definite(a)
     form = (squares(g) * adjugate(a) * COUNTED[:, None]).total()
     bound = (rest + Interval(mu).total() * 0.5) * det + form * 0.5

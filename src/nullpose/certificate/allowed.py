@@ -16,8 +16,8 @@ from nullpose.family import Family
 
 __all__ = ["Weighted", "negative_where_allowed"]
 
+# Constraints with a multiplier, not negative, for each box.
 Weighted: TypeAlias = list[tuple[FloatArray, Constraint]]
-"""Constraints with a multiplier, not negative, for each box."""
 
 
 def negative_where_allowed(

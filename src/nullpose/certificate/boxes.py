@@ -38,15 +38,9 @@ class Boxes:
         return Boxes(leaf=self.leaf[mask], centre=self.centre[mask], half=self.half[mask])
 
     @property
-    def corners(self) -> tuple[Interval, Interval]:
-        """Their lowest and highest corners, (b, 3)."""
-        return Interval(self.centre) - self.half, Interval(self.centre) + self.half
-
-    @property
     def hull(self) -> Interval:
         """All positions of each, (3, b)."""
-        low, high = self.corners
-        return Interval(low.low.T, high.high.T)
+        return (Interval(self.centre) + Interval(-self.half, self.half)).T
 
     def nearest2(self, points: FloatArray) -> FloatArray:
         """Return lower bounds on the squared distance from points, (b, 3) or (3,), to the boxes."""

@@ -37,6 +37,7 @@ FAR = 3  # a node out of reach
 KEPT_OUT = 4  # inside a keep-out ball or a forbidden zone
 OFF_BAND = 5  # a cell of axes that the airframe does not reach
 
+# What is known of each leaf: kind and shape of the entry, by the name of the column.
 COLUMNS: Mapping[str, tuple[type, tuple[int, ...]]] = {
     "box": (int, (6,)),
     "cell": (int, (5,)),
@@ -49,7 +50,6 @@ COLUMNS: Mapping[str, tuple[type, tuple[int, ...]]] = {
     "ball": (int, ()),
     "ball_multiplier": (float, ()),
 }
-"""What is known of each leaf: kind and shape of the entry, by the name of the column."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -25,8 +25,8 @@ from nullpose.scenario import Airframe, Scenario
 
 __all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]
 
+# The stated value may differ from the pose's by so much: it was rounded.
 VALUE_RTOL = 1e-10
-"""The stated value may differ from the pose's by so much: it was rounded."""
 
 _EDGE_M = 1e-9  # a position on a face or a ball may be off by rounding
 _AXIS_RAD = 1e-6
@@ -43,19 +43,18 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         family: its scenario's ratios.
         fields: the axis fields that its scheme needs a tree for, None if there are none.
     """
-    if len(family.turn):
-        return "there are no certificates of poses that are held with errors"
     if fields is None:
         with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
         return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
-    named = [tree.axis for tree in certificate.trees]
-    if sorted(named) != sorted(fields):
-        return f"the scheme needs a tree for each of {sorted(fields)}; there are {sorted(named)}"
-    if not (certificate.value > 0.0 and math.isfinite(certificate.upper_bound)):
-        return "value and bound must be positive and finite"
-    if certificate.upper_bound < certificate.value:
-        return "the bound is below the value"
-    return ""
+    needed, named = sorted(fields), sorted(tree.axis for tree in certificate.trees)
+    value, bound = certificate.value, certificate.upper_bound
+    faults = {
+        "there are no certificates of poses that are held with errors": len(family.turn) > 0,
+        f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
+        "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),
+        "the bound is below the value": bound < value,
+    }
+    return next((words for words, is_so in faults.items() if is_so), "")
 
 
 def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField]) -> str:

@@ -185,8 +185,8 @@ def _finite(digits: str) -> float:
     return number
 
 
+# Returns what a plain value stands for, given its path for the message if it is wrong.
 Reader: TypeAlias = Callable[[Any, str], Any]
-"""Returns what a plain value stands for, given its path for the message if it is wrong."""
 
 
 _MISSING = object()
@@ -226,8 +226,9 @@ def _numbers(value: Any, path: str, shape: tuple[int, ...] = (), kind: type = fl
     raise _refusal(value, path, f"{sizes}a {'whole' if kind is int else 'finite'} number")
 
 
-def _mixes(value: Any, path: str) -> tuple[dict[int, float], ...]:
-    return tuple(_mix(mix, f"{path}[{i}]") for i, mix in enumerate(_list(value, path)))
+def _list_of(read: Reader) -> Reader:
+    """Return the reader of lists of which another reads the items."""
+    return lambda value, path: tuple(read(x, f"{path}[{i}]") for i, x in enumerate(_list(value, path)))
 
 
 def _mix(value: Any, path: str) -> dict[int, float]:
@@ -247,10 +248,6 @@ def _leaves(value: Any, path: str) -> dict[str, Any]:
                 f"{path}.{name}: must have an entry for each of {len(columns['test'])} tests"
             )
     return columns
-
-
-def _trees(value: Any, path: str) -> list[Any]:
-    return [_read(tree, f"{path}[{i}]", _TREE) for i, tree in enumerate(_list(value, path))]
 
 
 def _read(value: Any, path: str, layout: Mapping[str, Reader]) -> dict[str, Any]:
@@ -273,7 +270,7 @@ _POSE: dict[str, Reader] = {
 }
 _LEAVES: dict[str, Reader] = {
     name: partial(_numbers, shape=(-1, *shape), kind=kind) for name, (kind, shape) in COLUMNS.items()
-} | {"mixes": _mixes}
+} | {"mixes": _list_of(_mix)}
 _TREE: dict[str, Reader] = {"axis": _text, "root_m": partial(_numbers, shape=(2, 3)), "leaves": _leaves}
 _LAYOUT: dict[str, Reader] = {
     "format": _any,
@@ -285,6 +282,6 @@ _LAYOUT: dict[str, Reader] = {
     "value": _numbers,
     "upper_bound": _numbers,
     "pose": partial(_read, layout=_POSE),
-    "trees": _trees,
+    "trees": _list_of(partial(_read, layout=_TREE)),
     "provenance": _table,
 }

@@ -9,6 +9,7 @@ from nullpose.certificate.interval import FloatArray, Interval, stack
 __all__ = [
     "COLUMN",
     "COUNTED",
+    "IDENTITY",
     "PLACE",
     "ROW",
     "adjugate",
@@ -19,14 +20,15 @@ __all__ = [
     "squares",
 ]
 
+IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
 """Row and column of each of the six."""
 
+# Where among the six a row and a column are.
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
-"""Where among the six a row and a column are."""
 
+# How often each of the six is in the matrix.
 COUNTED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-"""How often each of the six is in the matrix."""
 
 
 def squares(x: Interval) -> Interval:

@@ -15,12 +15,13 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, IntArray, Leaves
 from nullpose.certificate.forms import COLUMN, PLACE, ROW, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
+from nullpose.certificate.linear import Linear
 from nullpose.family import Family
 
 __all__ = ["SWING", "Frames", "constant", "expansion", "frames_of"]
 
+# Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up.
 SWING = (1.0 + np.sqrt(2.0)) * (1.0 + 1e-12)
-"""Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up."""
 
 _AREA = 4.0 / np.sqrt(3.0) * (1.0 + 1e-12)  # twice the largest |b''| of the turning, 2 / sqrt(3), rounded up
 _UNIT = np.eye(3)[:, :, None]  # the world's axes, for any number of boxes
@@ -84,8 +85,8 @@ def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
 
 def expansion(
     family: Family, frames: Frames, boxes: Boxes, point: IntArray
-) -> tuple[Interval, Interval, Interval, Interval]:
-    """Return the form of one point for each box: value, slopes (6, 3, b), bounds on the second derivative.
+) -> tuple[Linear, Interval, Interval]:
+    """Return the form of one point for each box, and bounds on its second derivative, (b,) each.
 
     The bounds, up and (positive) down, multiply the identity; for the anchor of a turning frame, the
     projector across its direction, which is what its form is made of.
@@ -112,11 +113,11 @@ def expansion(
     both = where(turn, 1.0 / (near.squared() * frames.rho_least.squared()), 0.0)
     up = fourth * 6.0 + mixed * 16.0 + both * (6.0 + _AREA)
     down = fourth * np.where(anchored, 2.0, 4.0) + mixed * 12.0 + both * (4.0 + _AREA)
-    return form, slopes, up.most(), down.most()
+    return Linear(form, slopes), up.most(), down.most()
 
 
-def constant(frames: Frames, q: Interval) -> tuple[Interval, Interval]:
-    """Return constant forms, (6, b), in the basis, and their slopes in a turning frame, (6, 3, b).
+def constant(frames: Frames, q: Interval) -> Linear:
+    """Return constant forms, (6, b), in the basis; in a turning frame they have slopes.
 
     With ``K = (e d^T - d e^T) / rho`` the frame's transpose changes by K, which keeps d on the anchor; the
     form, by ``K Q + Q K^T``.
@@ -124,9 +125,9 @@ def constant(frames: Frames, q: Interval) -> tuple[Interval, Interval]:
     half = dot(q[PLACE][:, :, None], frames.basis[:, None])  # Q basis
     form = dot(frames.basis[:, ROW], half[:, COLUMN])
     if not np.any(frames.turning):
-        return form, Interval(np.zeros((6, 3, len(frames.turning))))
+        return Linear(form, Interval(np.zeros((6, 3, len(frames.turning)))))
     # in the basis: e (Q d)^T - d (Q e)^T and its transpose, over rho
     along = dot(half, frames.direction[:, None])
     d = frames.turned(frames.direction)
     slopes = outer(swapped(frames.basis), along[:, None]) - outer(d[:, None], swapped(half))
-    return form, where(frames.turning, slopes / frames.rho, 0.0)
+    return Linear(form, where(frames.turning, slopes / frames.rho, 0.0))

@@ -122,25 +122,12 @@ class Outline:
     def _forbids_beyond_both(self, one: int, two: int, region: list[Point]) -> bool:
         """Return whether all of a rectangle beyond the lines of the two edges that meet it is forbidden."""
         for edge in (one, two):
-            region = self._beyond(edge, region)
+            region = cut(region, [-self.allowance(edge, point) for point in region])
         if not region:
             return True
         # the mean of its vertices is beyond a line if any of them is
         mean = tuple(sum(each, Fraction(0)) / len(region) for each in zip(*region, strict=True))
         return self.allowance(one, mean) >= 0 or self.allowance(two, mean) >= 0 or self.forbids(mean)
-
-    def _beyond(self, edge: int, region: list[Point]) -> list[Point]:
-        """Return the vertices of a convex polygon's part beyond an edge's line, or on it."""
-        part: list[Point] = []
-        values = [self.allowance(edge, point) for point in region]
-        for i, (point, value) in enumerate(zip(region, values, strict=True)):
-            before, other = values[i - 1], region[i - 1]
-            if before * value < 0:
-                share = before / (before - value)
-                part.append(tuple(a + share * (b - a) for a, b in zip(other, point, strict=True)))
-            if value <= 0:
-                part.append(point)
-        return part
 
 
 def left_of(edge: Point, point: Point) -> Fraction:
@@ -154,17 +141,28 @@ def corners(low: Point, high: Point) -> list[Point]:
     return [low, (high[0], low[1]), high, (low[0], high[1])]
 
 
+def cut(region: list[Point], values: list[Fraction]) -> list[Point]:
+    """Return the vertices of a convex polygon's part where a linear function is not negative.
+
+    Args:
+        region: the polygon's vertices, in order around it.
+        values: the function's at each.
+    """
+    part: list[Point] = []
+    for i, (point, value) in enumerate(zip(region, values, strict=True)):
+        before, other = values[i - 1], region[i - 1]
+        if before * value < 0:
+            share = before / (before - value)
+            part.append(tuple(a + share * (b - a) for a, b in zip(other, point, strict=True)))
+        if value >= 0:
+            part.append(point)
+    return part
+
+
 def clipped(edge: Point, low: Point, high: Point) -> list[Point]:
-    """Return the ends of the part of an edge in a rectangle, none if they do not meet."""
-    first, last = Fraction(0), Fraction(1)
-    for start, end, least, most in zip(edge[:2], edge[2:], low, high, strict=True):
-        if start == end:
-            if not least <= start <= most:
-                return []
-            continue
-        near, far = sorted(((least - start) / (end - start), (most - start) / (end - start)))
-        first, last = max(first, near), min(last, far)
-    if first > last:
-        return []
-    x1, y1, x2, y2 = edge
-    return [(x1 + share * (x2 - x1), y1 + share * (y2 - y1)) for share in (first, last)]
+    """Return points of which the part of an edge in a rectangle is the hull, none if they do not meet."""
+    part = [edge[:2], edge[2:]]
+    for i in range(2):
+        part = cut(part, [point[i] - low[i] for point in part])
+        part = cut(part, [high[i] - point[i] for point in part])
+    return part

@@ -22,8 +22,8 @@ __all__ = [
     "smallest_ratio",
 ]
 
+# An array of fractions.
 Exact: TypeAlias = NDArray[Any]
-"""An array of fractions."""
 
 _TERMS = 24  # of the series: for |x| <= 4 the rest is below 4^48/48! < 1e-32
 _BITS = 160

@@ -45,25 +45,19 @@ def _places(certificate: Certificate) -> str:
     return f" {' and '.join(words)}" if words else ""
 
 
-def _numbers(certificate: Certificate) -> tuple[str, str, str]:
+def _numbers(certificate: Certificate) -> tuple[str, ...]:
     """Return bound, value and how near they are, in words."""
     bound, value = certificate.upper_bound, certificate.value
+    least = value * (1.0 - VALUE_RTOL)
     if Quantity.of(certificate.scenario).is_rate:
-        most, least = (
-            max(0.0, math.log2(bound) + 1e-12),
-            max(0.0, math.log2(value * (1.0 - VALUE_RTOL)) - 1e-12),
-        )
-        unit = "bits/s/Hz"
-        return (
-            f"{_rounded(most, ROUND_CEILING)} {unit}",
-            f"{_rounded(least, ROUND_FLOOR)} {unit}",
-            f"{most - least:.2e} {unit}",
-        )
+        most_rate, least_rate = max(0.0, math.log2(bound) + 1e-12), max(0.0, math.log2(least) - 1e-12)
+        ends = _rounded(most_rate, ROUND_CEILING), _rounded(least_rate, ROUND_FLOOR)
+        return tuple(f"{text} bits/s/Hz" for text in (*ends, f"{most_rate - least_rate:.2e}"))
     most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
     least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
     return (
         f"{_rounded(bound, ROUND_CEILING)} ({most_db} dB)",
-        f"{_rounded(value * (1.0 - VALUE_RTOL), ROUND_FLOOR)} ({least_db} dB)",
+        f"{_rounded(least, ROUND_FLOOR)} ({least_db} dB)",
         f"{bound / value - 1.0:.2e}",
     )
 

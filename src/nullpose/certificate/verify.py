@@ -33,7 +33,8 @@ from nullpose.family import AxisField, Family, build_family
 __all__ = ["Verdict", "verify"]
 
 _CHUNK = 4096
-_ROUNDS = 3  # boxes whose test fails by a hair are cut into eight, so many times
+_CUT_AT_ONCE = 128
+_CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times
 _DEEPEST = 50
 
 
@@ -138,9 +139,8 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
     """Return the first leaf that its test does not exclude, or an empty string."""
     leaves, boxes = tree.leaves, boxes_of(tree.root_m, tree.leaves)
     for start in range(0, len(leaves), _CHUNK):
-        failed = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
-        if len(failed):
-            one = int(failed[0])
+        one = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
+        if one is not None:
             hull = boxes.hull[:, one]
             where = ", ".join(
                 f"{low:.6g} to {high:.6g}" for low, high in zip(hull.low, hull.high, strict=True)
@@ -191,21 +191,25 @@ def _outside(index: IntArray, count: int | IntArray) -> np.ndarray:
     return (index < 0) | (index >= count)
 
 
-def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> IntArray:
-    """Return the leaves of the boxes that are not excluded, cutting boxes that fail narrowly."""
-    for left in reversed(range(_ROUNDS)):
-        boxes = boxes.chosen(~_holds(family, field, leaves.chosen(boxes.leaf), boxes))
-        if not len(boxes) or len(boxes) > _CHUNK or not left:
-            break
-        boxes = parts(boxes)
-    return np.unique(boxes.leaf)
+def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> int | None:
+    """Return the first leaf of the boxes that is not excluded, cutting boxes that fail narrowly, or None."""
+    failed = boxes.chosen(~_holds(family, field, leaves, boxes))
+    for start in range(0, len(failed), _CUT_AT_ONCE):
+        left = failed.chosen(slice(start, start + _CUT_AT_ONCE))
+        for _ in range(_CUTS):
+            pieces = parts(left)
+            left = pieces.chosen(~_holds(family, field, leaves, pieces))
+        if len(left):
+            return int(left.leaf.min())
+    return None
 
 
 def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes, each with its leaf, are excluded."""
-    holds = np.zeros(len(boxes), dtype=bool)
+    """Return which boxes their leaves exclude."""
+    holds, kinds = np.zeros(len(boxes), dtype=bool), leaves.test[boxes.leaf]
     for check in dict.fromkeys(test.holds for test in _TESTS.values()):
-        mask = np.isin(leaves.test, [kind for kind, test in _TESTS.items() if test.holds is check])
+        mask = np.isin(kinds, [kind for kind, test in _TESTS.items() if test.holds is check])
         if np.any(mask):
-            holds[mask] = check(family, field, leaves.chosen(mask), boxes.chosen(mask))
+            some = boxes.chosen(mask)
+            holds[mask] = check(family, field, leaves.chosen(some.leaf), some)
     return holds

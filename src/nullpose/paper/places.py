@@ -6,8 +6,7 @@ import math
 from typing import Any
 
 from nullpose.paper.scene import with_jamming
-from nullpose.paper.study import JammingStudy, bound_db, lead_of
-from nullpose.paper.told import NOISE, PRINTED, RATIO, Measured, apart_m, told
+from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
 from nullpose.physics import received_power_w, to_db
 from nullpose.report.geometry import distance_m, null_angle_rad
 from nullpose.report.numbers import at_least, at_most
@@ -19,7 +18,7 @@ POINTED_DEG = 1.0
 ABOVE_M = 0.1
 BETTER_DB = 1e-4
 
-_GAIN, _VERTICAL = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL
+_GAIN, _VERTICAL, _PRINTED = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL, Scheme.MAXIMUM_GAIN_PRINTED
 
 
 def null_at_jammer(study: JammingStudy) -> Measured:
@@ -122,7 +121,7 @@ def equidistant(study: JammingStudy) -> Measured:
     failing = [level for level in study.levels if limit is None or level > limit]
     leads = [lead_of(study.at(_GAIN, x), study.equidistant_at(_GAIN, x)) for x in failing]
     proved_db = min((lead.least_db for lead in leads), default=0.0)
-    printed = study.curve(PRINTED)
+    printed = study.curve(_PRINTED)
     levels = [
         _equidistant_row(study, level) for level in (0.1, 1.0, 1.4, 1.6, 3.0, 10.0, 1e3, study.levels[-1])
     ]
@@ -131,7 +130,7 @@ def equidistant(study: JammingStudy) -> Measured:
     as_printed = {
         "largest_distance_difference_m": apart_m(study, printed),
         "largest_lead_over_equidistant_db": max(
-            lead_of(row, study.equidistant_at(PRINTED, row.value)).found_db for row in printed
+            lead_of(row, study.equidistant_at(_PRINTED, row.value)).found_db for row in printed
         ),
     }
     return {

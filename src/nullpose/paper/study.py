@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
 
 from nullpose.paper.scene import JAMMER_POWER
+from nullpose.report.geometry import distance_m
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study import SweepRow, SweepTable, sweep
 
-__all__ = ["JammingStudy", "Lead", "bound_db", "lead_of"]
+__all__ = ["NOISE", "RATIO", "JammingStudy", "Lead", "Measured", "apart_m", "bound_db", "lead_of", "told"]
+
+RATIO = "jamming_to_transmission_ratio"
+"""Name of P_M/P in evidence."""
+
+NOISE = 1e-9
+"""In dB and in metres; what is smaller is rounding, and is told as at most this."""
+
+Measured = dict[str, Any]
+"""Verdict, finding, evidence and what is proved, as fields of a claim."""
 
 _BISECTIONS = 12  # of a twelfth of a decade: relative precision 5e-5
 _EQUIDISTANT = "halfway between the nodes"
@@ -36,10 +46,7 @@ class JammingStudy:
     """
 
     def __init__(self, scenario: Scenario, table: SweepTable, seed: int = 0) -> None:
-        self.scenario = scenario
-        self.table = table
-        self.seed = seed
-        self.levels = table.values
+        self.scenario, self.table, self.seed, self.levels = scenario, table, seed, table.values
         self.used: dict[tuple[str, float], SweepRow] = {}
         self._rows = {(row.scheme, row.value): row for row in table.rows}
 
@@ -50,7 +57,7 @@ class JammingStudy:
             scheme: the scheme's name.
             level: P_M/P, a power ratio.
         """
-        return self._row((scheme, float(level)), scheme, self.scenario)
+        return self._row(scheme, float(level), scheme, self.scenario)
 
     def curve(self, scheme: str) -> tuple[SweepRow, ...]:
         """Return a scheme's rows at the swept levels.
@@ -72,14 +79,14 @@ class JammingStudy:
         """
         north_m = float(self.scenario.node_positions_m[:, 1].mean())
         plane = apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
-        return self._row((f"{scheme} {_EQUIDISTANT}", float(level)), scheme, plane)
+        return self._row(f"{scheme} {_EQUIDISTANT}", float(level), scheme, plane)
 
-    def _row(self, key: tuple[str, float], scheme: str, scenario: Scenario) -> SweepRow:
-        if key not in self._rows:
-            solved = sweep(scenario, JAMMER_POWER, [key[1]], schemes=[scheme], seed=self.seed)
-            self._rows[key] = solved.rows[0]
-        self.used[key] = self._rows[key]
-        return self._rows[key]
+    def _row(self, name: str, level: float, scheme: str, scenario: Scenario) -> SweepRow:
+        row = self._rows.get((name, level))
+        if row is None:
+            row = sweep(scenario, JAMMER_POWER, [level], schemes=[scheme], seed=self.seed).rows[0]
+        self._rows[name, level] = self.used[name, level] = row
+        return row
 
     def lead(self, scheme: str, other: str, level: float) -> Lead:
         """Return how far one scheme's smallest SINR is above another's.
@@ -136,7 +143,7 @@ def _last_holding(condition: Callable[[float], bool], levels: Sequence[float]) -
     holding = None
     for level in levels:
         if not condition(level):
-            return None if holding is None else _bisected(condition, holding, level)
+            return holding and _bisected(condition, holding, level)
         holding = level
     return holding
 
@@ -145,8 +152,25 @@ def _bisected(condition: Callable[[float], bool], holding: float, failing: float
     """Return a level at which the condition was seen to hold, next to one at which it was seen to fail."""
     for _ in range(_BISECTIONS):
         middle = math.sqrt(holding * failing)
-        if condition(middle):
-            holding = middle
-        else:
-            failing = middle
+        holding, failing = (middle, failing) if condition(middle) else (holding, middle)
     return holding
+
+
+def told(level: float | None) -> str:
+    """Return a level in words.
+
+    Args:
+        level: P_M/P; None for none.
+    """
+    return "no swept level" if level is None else f"P_M/P = {level:.3g}"
+
+
+def apart_m(study: JammingStudy, rows: Iterable[SweepRow]) -> float:
+    """Return by how much the distances to the two nodes differ at most, metres.
+
+    Args:
+        study: with the nodes.
+        rows: the poses.
+    """
+    first_m, second_m = study.scenario.node_positions_m
+    return max(abs(distance_m(row.pose, first_m) - distance_m(row.pose, second_m)) for row in rows)

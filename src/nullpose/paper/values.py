@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from nullpose.paper.study import JammingStudy, bound_db, lead_of
-from nullpose.paper.told import NOISE, PRINTED, RATIO, Measured, apart_m, told
+from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.numbers import at_least, at_most
@@ -37,7 +36,7 @@ SIGNIFICANT_DB = 1.0
 FLAT_DB, NEAR_DB = 1e-3, 0.01
 WEAK, STRONG = 0.01, 1.0  # P_M/P at most, at least
 
-_OPTIMUM, _NULL, _GAIN, _VERTICAL = PAPER_SCHEMES
+(_OPTIMUM, _NULL, _GAIN, _VERTICAL), _PRINTED = PAPER_SCHEMES, Scheme.MAXIMUM_GAIN_PRINTED
 
 
 def weak_jamming(study: JammingStudy) -> Measured:
@@ -48,10 +47,9 @@ def weak_jamming(study: JammingStudy) -> Measured:
     """
     weakest = study.levels[0]
     next_db = study.lead(_OPTIMUM, _GAIN, 10 * weakest).least_db
-    limit = study.holds_up_to(_coincident(study, _GAIN))
-    measured, slope = _approach(study, _GAIN, weakest, [weakest * 10**i for i in range(4)])
+    limit = study.holds_up_to(lambda level: study.lead(_OPTIMUM, _GAIN, level).found_db <= COINCIDE_DB)
+    measured = _approach(study, _GAIN, weakest, [weakest * 10**i for i in range(4)])
     return measured | {
-        "holds": measured["holds"] and slope > 0.0,
         "finding": f"{measured['finding']} It stays within {COINCIDE_DB} dB up to {told(limit)}.",
         "proved": f"{measured['proved']}, and at least {at_least(next_db)} dB at {10 * weakest:g}: it grows.",
         "holds_up_to": limit,
@@ -65,31 +63,23 @@ def strong_jamming(study: JammingStudy) -> Measured:
         study: the data.
     """
     strongest = study.levels[-1]
-    limit = study.holds_from(_coincident(study, _NULL))
-    measured, slope = _approach(study, _NULL, strongest, [1.0, 10.0, 100.0, 1000.0, strongest])
-    proved = measured["proved"]
-    if limit is not None:
-        proved += (
-            f", and at most {at_most(study.lead(_OPTIMUM, _NULL, limit).most_db, 5)} dB at every power from "
-            f"{limit:.3g} on, between the swept ones too: more jamming never raises the optimum, and does "
-            "not touch zero interference"
-        )
+    limit = study.holds_from(lambda level: study.lead(_OPTIMUM, _NULL, level).found_db <= COINCIDE_DB)
+    measured = _approach(study, _NULL, strongest, [1.0, 10.0, 100.0, 1000.0, strongest])
+    most_db = study.lead(_OPTIMUM, _NULL, limit or strongest).most_db
     return measured | {
-        "holds": measured["holds"] and slope < 0.0,
         "finding": f"{measured['finding']} It is within {COINCIDE_DB} dB from {told(limit)} on.",
-        "proved": f"{proved}.",
+        "proved": f"{measured['proved']}, and at most {at_most(most_db, 5)} dB at every power from "
+        f"{limit or strongest:.3g} on, between the swept ones too: more jamming never raises the optimum, "
+        "and does not touch zero interference.",
         "holds_from": limit,
     }
 
 
-def _coincident(study: JammingStudy, scheme: Scheme) -> Callable[[float], bool]:
-    return lambda level: study.lead(_OPTIMUM, scheme, level).found_db <= COINCIDE_DB
+def _approach(study: JammingStudy, scheme: Scheme, end: float, levels: Sequence[float]) -> Measured:
+    """Return how far a scheme is from the optimum at some levels, and the exponent between the first two.
 
-
-def _approach(
-    study: JammingStudy, scheme: Scheme, end: float, levels: Sequence[float]
-) -> tuple[Measured, float]:
-    """Return how far a scheme is from the optimum at some levels, and the exponent between the first two."""
+    It has to be near at one end, and nearer the closer to that end the first two levels are.
+    """
     shortfalls_db = [study.lead(_OPTIMUM, scheme, level).found_db for level in levels]
     slope = math.nan
     if min(shortfalls_db[:2]) > 0.0:
@@ -108,15 +98,15 @@ def _approach(
             }
         )
     lead = study.lead(_OPTIMUM, scheme, end)
-    measured = {
-        "holds": lead.found_db <= COINCIDE_DB,
+    towards = 1.0 if end <= levels[0] else -1.0
+    return {
+        "holds": lead.found_db <= COINCIDE_DB and slope * towards > 0.0,
         "finding": f"At P_M/P = {end:g} {scheme.label.lower()} is {max(lead.found_db, 0.0):.2g} dB below the "
         f"optimum. Between P_M/P = {levels[0]:g} and {levels[1]:g} the shortfall goes as "
         f"(P_M/P)^{slope:.2f}, so the two coincide exactly only in the limit.",
         "evidence": {"scheme": scheme, "exponent_of_the_shortfall": slope, "levels": rows},
         "proved": f"The true shortfall is at most {at_most(lead.most_db)} dB at P_M/P = {end:g}",
     }
-    return measured, slope
 
 
 def _axes_apart_deg(first: Pose, second: Pose) -> float:
@@ -215,11 +205,11 @@ def saturation(study: JammingStudy) -> Measured:
         study: the data.
     """
     strongest = study.levels[-1]
-    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in (*PAPER_SCHEMES, PRINTED)}
+    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in (*PAPER_SCHEMES, _PRINTED)}
     ends = [evidence[scheme] for scheme in PAPER_SCHEMES]
     starts = [end["within_0.01_db_from"] for end in ends]
     values = ", ".join(f"{name} {end['value_at_strongest_db']:.4f} dB" for name, end in evidence.items())
-    unequal_m = apart_m(study, study.curve(PRINTED))
+    unequal_m = apart_m(study, study.curve(_PRINTED))
     falls_db = [
         lead_of(study.at(scheme, strongest / 10.0), study.at(scheme, strongest)).most_db
         for scheme in PAPER_SCHEMES
@@ -227,7 +217,7 @@ def saturation(study: JammingStudy) -> Measured:
     return {
         "holds": all(abs(end["change_over_last_decade_db"]) <= FLAT_DB for end in ends),
         "finding": f"At P_M/P = {strongest:g}: {values}. Eq. 3.5 as printed, its axis not normalised, "
-        f"changes by {evidence[PRINTED]['change_over_last_decade_db']:.2f} dB over the last decade, its "
+        f"changes by {evidence[_PRINTED]['change_over_last_decade_db']:.2f} dB over the last decade, its "
         f"position staying equidistant from the nodes to {max(unequal_m, NOISE):.1g} m.",
         "evidence": evidence | {"printed_form_largest_distance_difference_m": unequal_m},
         "proved": f"Over the last decade no curve changes by more than {at_most(max(falls_db))} dB, between "

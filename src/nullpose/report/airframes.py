@@ -6,9 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from nullpose.objectives import Quantity
+from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import document, grouped, head, table
+from nullpose.report.document import document, grouped, head, rows, table
 from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
@@ -16,7 +19,7 @@ from nullpose.study import AirframeComparison, AirframeResult
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["airframes_view", "answer_lines", "proof_lines"]
+__all__ = ["airframes_view", "answer_lines", "numbers_of", "proof_lines"]
 
 _STATUS = {
     Status.CERTIFIED: "certified",
@@ -33,60 +36,65 @@ def airframes_view(comparison: AirframeComparison) -> RenderableType:
         comparison: what each vehicle makes of a scenario.
     """
     quantity = Quantity.of(comparison.scenario)
-    rows = [_value_cells(comparison, quantity, result) for result in comparison.results]
-    rows.insert(len(comparison.dipoles), {})
-    guaranteed = []
-    if comparison.scenario.is_uncertain:
-        guaranteed = [_guaranteed_cells(comparison, quantity, result) for result in comparison.dipoles]
+    results, dipoles = comparison.results, len(comparison.dipoles)
+    value, _, nominal, robust, most = numbers_of(comparison)
+    whole = results.index(comparison.omnidirectional)
+    labels = [result.case.label for result in results]
+    objectives = [result.objective for result in results]
+    values = rows(
+        {
+            "vehicle, dipole": labels,
+            "ratio": [None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives],
+            "value": _told(value, 4),
+            "at most": [None if of is None else bound_text(of, 4) for of in objectives],
+            "difference": _told(value - value[whole], 3),
+            "status": [_STATUS[result.status] for result in results],
+        }
+    )
+    guaranteed = rows(
+        {
+            "vehicle, dipole": labels[:dipoles],
+            "pose above": _told(nominal[:dipoles], 3),
+            "robust pose": _told(robust[:dipoles], 3),
+            "at most": _told(most[:dipoles], 3),
+            "difference": _told((robust - robust[whole])[:dipoles], 3),
+        }
+    )
+    values.insert(dipoles, {})
     bold = [] if comparison.stated is None else [comparison.stated.case.label]
+    kept = f"Guaranteed under the file's errors ({quantity.unit})"
     title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(
         head(comparison.scenario.name),
         "",
-        table(title, rows, bold=bold, left=["status"], no_wrap=True),
-        table(f"Guaranteed under the file's errors ({quantity.unit})", guaranteed, bold=bold, no_wrap=True),
+        table(title, values, bold=bold, left=["status"], no_wrap=True),
+        table(kept, guaranteed, bold=bold, no_wrap=True) if comparison.scenario.is_uncertain else None,
         "\n".join(proof_lines(comparison)),
         "",
         head("\n".join(answer_lines(comparison))),
     )
 
 
-def _value_cells(
-    comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
-) -> dict[str, str]:
-    """Return a vehicle's ratio, value, bound, difference from the omnidirectional one, and status."""
-    objective = result.objective
-    value = math.nan if objective is None else quantity.in_unit(objective.value)
-    ratio = "-" if objective is None else f"{objective.value:.5g}"
-    return {
-        "vehicle, dipole": result.case.label,
-        **({} if quantity.is_rate else {"ratio": ratio}),
-        "value": _number(value, 4),
-        "at most": "-" if objective is None else bound_text(objective, 4),
-        "difference": _number(value - quantity.in_unit(comparison.omnidirectional.value), 3),
-        "status": _STATUS[result.status],
-    }
+def numbers_of(comparison: AirframeComparison) -> FloatArray:
+    """Return what is known of each vehicle in the quantity's unit, shape ``(5, n)``; NaN for nothing.
+
+    Its value and the bound on it; what the pose shown and the robust pose guarantee, and the bound on that.
+
+    Args:
+        comparison: what each vehicle makes of a scenario.
+    """
+    quantity, columns = Quantity.of(comparison.scenario), []
+    for result in comparison.results:
+        of, kept = result.objective, result.guaranteed
+        found = [None] * 2 if of is None else [of.value, of.upper_bound]
+        found += [None] * 3 if kept is None else [kept.nominal_pose, kept.robust_pose, kept.upper_bound]
+        columns.append([math.nan if number is None else quantity.in_unit(number) for number in found])
+    return np.transpose(columns)
 
 
-def _guaranteed_cells(
-    comparison: AirframeComparison, quantity: Quantity, result: AirframeResult
-) -> dict[str, str]:
-    """Return what a dipole guarantees under the file's errors."""
-    of, best = result.guaranteed, comparison.omnidirectional.guaranteed
-    known: list[float | None] = (
-        [None] * 3 if of is None else [of.nominal_pose, of.robust_pose, of.upper_bound]
-    )
-    known.append(None if best is None else best.robust_pose)
-    nominal, robust, bound, most = (math.nan if value is None else quantity.in_unit(value) for value in known)
-    numbers = {"pose above": nominal, "robust pose": robust, "at most": bound, "difference": robust - most}
-    cells = {heading: _number(value, 3) for heading, value in numbers.items()}
-    return {"vehicle, dipole": result.case.label, **cells}
-
-
-def _number(value: float, digits: int) -> str:
-    if math.isnan(value):
-        return "-"
-    return fixed(value, digits) if math.isfinite(value) else "nothing"
+def _told(numbers: FloatArray, digits: int) -> list[str | None]:
+    words = [fixed(number, digits) if math.isfinite(number) else "nothing" for number in numbers]
+    return [None if math.isnan(number) else text for number, text in zip(numbers, words, strict=True)]
 
 
 def proof_lines(comparison: AirframeComparison) -> list[str]:

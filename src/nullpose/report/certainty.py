@@ -83,14 +83,14 @@ class Certainty:
         """The same in words, with the widest gap."""
         gap = self.largest_relative_gap
         widest = "none" if gap is None else short(gap)
-        if self.weakest is Status.BEST_FOUND:
-            return "best found by searching, nothing is proved"
-        if self.weakest is Status.GAP_NOT_REACHED:
-            return (
-                "no pose exceeds the bound, but the gap asked for is not reached at "
-                f"{self.gap_not_reached} of {self.values} points; relative gap up to {widest}"
-            )
-        return f"certified to {widest} (relative): each point is proved so close to its case's global optimum"
+        sentences = {
+            Status.CERTIFIED: f"certified to {widest} (relative): each point is proved so close to its "
+            "case's global optimum",
+            Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for is not reached at "
+            f"{self.gap_not_reached} of {self.values} points; relative gap up to {widest}",
+            Status.BEST_FOUND: "best found by searching, nothing is proved",
+        }
+        return sentences[self.weakest]
 
 
 def certainty_lines(table: SweepTable) -> list[str]:

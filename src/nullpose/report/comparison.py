@@ -149,9 +149,10 @@ def _pose_cells(solution: Result, _: float) -> dict[str, str]:
 def _link_cells(solution: Result, _: float) -> dict[str, str]:
     """Return each node's SINR, margin or rate, and its ratio; a mark where the node binds."""
     quantity, links, binding = solution.objective.quantity, solution.links, binding_nodes(solution)
-    cells = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
-    for link in links:
-        mark = "*" if link.node in binding else " "
-        value = f"{quantity.in_unit(quantity.at(link)):.4f}{mark}"
-        cells[f"{quantity.short} {link.node} ({quantity.unit})"] = value
-    return cells
+    ratios = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
+    return ratios | {
+        f"{quantity.short} {link.node} ({quantity.unit})": (
+            f"{quantity.in_unit(quantity.at(link)):.4f}{'*' if link.node in binding else ' '}"
+        )
+        for link in links
+    }

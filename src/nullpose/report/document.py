@@ -136,12 +136,12 @@ def grouped(said: Iterable[tuple[str, str]]) -> list[str]:
     ]
 
 
-def pairs(title: str, rows: Sequence[tuple[str, str]]) -> RenderableType:
+def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> RenderableType:
     """Return names with their words beside them.
 
     Args:
         title: stands above them; may be empty.
-        rows: names, which may be empty, and words.
+        rows: names, which may be empty, and words; without words a name is left out.
     """
     from rich import box
     from rich.table import Table
@@ -151,5 +151,6 @@ def pairs(title: str, rows: Sequence[tuple[str, str]]) -> RenderableType:
     view = Table(title=title or None, box=look, title_justify="left", title_style="bold", show_header=False)
     view.pad_edge = False
     for name, words in rows:
-        view.add_row(Text(name), Text(words))
+        if words is not None:
+            view.add_row(Text(name), Text(words))
     return view

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
 from nullpose.files import write_text
 from nullpose.physics import pose_frames
+from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
 from nullpose.report.plain import json_text
 from nullpose.report.results import binding_nodes
@@ -75,24 +77,29 @@ def write_geojson(solution: Result, path: Path) -> Path:
 
 def _features(solution: Result) -> list[_Feature]:
     origin = require_origin(solution.scenario)
-    return [*_points(solution, origin), *_outlines(solution.scenario, origin)]
+    return [
+        *(_point(origin, np.asarray(place_m), properties) for place_m, properties in _points(solution)),
+        *(_polygon(origin, *outline) for outline in _outlines(solution.scenario)),
+    ]
 
 
-def _points(solution: Result, origin: Origin) -> Iterator[_Feature]:
-    scenario = solution.scenario
-    yield _point(origin, solution.pose.position_m, **_pose_properties(solution))
-    links = {link.node: link for link in solution.links}
-    binding = binding_nodes(solution)
-    for node in scenario.nodes:
-        link = {key: value for key, value in asdict(links[node.name]).items() if value is not None}
-        name = link.pop("node")
-        yield _point(origin, node.position_m, kind="node", name=name, binding=name in binding, **link)
+def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
+    """Yield the pose, the nodes, the jammers and the eavesdroppers: position in metres, and properties."""
+    scenario, binding = solution.scenario, binding_nodes(solution)
+    yield solution.pose.position_m, _pose_properties(solution)
+    for node, link in zip(scenario.nodes, solution.links, strict=True):
+        own = {key: value for key, value in asdict(link).items() if value is not None and key != "node"}
+        yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **own}
     for jammer in scenario.jammers:
-        own = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
-        yield _point(origin, jammer.position_m, kind="jammer", name=jammer.name, **own)
+        reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
+        yield jammer.position_m, {"kind": "jammer", "name": jammer.name, **reach}
     for each in scenario.eavesdroppers:
-        reach_m = each.uncertainty_reach_m
-        yield _point(origin, each.position_m, kind="eavesdropper", name=each.name, uncertainty_m=reach_m)
+        told: _Feature = {
+            "kind": "eavesdropper",
+            "name": each.name,
+            "uncertainty_m": each.uncertainty_reach_m,
+        }
+        yield each.position_m, told
 
 
 def _pose_properties(solution: Result) -> dict[str, object]:
@@ -120,40 +127,39 @@ def _pose_properties(solution: Result) -> dict[str, object]:
     }
 
 
-def _outlines(scenario: Scenario, origin: Origin) -> Iterator[_Feature]:
+def _outlines(scenario: Scenario) -> Iterator[tuple[FloatArray, float, _Feature]]:
+    """Yield the airspace, the fence and the zones: corners and height in metres, and properties."""
     airspace = scenario.airspace
-    height_m = airspace.altitude_m[0]
+    height_m, own = airspace.altitude_m[0], {"altitude_m": airspace.altitude_m}
     if airspace.x_m is not None and airspace.y_m is not None:
         (west, east), (south, north) = airspace.x_m, airspace.y_m
-        box = np.array([(west, south), (east, south), (east, north), (west, north)])
-        yield _polygon(origin, box, height_m, kind="airspace", altitude_m=airspace.altitude_m)
+        corners = np.array([(west, south), (east, south), (east, north), (west, north)])
+        yield corners, height_m, {"kind": "airspace", **own}
     if airspace.geofence_m is not None:
-        fence = airspace.geofence_outline_m
-        yield _polygon(origin, fence, height_m, kind="geofence", altitude_m=airspace.altitude_m)
+        yield airspace.geofence_outline_m, height_m, {"kind": "geofence", **own}
     for zone in airspace.no_fly:
-        round_one = {} if zone.radius_m is None else {"radius_m": zone.radius_m}
-        own = {"kind": "no-fly", "name": zone.name, "altitude_m": zone.altitude_m, **round_one}
-        yield _polygon(origin, outline_m(zone), max(zone.floor_m, height_m), **own)
+        properties: _Feature = {"kind": "no-fly", "name": zone.name, "altitude_m": zone.altitude_m}
+        properties |= {} if zone.radius_m is None else {"radius_m": zone.radius_m}
+        yield outline_m(zone), max(zone.floor_m, height_m), properties
 
 
-def _point(origin: Origin, position_m: ArrayLike, **properties: object) -> _Feature:
-    place = np.asarray(position_m, dtype=float)
+def _point(origin: Origin, place: FloatArray, properties: _Feature) -> _Feature:
     lat_deg, lon_deg, alt_m = geodetic_from_enu(place, origin.geodetic).tolist()
     coordinates = [round(lon_deg, 9), round(lat_deg, 9), round(alt_m, 4)]
-    return _feature(
-        {"type": "Point", "coordinates": coordinates}, properties | {"position_m": place.tolist()}
-    )
+    return _feature("Point", coordinates, properties | {"position_m": place.tolist()})
 
 
-def _polygon(
-    origin: Origin, outline_m: NDArray[np.float64], height_m: float, **properties: object
-) -> _Feature:
+def _polygon(origin: Origin, corners_m: FloatArray, height_m: float, properties: _Feature) -> _Feature:
     """Return an outline as a polygon, at a height [m] over the local frame's zero."""
-    heights_m = np.full((len(outline_m), 1), height_m)
-    places = geodetic_from_enu(np.concatenate([outline_m, heights_m], axis=1), origin.geodetic).tolist()
+    places_m = np.column_stack([corners_m, np.full(len(corners_m), height_m)])
+    places = geodetic_from_enu(places_m, origin.geodetic).tolist()
     ring = [[round(lon_deg, 9), round(lat_deg, 9)] for lat_deg, lon_deg, _ in places]
-    return _feature({"type": "Polygon", "coordinates": [[*ring, ring[0]]]}, properties)
+    return _feature("Polygon", [[*ring, ring[0]]], properties)
 
 
-def _feature(geometry: Mapping[str, object], properties: Mapping[str, object]) -> _Feature:
-    return {"type": "Feature", "geometry": geometry, "properties": properties}
+def _feature(kind: str, coordinates: list[Any], properties: _Feature) -> _Feature:
+    return {
+        "type": "Feature",
+        "geometry": {"type": kind, "coordinates": coordinates},
+        "properties": properties,
+    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from typing import TYPE_CHECKING
 
 from nullpose.objectives import Quantity
@@ -76,10 +76,10 @@ def short(number: float) -> str:
     Args:
         number: at least 0.
     """
-    if not math.isfinite(number) or number == 0.0 or 1e-3 < number < 1e3:
-        return at_most(number)
-    mantissa, exponent = f"{_rounded(number, 2, math.ceil):.1e}".split("e")
-    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+    mantissa, _, exponent = at_most(number).partition("e")
+    if 0.0 < number <= 1e-3:
+        mantissa, _, exponent = f"{float(at_most(number)):.1e}".partition("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}" if exponent else mantissa
 
 
 def at_most(number: float, digits: int = 2) -> str:
@@ -89,7 +89,7 @@ def at_most(number: float, digits: int = 2) -> str:
         number: any.
         digits: how many.
     """
-    return f"{_rounded(number, digits, math.ceil):.{digits}g}"
+    return _outward(number, digits, ROUND_CEILING)
 
 
 def at_least(number: float, digits: int = 2) -> str:
@@ -99,17 +99,12 @@ def at_least(number: float, digits: int = 2) -> str:
         number: any.
         digits: how many.
     """
-    return f"{_rounded(number, digits, math.floor):.{digits}g}"
+    return _outward(number, digits, ROUND_FLOOR)
 
 
-def _rounded(number: float, digits: int, towards: Callable[[float], int]) -> float:
-    if number == 0.0 or not math.isfinite(number):
-        return number
-    place = digits - 1 - math.floor(math.log10(abs(number)))
-    scaled = number * 10.0**place
-    nearest = round(scaled)
-    whole = nearest if abs(scaled - nearest) < 1e-9 else towards(scaled)
-    return float(whole / 10.0**place)
+def _outward(number: float, digits: int, rounding: str) -> str:
+    known = Decimal(f"{number:.9g}")  # what is behind the ninth digit is rounding
+    return f"{float(Context(prec=digits, rounding=rounding).plus(known)):.{digits}g}"
 
 
 def number(value: float, quantity: Quantity | None = None) -> str:
@@ -121,10 +116,8 @@ def number(value: float, quantity: Quantity | None = None) -> str:
     """
     if math.isnan(value):
         return NONE
-    if math.isinf(value):
-        return "\N{INFINITY}" if value > 0.0 else f"{MINUS}\N{INFINITY}"
     text = f"{value:z.3g}" if quantity is not None and quantity.is_rate else f"{value:z.2f}"
-    return text.replace("-", MINUS)
+    return text.replace("-", MINUS).replace("inf", "\N{INFINITY}")
 
 
 def with_unit(value: float, quantity: Quantity) -> str:

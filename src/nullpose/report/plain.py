@@ -10,13 +10,11 @@ __all__ = ["json_text"]
 
 
 def _standard(value: object) -> object:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
     if isinstance(value, Mapping):
         return {str(key): _standard(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_standard(item) for item in value]
-    return value
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def json_text(value: object, indent: int | None = 2) -> str:

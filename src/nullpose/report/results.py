@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from nullpose.physics import (
@@ -14,7 +14,6 @@ from nullpose.physics import (
     received_power_w,
     to_db,
 )
-from nullpose.physics.types import FloatArray
 from nullpose.report.document import beside, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words
@@ -111,8 +110,7 @@ def solution_view(solution: Result) -> RenderableType:
         _head(solution, solution.label, requirement_words(solution), solution.note),
         pairs("", _pose_rows(scenario, pose, own)),
         _links_table(solution, {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}),
-        None if rate else _jammers_table(scenario, pose),
-        _eavesdroppers_table(scenario, pose),
+        _nulls_table(scenario, pose),
         note if scenario.jammers and rate else None,
     )
 
@@ -195,7 +193,7 @@ def _attitude_words(pose: Pose | FramePose) -> str:
     return ", ".join(f"{name} {degrees_text(angle_rad, 3)} deg" for name, angle_rad in angles.items())
 
 
-def _in_brackets(numbers: Sequence[float] | FloatArray) -> str:
+def _in_brackets(numbers: Iterable[float]) -> str:
     return f"({', '.join(fixed(float(number), 6) for number in numbers)})"
 
 
@@ -236,7 +234,7 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> Rendera
         "node": [link.node for link in links],
         **own,
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
-        quantity.ratio: [f"{link.sinr:.5g}" for link in links],
+        quantity.ratio: [None if own else f"{link.sinr:.5g}" for link in links],
         "distance (m)": [f"{distance:.2f}" for distance in distances_m],
         **more,
         "": ["binding" if link.node in binding else "" for link in links],
@@ -248,35 +246,21 @@ def _stated(number: float | None) -> str | None:
     return None if number is None else f"{number:.6g}"
 
 
-def _jammers_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
-    received_w = received_power_w(
-        pose.position_m,
-        pose.antenna_axis,
-        scenario.jammer_positions_m,
-        scenario.jammer_powers_w,
-        scenario.receiver.reference_gain,
-    )
-    ratios = received_w / scenario.receiver.noise_power_w
-    names, points_m = scenario.jammer_names, scenario.jammer_positions_m
-    return _nulls_table(pose, "jammer", names, points_m, "jamming to noise (dB)", ratios)
-
-
-def _eavesdroppers_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
-    if not scenario.eavesdroppers:
-        return None
-    ratios = eavesdropper_snr(scenario, pose.position_m, pose.antenna_axis)
-    names, points_m = scenario.eavesdropper_names, scenario.eavesdropper_positions_m
-    return _nulls_table(pose, "eavesdropper", names, points_m, "SNR (dB)", ratios)
-
-
-def _nulls_table(
-    pose: Pose, noun: str, names: Sequence[str], points_m: FloatArray, heading: str, ratios: FloatArray
-) -> RenderableType | None:
-    """Return how far the null is off each jammer or eavesdropper, and how strong the link with it is."""
+def _nulls_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
+    """Return how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
+    noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
+    names = scenario.eavesdropper_names
+    if scenario.eavesdroppers:
+        ratios = eavesdropper_snr(scenario, pose.position_m, pose.antenna_axis)
+    else:
+        noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
+        names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
+        link = (pose.position_m, pose.antenna_axis, points, powers_w, receiver.reference_gain)
+        ratios = received_power_w(*link) / receiver.noise_power_w
     columns = {
         noun: names,
-        f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points_m],
-        "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points_m],
+        f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points],
+        "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points],
         heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
     }
     return table(f"{noun.capitalize()}s", rows(columns))

@@ -33,20 +33,18 @@ def summarise(scenario: Scenario) -> dict[str, Any]:
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and airspace.
     """
-    receiver = scenario.receiver
+    receiver, own_noise_w = scenario.receiver, None
+    if Quantity.of(scenario).is_rate:
+        own_noise_w = scenario.node_noise_w
     return {
         "scenario": scenario.to_dict(),
-        "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if _is_rate(scenario) else None),
+        "nodes": _points(scenario, scenario.nodes, own_noise_w),
         "jammers": _points(scenario, scenario.jammers, None),
         "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
         "noise_w": receiver.noise_power_w,
         "noise_dbm": _dbm(receiver.noise_power_w),
         "reference_gain_db": float(to_db(receiver.reference_gain)),
     }
-
-
-def _is_rate(scenario: Scenario) -> bool:
-    return Quantity.of(scenario).is_rate
 
 
 def _dbm(power_w: float) -> float:
@@ -94,7 +92,7 @@ def scenario_view(scenario: Scenario) -> RenderableType:
     Args:
         scenario: any.
     """
-    numbers, rate = summarise(scenario), _is_rate(scenario)
+    numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
         "At best: as close as the airspace's box and the keep-out allow (zones and fence not counted), the "
         f"dipole broadside{'' if rate else ', no jamming'}."
@@ -110,9 +108,9 @@ def scenario_view(scenario: Scenario) -> RenderableType:
     return document(
         head(scenario.name),
         "",
-        pairs("Airspace", _airspace_rows(scenario)),
+        pairs("Airspace", _airspace_rows(scenario).items()),
         table("No-fly zones", zones, left=("shape", "where (m)", "altitude (m)")),
-        pairs("Vehicle and receiver", _vehicle_rows(scenario)),
+        pairs("Vehicle and receiver", _vehicle_rows(scenario).items()),
         _points_table("node", scenario.nodes, numbers["nodes"], "SNR at best (dB)"),
         _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "JNR at best (dB)"),
         _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "SNR at best (dB)"),
@@ -120,9 +118,9 @@ def scenario_view(scenario: Scenario) -> RenderableType:
     )
 
 
-def _airspace_rows(scenario: Scenario) -> list[tuple[str, str]]:
+def _airspace_rows(scenario: Scenario) -> dict[str, str | None]:
     airspace, fence_m = scenario.airspace, scenario.airspace.geofence_outline_m
-    told = {
+    return {
         "origin": None if scenario.origin is None else place_words(scenario.origin),
         "altitude (m)": _range(airspace.altitude_m, ""),
         "x, east (m)": _range(airspace.x_m, "unbounded"),
@@ -130,7 +128,6 @@ def _airspace_rows(scenario: Scenario) -> list[tuple[str, str]]:
         "geofence": f"{len(fence_m)} corners, {_extent_words(fence_m)}" if len(fence_m) else None,
         "keep-out radius (m)": f"{airspace.keep_out_m:g}",
     }
-    return [(name, words) for name, words in told.items() if words is not None]
 
 
 def _range(sides: tuple[float, float] | None, otherwise: str) -> str:
@@ -156,11 +153,11 @@ def _zone_row(zone: NoFlyZone) -> dict[str, str]:
     }
 
 
-def _vehicle_rows(scenario: Scenario) -> list[tuple[str, str]]:
+def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
     sender = scenario.transmitter
-    told = {
+    return {
         "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
         "array": None if array is None else array_words(array),
         "airframe": None if airframe is None else airframe_words(airframe),
@@ -171,7 +168,6 @@ def _vehicle_rows(scenario: Scenario) -> list[tuple[str, str]]:
         "noise": _power_words(receiver.noise_power_w),
         "path gain at 1 m (dB)": f"{to_db(receiver.reference_gain):.2f}",
     }
-    return [(name, words) for name, words in told.items() if words is not None]
 
 
 def _power_words(power_w: float) -> str:

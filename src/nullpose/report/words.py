@@ -85,24 +85,18 @@ def requirement_words(solution: Result) -> str:
     Args:
         solution: what was found.
     """
-    nodes = solution.scenario.nodes
-    spare_db = {
-        link.node: link.margin_db or 0.0
-        for link, node in zip(solution.links, nodes, strict=True)
-        if node.min_sinr_db is not None
-    }
-    if not spare_db:
-        return ""
-    missed = [
-        f"node {node}: {-db:.2f} dB below what it requires" for node, db in spare_db.items() if db < 0.0
-    ]
+    nodes, bound = solution.scenario.nodes, solution.objective.upper_bound
+    pairs = zip(solution.links, nodes, strict=True)
+    spare = sorted((link.margin_db or 0.0, link.node) for link, node in pairs if node.min_sinr_db is not None)
+    missed = [each for each in spare if each[0] < 0.0]
+    told = ", ".join(
+        f"node {node}: {abs(db):.2f} dB {'below' if db < 0.0 else 'above'} what it requires"
+        for db, node in missed or spare[:1]
+    )
     if not missed:
-        least = min(spare_db, key=spare_db.__getitem__)
-        return f"every requirement is met; node {least}: {spare_db[least]:.2f} dB above what it requires"
-    bound = solution.objective.upper_bound
-    hopeless = len(spare_db) == len(nodes) and bound is not None and bound < 1.0
-    proof = "; proved: no pose of this case meets every requirement" if hopeless else ""
-    return f"missed: {', '.join(missed)}{proof}"
+        return f"every requirement is met; {told}" if spare else ""
+    hopeless = len(spare) == len(nodes) and bound is not None and bound < 1.0
+    return f"missed: {told}{'; proved: no pose of this case meets every requirement' if hopeless else ''}"
 
 
 def _degrees(angle_rad: float) -> str:

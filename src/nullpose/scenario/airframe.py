@@ -35,7 +35,6 @@ class Airframe(Section):
         mount_deg: angle between the dipole and the body's vertical [deg].
     """
 
-    header: ClassVar[str] = "a table headed [airframe]"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 

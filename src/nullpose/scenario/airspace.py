@@ -13,7 +13,7 @@ from pydantic import Field
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.polygon import Polygon, counter_clockwise_m, depth_m
-from nullpose.scenario.rules import Members
+from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import KeepOutMetres, Range
 
@@ -40,7 +40,6 @@ class Airspace(Section):
         no_fly: zones that the vehicle stays out of.
     """
 
-    header: ClassVar[str] = "a table headed [airspace]"
     unstated: ClassVar[frozenset[str]] = frozenset({"no_fly"})
 
     altitude_m: Range = Field(
@@ -70,7 +69,7 @@ class Airspace(Section):
         "[[east, north], ...]. Left out: no fence.",
         examples=[[[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]]],
     )
-    no_fly: Annotated[tuple[NoFlyZone, ...], Members("airspace.no_fly", NoFlyZone.letter)] = Field(
+    no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly")] = Field(
         default=(),
         description="Tables headed [[airspace.no_fly]], one for each zone that the vehicle stays out of; "
         "none if left out.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -26,8 +26,6 @@ class Array(Section):
         layout: linear, evenly spaced on a level line; or circular, evenly spaced on a level circle.
         spacing_wavelengths: distance between neighbours in wavelengths.
     """
-
-    header: ClassVar[str] = "a table headed [array]"
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
     layout: _Layout = Field(

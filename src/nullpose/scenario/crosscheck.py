@@ -39,6 +39,9 @@ def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterato
         for index, point in enumerate(getattr(scenario, kind) or ())
         if point is not None
     }
+    if scenario.nodes_from is not None:
+        message = "only a scenario file may name another, in place of its own nodes; remove it or them"
+        yield ("nodes_from",), message
     airspace, array, airframe = scenario.airspace, scenario.array, scenario.airframe
     misplaced = list(origin_faults(scenario.origin, points, stated))
     yield from misplaced
@@ -66,39 +69,34 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
     record = RECORDS.get(scenario.objective)
     if record is None:
         return
-    name = f'objective = "{record.name}"'
-    for need in record.needs:
-        for place, keys, given in _stated(need, scenario, points):
-            if not given:
-                yield place, f"missing, but {name} needs {' or '.join(keys)}; add it"
-    for barred in record.unused:
-        others = [f'"{other.name}"' for other in RECORDS.values() if barred not in other.unused]
-        for place, _, given in _stated(barred, scenario, points):
-            for key in given:
-                where = place if key == place[-1] else (*place, key)
-                yield (
-                    where,
-                    f"has no meaning with {name}; remove it, or write objective = {' or '.join(others)}",
-                )
+    for what in (*record.needs, *record.unused):
+        others = [f'"{other.name}"' for other in RECORDS.values() if what not in other.unused]
+        for place, keys, given in _stated(what, scenario, points):
+            if what in record.needs and not given:
+                message = f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
+                yield place, message
+            for where in given if what in record.unused else ():
+                remedy = f"remove it, or write objective = {' or '.join(others)}"
+                yield where, f'has no meaning with objective = "{record.name}"; {remedy}'
 
 
 def _stated(
     what: str, scenario: Scenario, points: Mapping[Place, GroundPoint]
-) -> Iterator[tuple[Place, Sequence[str], list[str]]]:
-    """Yields each place at which something may be stated, the keys that state it and those that are given.
+) -> Iterator[tuple[Place, Sequence[str], list[Place]]]:
+    """Yields each place at which something may be stated, what may state it there, and the places that do.
 
     It is a table, or a quantity of the nodes, such as ``nodes.power``, which some keys state.
     """
     kind, _, quantity = what.partition(".")
-    if not quantity:
+    if quantity:
+        ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
+        keys = [key for group in ways.groups for key in group]
+        for place, point in points.items():
+            if place[0] == kind:
+                yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
+    else:
         table = inner_section(type(scenario).model_fields[kind])
-        yield (kind,), [table.header if table else kind], [kind] if getattr(scenario, kind) else []
-        return
-    ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
-    keys = [key for group in ways.groups for key in group]
-    for place, point in points.items():
-        if place[0] == kind:
-            yield place, keys, [key for key in keys if getattr(point, key) is not None]
+        yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
 
 
 def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -44,30 +45,24 @@ def reworded(
         untold: keys of which it need not be said that they are missing.
     """
     for entry in error.errors(include_url=False):
-        place, given = entry["loc"], entry["input"]
-        match entry["type"]:
-            case "missing" if place[-1] in untold:
-                continue
-            case "missing":
-                expected = fields[str(place[-1])].description or ""
-                message = f"missing; it must be given: {expected.rstrip('.')}"
-            case kind if kind == _KIND:
-                message = entry["msg"]
-            case _:
-                message = f"got {described(given)}, which cannot be used here"
-        yield place, message
+        place, kind = entry["loc"], entry["type"]
+        message = entry["msg"]
+        if kind == "missing":
+            message = f"missing; it must be given: {(fields[str(place[-1])].description or '').rstrip('.')}"
+        elif kind != _KIND:
+            message = f"got {described(entry['input'])}, which cannot be used here"
+        if kind != "missing" or place[-1] not in untold:
+            yield place, message
 
 
 def path_of(place: Iterable[str | int]) -> str:
     """Returns a place as a person would write it: ``jammers[1].power_w``."""
-    path = ""
-    for step in place:
-        if isinstance(step, int):
-            path += f"[{step}]"
-        else:
-            key = printable(step) if _BARE_KEY.fullmatch(step) else f'"{printable(step)}"'
-            path += f".{key}" if path else key
-    return path
+    words = (f"[{step}]" if isinstance(step, int) else f".{_key(step)}" for step in place)
+    return "".join(words).removeprefix(".")
+
+
+def _key(step: str) -> str:
+    return printable(step) if _BARE_KEY.fullmatch(step) else f'"{printable(step)}"'
 
 
 def scenario_error(error: ValidationError, data: object, source: str = "") -> ScenarioError:
@@ -83,15 +78,12 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
     return ScenarioError([Fault(path_of(place), message) for place, message in found], source)
 
 
-def _ranks(place: Place, data: object) -> list[int]:
+def _ranks(place: Place, data: Any) -> list[int]:
     """Returns the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
-        siblings = list(data) if isinstance(data, Mapping) else []
-        if isinstance(step, int):
-            ranks.append(step)
-            data = data[step] if isinstance(data, list | tuple) and step < len(data) else None
-        else:
-            ranks.append(siblings.index(step) if step in siblings else len(siblings))
-            data = data.get(step) if isinstance(data, Mapping) else None
+        is_list = isinstance(data, list | tuple)
+        keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if is_list else []
+        ranks.append(keys.index(step) if step in keys else len(keys))
+        data = data[step] if step in keys else ()
     return ranks

@@ -29,8 +29,8 @@ def enu_from_geodetic(geodetic: ArrayLike, origin: ArrayLike) -> NDArray[np.floa
     """
     from pymap3d.enu import geodetic2enu
 
-    places, start = _rows(geodetic), _rows(origin)
-    return np.stack(geodetic2enu(*np.moveaxis(places, -1, 0), *start), axis=-1)
+    places = np.asarray(geodetic, dtype=np.float64)
+    return np.stack(geodetic2enu(*np.moveaxis(places, -1, 0), *np.asarray(origin)), axis=-1)
 
 
 def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
@@ -47,8 +47,8 @@ def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.fl
     """
     from pymap3d.enu import enu2geodetic
 
-    positions, start = _rows(position_m), _rows(origin)
-    return np.stack(enu2geodetic(*np.moveaxis(positions, -1, 0), *start), axis=-1)
+    positions = np.asarray(position_m, dtype=np.float64)
+    return np.stack(enu2geodetic(*np.moveaxis(positions, -1, 0), *np.asarray(origin)), axis=-1)
 
 
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
@@ -62,8 +62,4 @@ def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
     Returns:
         Array of shape (..., 3).
     """
-    return _rows(vector)[..., [1, 0, 2]] * [1.0, 1.0, -1.0] + 0.0  # no negative zeros
-
-
-def _rows(values: ArrayLike) -> NDArray[np.float64]:
-    return np.asarray(values, dtype=np.float64)
+    return np.asarray(vector, dtype=np.float64)[..., [1, 0, 2]] * [1.0, 1.0, -1.0] + 0.0  # no negative zeros

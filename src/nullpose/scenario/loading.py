@@ -34,7 +34,7 @@ def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenar
     source = os.fspath(path)
     try:
         tables = tables_of(file_text(Path(source)))
-        if _KEY in tables:
+        if _KEY in tables and "nodes" not in tables:
             return _with_nodes_from(tables, Path(source).parent, allow_outside)
         return Scenario.from_dict(tables)
     except ScenarioError as error:
@@ -96,25 +96,21 @@ def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Pat
 
 def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> Scenario:
     """Returns the scenario whose nodes another file lists; faults name the place in either file."""
-    file, has_nodes = tables[_KEY], "nodes" in tables
+    file = tables[_KEY]
     nodes: list[ListedNode] = []
     try:
-        if has_nodes:
-            message = "both nodes and nodes_from are given, exactly one is allowed; remove either"
-            raise ScenarioError([Fault(_KEY, message)])
         nodes = _listed_nodes(file, folder, allow_outside)
         faults = [_at(file, f"{node.where}{fault.path}", fault) for node in nodes if (fault := node.fault)]
     except ScenarioError as error:
         faults = [fault if fault.path == _KEY else _at(file, fault.path, fault) for fault in error.faults]
     # The nodes take the place of the key, so that faults come in the order of the file.
-    stated = [dict(node.values) for node in nodes] or tables.get("nodes")
-    whole = {("nodes" if key == _KEY else key): value for key, value in tables.items()} | {"nodes": stated}
+    whole = {("nodes" if key == _KEY else key): value for key, value in tables.items()}
     try:
-        scenario = Scenario.from_dict(whole)
+        scenario = Scenario.from_dict(whole | {"nodes": [dict(node.values) for node in nodes]})
     except ScenarioError as error:
-        told = [retold(fault, file, nodes) if nodes else fault for fault in error.faults]
         # Nodes that could not be read are not told as missing too.
-        faults += [fault for fault in told if fault and (fault.path != "nodes" or nodes or has_nodes)]
+        told = [retold(fault, file, nodes) for fault in error.faults if nodes or fault.path != "nodes"]
+        faults += [fault for fault in told if fault]
     if faults:
         raise ScenarioError(faults)
     return scenario

@@ -1,4 +1,4 @@
-"""Texts: titles, names by which results and overrides refer to something, and names of files."""
+"""Texts: titles, names by which results and overrides refer to something."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described
 
-__all__ = ["FileOnly", "Label", "Title"]
+__all__ = ["Label", "Title"]
 
 
 def _line(value: object) -> str:
@@ -29,17 +29,7 @@ def _name(value: object) -> str:
     return _line(value)
 
 
-def _file(value: object) -> str:
-    raise rejection(
-        f"got {described(value)}, which only a scenario file may name, since it is read together with it"
-    )
-
-
-_NOT_EMPTY = WithJsonSchema({"type": "string", "minLength": 1})
-
 Title = Annotated[str, BeforeValidator(_line)]
 """A text on one line, possibly empty."""
-Label = Annotated[str, BeforeValidator(_name), _NOT_EMPTY]
-"""A name by which results and overrides refer to a node or jammer."""
-FileOnly = Annotated[str, BeforeValidator(_file), _NOT_EMPTY]
-"""The name of a file that stands for a part of a scenario file, together with which it is read."""
+Label = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
+"""A name by which results and overrides refer to a node or jammer, or the name of a file."""

@@ -11,7 +11,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.ground_points import Node
 from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.origin import GEODETIC_KEYS
-from nullpose.scenario.section import MOST_MEMBERS
+from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import listed, printable, unknown
 
@@ -33,7 +33,9 @@ def nodes_from_csv(text: str) -> list[ListedNode]:
     Raises:
         ScenarioError: no CSV, a header that cannot be used, or no line below it.
     """
-    lines = _lines(text)
+    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    cells = ([cell.strip() for cell in row] for row in reader)
+    lines = ((reader.line_num, row) for row in cells if any(row))
     try:
         line, header = next(lines, (1, []))
         rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
@@ -45,17 +47,6 @@ def nodes_from_csv(text: str) -> list[ListedNode]:
     if faults:
         raise ScenarioError(faults)
     return [_node(number, header, row) for number, row in rows]
-
-
-def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yields the lines that hold anything, each with its number, their cells without blanks at the ends."""
-    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
-    before = 0
-    for row in reader:
-        cells = [cell.strip() for cell in row]
-        if any(cells):
-            yield before + 1, cells
-        before = reader.line_num
 
 
 def _header_faults(header: Sequence[str]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import Any
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import parse_json
 from nullpose.scenario.listed_nodes import ListedNode
-from nullpose.scenario.section import MOST_MEMBERS
+from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.wording import described
 
 __all__ = ["nodes_from_geojson"]

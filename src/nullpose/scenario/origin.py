@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,8 +63,6 @@ class Origin(Section):
         alt_m: altitude over the ellipsoid [m], not over the sea or the ground.
     """
 
-    header: ClassVar[str] = "a table headed [origin]"
-
     lat_deg: Latitude = Field(
         description="Latitude of the origin in degrees (WGS-84), north positive.", examples=[50.0]
     )
@@ -90,26 +88,22 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
     Args:
         data: the raw scenario.
     """
-    members = {key: value for key in POINT_LISTS if isinstance(value := data.get(key), list | tuple)}
-    filled = {key: list(points) for key, points in members.items()}
     origin = _place(data.get("origin"))
-    missing = [
-        (points, index, _place(point) if origin else None)
-        for points in filled.values()
-        for index, point in enumerate(points)
-        if isinstance(point, Mapping) and point.get("position_m") is None and _is_geodetic(point)
-    ]
-    known = [place.geodetic for _, _, place in missing if place]
-    enu_m = iter(enu_from_geodetic(known, origin.geodetic) if origin and known else ())
-    for points, index, place in missing:
-        position_m = next(enu_m) if place else np.zeros(3)
-        is_near = np.linalg.norm(position_m) <= FARTHEST_M
-        points[index] = {**points[index], "position_m": position_m.tolist() if is_near else [0.0] * 3}
-    return {**data, **filled}
+    members = {key: value for key in POINT_LISTS if isinstance(value := data.get(key), list | tuple)}
+    return {**data} | {key: [_located(point, origin) for point in points] for key, points in members.items()}
 
 
-def _is_geodetic(point: Mapping[str, object]) -> bool:
-    return any(point.get(key) is not None for key in GEODETIC_KEYS)
+def _located(point: object, origin: Origin | None) -> object:
+    """Returns a raw point with its position_m, if it is stated by latitude and longitude."""
+    if not isinstance(point, Mapping) or point.get("position_m") is not None:
+        return point
+    if all(point.get(key) is None for key in GEODETIC_KEYS):
+        return point
+    place, position_m = _place(point), np.zeros(3)
+    if place is not None and origin is not None:
+        position_m = enu_from_geodetic(place.geodetic, origin.geodetic)
+    is_near = np.linalg.norm(position_m) <= FARTHEST_M
+    return {**point, "position_m": position_m.tolist() if is_near else [0.0, 0.0, 0.0]}
 
 
 def _place(stated: object) -> Origin | None:

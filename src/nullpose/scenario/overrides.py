@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
 from itertools import chain
@@ -21,6 +22,7 @@ __all__ = ["Override", "apply_overrides", "parse_override"]
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+_PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,16 +99,12 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
 
 
 def _value(path: str, text: str) -> object:
-    try:
+    with suppress(ValueError, RecursionError):  # it may be a bare word
         tables = tomllib.loads(f"value = {text}")
         if tables.keys() == {"value"}:
             return tables["value"]
-    except (ValueError, RecursionError):
-        pass  # not TOML; it may be a bare word
-    try:
+    with suppress(ValueError):
         return float(text)  # .5 and 5. are numbers to everyone but TOML
-    except ValueError:
-        pass
     if text[0] in "[{\"'" or "\n" in text:
         message = f"the value {text} is not TOML; write as in 10, [5, 20] or a bare word"
         raise ScenarioError([Fault(path, message)], "override")
@@ -115,69 +113,56 @@ def _value(path: str, text: str) -> object:
 
 def _steps(path: str) -> Place:
     """Returns the path as keys, names and indices."""
-    steps: list[str | int] = []
-    end = 0
-    while end < len(path) or not steps:
-        step = _STEP.match(path, end)
-        if not step:
-            raise ScenarioError([Fault(path, "this is not a path")])
-        steps.append(int(step[4]) if step[4] else next(word for word in step.groups() if word is not None))
-        end = step.end()
-    return tuple(steps)
+    if not _PATH.fullmatch(path):
+        raise ScenarioError([Fault(path, "this is not a path")])
+    found = (step.groups() for step in _STEP.finditer(path))
+    return tuple(
+        int(index) if index else double or single or bare or "" for double, single, bare, index in found
+    )
 
 
-def _assign(kind: type[Section], table: dict[str, Any], steps: Place, value: object, path: str) -> None:
-    """Sets the value at the place in a raw table that the steps lead to; drops what it takes the place of."""
-    key, rest = steps[0], steps[1:]
-    if not isinstance(key, str) or key not in kind.model_fields:
-        message = f"there is no such key; the keys here are {listed(kind.model_fields)}"
-        raise _leads_nowhere(path, key, list(kind.model_fields), message)
-    inner = inner_section(kind.model_fields[key])
-    # A table that is not there yet is begun, once the rest of the path has proved to lead somewhere.
-    begun = inner is not None and inner.letter is None and rest
-    holder = {} if begun and table.get(key) is None else table.get(key)
-    if not rest:
-        holder = value
-    elif inner is not None and isinstance(holder, dict):
-        _assign(inner, holder, rest, value, path)
-    else:
-        _assign_member(inner, key, holder, rest, value, path)
-    table[key] = holder
-    for ways in kind.ways:
-        for other in ways.others(key):
-            table.pop(other, None)
+def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object, path: str) -> None:
+    """Sets the value at the place in a raw table or list that the steps lead to; drops what it replaces.
+
+    Args:
+        kind: what kind of table the holder is, or its members are; None where there are none.
+        holder: the table or list, which is changed.
+        steps: from it to the place.
+        value: the new value.
+        path: all steps as they were given, for messages.
+    """
+    members, (step, *rest) = _members(kind, holder), steps
+    if step not in members:
+        known = [member for member in members if isinstance(member, str)]
+        guess = nearest(str(step), known) or (known[0] if len(known) == 1 else "")
+        meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
+        have = f"must be one of {listed([path_of((member,)) for member in members])}{meant}"
+        have = have if members else "but it has no members, so set it whole"
+        raise ScenarioError([Fault(path, f"got {path_of((step,))}, {have}")])
+    here, inner = members[step], kind
+    if kind is not None and isinstance(holder, dict):
+        inner = inner_section(kind.model_fields[str(here)])
+    if rest:
+        is_table = inner is not None and inner.letter is None
+        below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]
+        _assign(inner, below, tuple(rest), value, path)
+        value = below
+    holder[here] = value
+    for ways in kind.ways if kind is not None and isinstance(holder, dict) else ():
+        for other in ways.others(str(here)):
+            holder.pop(other, None)
 
 
-def _assign_member(
-    inner: type[Section] | None, key: str, members: object, steps: Place, value: object, path: str
-) -> None:
-    """Sets a member of a list, or something in it: a table, by its name or index, or a number."""
-    if not isinstance(members, list) or not members:
-        raise ScenarioError([Fault(path, f"{key} has no members here, so set it whole")])
-    letter = "" if inner is None else inner.letter or ""
-    names = [
-        member.get("name") or f"{letter}{place}" if isinstance(member, dict) else ""
-        for place, member in enumerate(members, 1)
-    ]
-    step, rest = steps[0], steps[1:]
-    index = names.index(str(step)) if step in names else step
-    if not isinstance(index, int) or index >= len(members):
-        have = listed([f"[{index}] {name}".strip() for index, name in enumerate(names)])
-        message = f"{key} has no member {path_of((step,))}, it has {have}"
-        raise _leads_nowhere(path, step, names, message)
-    if not rest:
-        members[index] = value
-    elif inner is not None and isinstance(members[index], dict):
-        _assign(inner, members[index], rest, value, path)
-    else:
-        _assign_member(None, f"{key}[{index}]", members[index], rest, value, path)
-
-
-def _leads_nowhere(path: str, step: str | int, known: Sequence[str], message: str) -> ScenarioError:
-    """Returns the fault that a path ends at a step, with the path that may be meant."""
-    guess = path_of((nearest(str(step), known) or known[0],))
-    meant = f"; did you mean {path.replace(str(step), guess, 1)}?" if isinstance(step, str) and guess else ""
-    return ScenarioError([Fault(path, f"{message}{meant}")])
+def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str | int]:
+    """Returns the steps that lead on from a raw table or list, with the key or index that each means."""
+    if isinstance(holder, dict):
+        return {} if kind is None else {key: key for key in kind.model_fields}
+    members = holder if isinstance(holder, list) else []
+    indices: dict[str | int, str | int] = {index: index for index in range(len(members))}
+    for index, member in enumerate(members):
+        if kind is not None and isinstance(member, dict):
+            indices[member.get("name") or f"{kind.letter}{index + 1}"] = index
+    return indices
 
 
 def _unlocate(data: Mapping[str, Any]) -> None:

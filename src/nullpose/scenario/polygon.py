@@ -86,13 +86,8 @@ def _first_meeting(corners: tuple[tuple[float, float], ...]) -> tuple[int, int] 
     count, ends = len(vertices), np.roll(vertices, -1, axis=0)
     for one, other in _near(np.minimum(vertices, ends), np.maximum(vertices, ends)):
         p, q, start, end = vertices[one], ends[one], vertices[other], ends[other]
+        # Neither lies on one side of the other's line: they meet there, or are on one line and overlap.
         met = ~(_beside(p, q, start, end) | _beside(start, end, p, q))
-        p, q, start, end = p[met], q[met], start[met], end[met]
-        met[met] = (
-            _crosses(p, q, start, end)
-            | (np.min([_distance_m(p, start, end), _distance_m(q, start, end)], axis=0) < _APART_M)
-            | (np.min([_distance_m(start, p, q), _distance_m(end, p, q)], axis=0) < _APART_M)
-        )
         follows, closes = other == one + 1, other - one == count - 1
         met[follows] = _folds(vertices[one[follows]], ends[one[follows]], ends[other[follows]])
         met[closes] = _folds(vertices[-1:], vertices[:1], vertices[1:2])
@@ -112,24 +107,12 @@ def _near(low: Array, high: Array) -> Iterator[tuple[NDArray[np.intp], NDArray[n
         yield one + first, other + first
 
 
-def _left(a: Array, b: Array, c: Array) -> Array:
-    """Returns how far a point c is to the left of a line ab, times the length from a to b."""
-    ab, ac = b - a, c - a
-    return np.asarray(ab[..., 0] * ac[..., 1] - ab[..., 1] * ac[..., 0])
-
-
 def _beside(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     """Returns which segments lie on one side of the line pq, and not near it."""
-    near = _APART_M * np.linalg.norm(q - p, axis=-1)
-    sides = np.stack([_left(p, q, start), _left(p, q, end)])
+    along, near = q - p, _APART_M * np.linalg.norm(q - p, axis=-1)
+    offsets = np.stack([start - p, end - p])
+    sides = along[..., 0] * offsets[..., 1] - along[..., 1] * offsets[..., 0]
     return np.asarray((sides > near).all(axis=0) | (sides < -near).all(axis=0))
-
-
-def _crosses(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
-    """Returns which segments run from one side of segment pq to the other, and it of theirs."""
-    theirs = np.sign(_left(p, q, start)) * np.sign(_left(p, q, end))
-    its = np.sign(_left(start, end, p)) * np.sign(_left(start, end, q))
-    return np.asarray((theirs < 0) & (its < 0))
 
 
 def _folds(before: Array, corner: Array, after: Array) -> NDArray[np.bool_]:

@@ -14,7 +14,6 @@ from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.subdivision import find_position
 from nullpose.scenario.uncertainty import Uncertain
-from nullpose.scenario.wording import listed
 
 __all__ = ["airspace_faults", "may_hold_a_position"]
 
@@ -73,8 +72,8 @@ def may_hold_a_position(airspace: Airspace, centres_m: Array) -> bool:
     near_m = centres_m[apart_m < airspace.keep_out_m]
     borders = sum((len(zone.outline_m) for zone in airspace.no_fly), len(fence_m) + len(near_m))
     most = min(60_000, _MOST_DISTANCES // max(1, borders))
-    found = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
-    return found.position_m is not None or not found.settled
+    position_m, is_sure = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
+    return position_m is not None or not is_sure
 
 
 def _reach_faults(
@@ -85,7 +84,6 @@ def _reach_faults(
     That is so if an allowed position is no further from the point's set than the vehicle's own position
     error: the distance may then be zero, at which the model has no limit.
     """
-    exact = []
     for place, point in points.items():
         matrix_m = point.uncertainty_matrix_m if isinstance(point, Uncertain) else np.zeros((3, 3))
         reach_m = point.uncertainty_reach_m if isinstance(point, Uncertain) else 0.0
@@ -101,22 +99,15 @@ def _reach_faults(
 
         lower_m = np.maximum(airspace.lower_m, centre_m - half_m)
         upper_m = np.minimum(airspace.upper_m, centre_m + half_m)
-        met_m = find_position(lower_m, upper_m, clearance_m).position_m
-        if met_m is not None and reach_m == 0.0:
-            exact.append(path_of(place))
-        elif met_m is not None:
-            message = (
-                f"the positions that it allows, with position_error_m = {error_m:g}, reach into the "
-                f"airspace, at {[float(f'{x:.4g}') for x in met_m]} for one, where the vehicle may meet it; "
-                f"make it smaller, keep the airspace away from it, or make keep_out_m more than {total_m:g}"
+        met_m, _ = find_position(lower_m, upper_m, clearance_m)
+        if met_m is not None:
+            yield (
+                (*place, "uncertainty_m") if reach_m else ("receiver", "position_error_m"),
+                f"the vehicle, up to position_error_m = {error_m:g} from where it is meant to be, may meet "
+                f"{path_of(place)}, which is known to within {reach_m:g} m: at "
+                f"{[float(f'{x:.4g}') for x in met_m]} for one, inside the airspace; make either smaller, "
+                f"keep the airspace away from it, or make keep_out_m more than {total_m:g}",
             )
-            yield (*place, "uncertainty_m"), message
-    if exact:
-        message = (
-            f"a vehicle up to {error_m:g} m from where it is meant to be may meet {listed(exact)}; make it "
-            f"smaller, or keep_out_m more than {error_m:g}"
-        )
-        yield ("receiver", "position_error_m"), message
 
 
 def _clearance_m(airspace: Airspace, centres_m: Array, at: Array) -> Array:

@@ -36,7 +36,6 @@ class Receiver(Section):
         position_error_m: largest distance between the true position and the commanded one [m].
     """
 
-    header: ClassVar[str] = "a table headed [receiver]"
     ways: ClassVar[tuple[Ways, ...]] = (
         exactly_one("noise_w", "noise_dbm"),
         exactly_one("reference_gain_db", "frequency_hz"),

@@ -13,8 +13,11 @@ from pydantic_core import CoreSchema, core_schema
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described, nearest, plain
 
-__all__ = ["Ascending", "Choice", "Count", "ListOf", "Members", "Quantity", "Rule"]
+__all__ = ["MOST_MEMBERS", "Ascending", "Choice", "Count", "ListOf", "Quantity", "Rule", "list_of_tables"]
 
+
+MOST_MEMBERS = 10_000
+"""The most members of a list, such as nodes or the corners of a polygon."""
 
 _NUMBER = re.compile(r"[-+.\deE]*\d[-+.\deE]*")
 
@@ -164,36 +167,20 @@ class Ascending(ListOf):
         return value
 
 
-@dataclass(frozen=True, slots=True)
-class Members(Rule):
-    """A list of tables, as the metadata of an annotated tuple.
+class Members(ListOf):
+    """A list of tables, as the metadata of an annotated tuple."""
 
-    Args:
-        key: how each table is headed.
-        letter: the letter of the names that are given by place, as the S of S1, S2, ...; empty for none.
-        fewest: the smallest number of tables.
-    """
-
-    key: str
-    letter: str = ""
-    fewest: int = 0
-
-    def read(self, value: object) -> object:
-        """Returns the raw tables, or raises the fault that says what is wrong with the list."""
-        if not isinstance(value, list | tuple) or len(value) < self.fewest:
-            least = "must have at least one: " if value == [] else "must be "
-            raise rejection(f"got {described(value)}, {least}a list of tables, each headed [[{self.key}]]")
-        return value
-
-    def judge(self, value: tuple[BaseModel, ...]) -> tuple[BaseModel, ...]:
-        """Returns the tables, each that leaves its name out being named by its place, counted from 1."""
+    def judge(self, value: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Returns the tables, each that leaves its name out being named by its letter and its place."""
         return tuple(
             member
-            if getattr(member, "name", "") or not self.letter
-            else BaseModel.model_copy(member, update={"name": f"{self.letter}{place}"})
+            if member.name or member.letter is None
+            else BaseModel.model_copy(member, update={"name": f"{member.letter}{place}"})
             for place, member in enumerate(value, 1)
         )
 
-    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Returns the JSON Schema of the list."""
-        return inner | {"minItems": self.fewest} if self.fewest else inner
+
+def list_of_tables(key: str, fewest: int = 0) -> Members:
+    """Returns the rule of a list of so many tables that are headed by a key."""
+    least = "at least one table" if fewest else "tables"
+    return Members(f"a list of {least}, each headed [[{key}]]", fewest, MOST_MEMBERS)

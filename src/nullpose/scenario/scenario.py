@@ -18,10 +18,10 @@ from nullpose.scenario.arrays import read_only
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
-from nullpose.scenario.names import FileOnly, Title
+from nullpose.scenario.names import Label, Title
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.receiver import Receiver
-from nullpose.scenario.rules import Choice, Members
+from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_text import toml_text
 from nullpose.scenario.transmitter import Transmitter
@@ -70,7 +70,7 @@ class Scenario(Section):
         + ".",
         examples=list(RECORDS),
     )
-    nodes_from: FileOnly | None = Field(
+    nodes_from: Label | None = Field(
         default=None,
         description="Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
         "Either this or tables headed [[nodes]].",
@@ -100,13 +100,13 @@ class Scenario(Section):
         description="A table headed [transmitter]: the drone's own power (W or dBm); with objective "
         "secrecy-rate only.",
     )
-    nodes: Annotated[tuple[Node, ...], Members("nodes", Node.letter, fewest=1)] = Field(
+    nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
     )
-    jammers: Annotated[tuple[Jammer, ...], Members("jammers", Jammer.letter)] = Field(
+    jammers: Annotated[tuple[Jammer, ...], list_of_tables("jammers")] = Field(
         default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
     )
-    eavesdroppers: Annotated[tuple[Eavesdropper, ...], Members("eavesdroppers", Eavesdropper.letter)] = Field(
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
         default=(),
         description="Tables headed [[eavesdroppers]], one for each; with objective secrecy-rate only.",
     )

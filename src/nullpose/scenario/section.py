@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from itertools import chain
@@ -13,13 +13,11 @@ from pydantic.fields import FieldInfo
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
+from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described, nearest, unknown
 
-__all__ = ["MOST_MEMBERS", "Section", "inner_section"]
-
-MOST_MEMBERS = 10_000
-"""The most members of a list, such as nodes or the corners of a polygon."""
+__all__ = ["Section", "inner_section"]
 
 _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
@@ -30,7 +28,7 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     header: ClassVar[str] = ""
-    """What the table is called and how it is headed in a file."""
+    """What the table is called and how it is headed in a file; empty where it is headed by its own name."""
     letter: ClassVar[str | None] = None
     """The letter of names given by place, as the S of S1, S2, ...; None for a table alone of its kind."""
     ways: ClassVar[tuple[Ways, ...]] = ()
@@ -74,6 +72,11 @@ class Section(BaseModel):
         return stated
 
     @classmethod
+    def heading(cls) -> str:
+        """Returns what the table is called and how it is headed in a file."""
+        return cls.header or f"a table headed [{cls.__name__.lower()}]"
+
+    @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Returns the raw table with what follows from its own values filled in."""
         return data
@@ -93,7 +96,7 @@ class Section(BaseModel):
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
-            raise rejection(f"got {described(data)}, must be {cls.header}")
+            raise rejection(f"got {described(data)}, must be {cls.heading()}")
         for key, value in data.items():
             if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
                 message = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
@@ -101,8 +104,16 @@ class Section(BaseModel):
         stated = {key: value for key, value in data.items() if key in cls.model_fields}
         given = {key for key, value in stated.items() if value is not None}
         strange = [str(key) for key in data if key not in stated]
-        meant = {nearest(key, cls._absent(given)) for key in strange[:_MOST_UNKNOWN]}
-        faults = [*cls._key_faults(strange, given)]
+        absent = [key for key in cls.model_fields if key not in given]
+        meant = {nearest(key, absent) for key in strange[:_MOST_UNKNOWN]}
+        # A key that is still to be given is the likelier meaning of a misspelt one.
+        faults: list[tuple[Place, str]] = [
+            ((key,), unknown("key", key, cls.model_fields, absent)) for key in strange[:_MOST_UNKNOWN]
+        ]
+        if len(strange) > _MOST_UNKNOWN:
+            faults.append(((), f"{len(strange) - _MOST_UNKNOWN} more keys are unknown; remove them too"))
+        if not strange:
+            faults += [((), message) for ways in cls.ways for message in ways.faults(given)]
         completed = cls.completed(stated)
         try:
             judged = handler(completed)
@@ -116,21 +127,6 @@ class Section(BaseModel):
         if faults:
             raise collected(cls.__name__, faults)
         return judged
-
-    @classmethod
-    def _absent(cls, given: Collection[str]) -> list[str]:
-        return [key for key in cls.model_fields if key not in given]
-
-    @classmethod
-    def _key_faults(cls, strange: Sequence[str], given: Collection[str]) -> Iterator[tuple[Place, str]]:
-        """Yields the keys that the table does not know, or else those that do not go together."""
-        for key in strange[:_MOST_UNKNOWN]:
-            # A key that is still to be given is the likelier meaning of a misspelt one.
-            yield (key,), unknown("key", key, cls.model_fields, cls._absent(given))
-        if len(strange) > _MOST_UNKNOWN:
-            yield (), f"{len(strange) - _MOST_UNKNOWN} more keys are unknown; remove them too"
-        if not strange:
-            yield from (((), message) for ways in cls.ways for message in ways.faults(given))
 
     @classmethod
     def _sound_part(cls, data: object) -> Any:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Search", "find_position"]
+__all__ = ["find_position"]
 
 Array = NDArray[np.float64]
 
@@ -16,23 +15,10 @@ _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled 
 _BATCH = 256
 
 
-@dataclass(frozen=True, slots=True)
-class Search:
-    """What came of looking for a position.
-
-    Args:
-        position_m: a position found [m], (3,), or None.
-        settled: whether it is sure that there is one or none.
-    """
-
-    position_m: Array | None
-    settled: bool
-
-
 def find_position(
     lower_m: Array, upper_m: Array, clearance_m: Callable[[Array], Array], most_parts: int = 60_000
-) -> Search:
-    """Returns a position in a box at which a clearance is not negative, or that there is none.
+) -> tuple[Array | None, bool]:
+    """Returns a position [m] in a box at which a clearance is not negative, or None; and whether it is sure.
 
     A clearance may change by no more than the distance gone (distances from sets do, and the least of
     several). So a part of the box whose middle has a clearance below minus its half diagonal holds no such
@@ -45,7 +31,7 @@ def find_position(
         most_parts: parts that are looked at before it gives up.
     """
     if (lower_m > upper_m).any():
-        return Search(None, settled=True)
+        return None, True
     smallest_m = _TOUCHING * (1.0 + np.abs([lower_m, upper_m]).max())
     middles, halves = (0.5 * (lower_m + upper_m))[None], (0.5 * (upper_m - lower_m))[None]
     clearances = clearance_m(middles)
@@ -53,16 +39,16 @@ def find_position(
     while True:
         best = int(clearances.argmax())
         if clearances[best] >= 0.0:
-            return Search(middles[best], settled=True)
+            return middles[best], True
         kept = clearances >= -np.linalg.norm(halves, axis=1)
         middles, halves, clearances = middles[kept], halves[kept], clearances[kept]
         if not len(middles):
-            return Search(None, settled=True)
+            return None, True
         best = int(clearances.argmax())
         if halves[best].max() <= smallest_m:
-            return Search(middles[best], settled=True)
+            return middles[best], True
         if looked_at > most_parts:
-            return Search(None, settled=False)
+            return None, False
         order = np.argsort(-clearances)
         chosen, rest = order[:_BATCH], order[_BATCH:]
         new_middles, new_halves = _halved(middles[chosen], halves[chosen])

@@ -24,7 +24,6 @@ _NO_WORD = re.compile(  # comments, and texts, which may be a part of a key; an 
     re.DOTALL,
 )
 _WORD = re.compile(r"[\w\-. \t]+")
-_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 _HINTS = {
     "Cannot overwrite a value": "a key is given twice; keep one",
     "Cannot declare": "a table is headed twice; lists of tables, such as [[nodes]], take double brackets",
@@ -121,9 +120,8 @@ def _decoded(content: bytes) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        guess = " (it looks like UTF-16)" if content.startswith(_UTF16_MARKS) else ""
         line = content.count(b"\n", 0, error.start) + 1
-        message = f"byte 0x{content[error.start]:02x} is not UTF-8 text{guess}; save the file as UTF-8"
+        message = f"byte 0x{content[error.start]:02x} is not UTF-8 text; save the file as UTF-8"
         raise ScenarioError([Fault(f"line {line}", message)]) from None
 
 

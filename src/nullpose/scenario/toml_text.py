@@ -4,33 +4,33 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 __all__ = ["toml_text", "toml_value"]
 
 
 def toml_text(scenario: Mapping[str, object]) -> str:
     """Returns the TOML text of plain values nested as in a scenario file: keys, tables, lists of tables."""
-    return "\n\n".join(_blocks("", "", scenario)) + "\n"
+    return "\n\n".join(_blocks([], "", scenario)) + "\n"
 
 
-def _blocks(header: str, path: str, values: Mapping[str, object]) -> Iterator[str]:
+def _blocks(header: list[str], path: str, values: Mapping[str, object]) -> Iterator[str]:
     """Yields a table's own keys under its header, then the tables inside it under theirs."""
-    tables = {key: value for key, value in values.items() if _holds_tables(value)}
-    own = [f"{key} = {toml_value(value)}" for key, value in values.items() if key not in tables]
-    yield "\n".join([*([header] if header else []), *own])
-    for key, value in tables.items():
-        inner = f"{path}.{key}" if path else key
-        if isinstance(value, Mapping):
-            yield from _blocks(f"[{inner}]", inner, value)
-        elif isinstance(value, Sequence):
-            for member in value:
-                yield from _blocks(f"[[{inner}]]", inner, member)
+    tables = {key: _tables(value) for key, value in values.items()}
+    yield "\n".join(header + [f"{key} = {toml_value(values[key])}" for key in values if tables[key] is None])
+    for key, inner in tables.items():
+        name = f"{path}.{key}".removeprefix(".")
+        is_alone = isinstance(values[key], Mapping)
+        for table in inner or ():
+            yield from _blocks([f"[{name}]" if is_alone else f"[[{name}]]"], name, table)
 
 
-def _holds_tables(value: object) -> bool:
-    if isinstance(value, str) or not isinstance(value, Sequence):
-        return isinstance(value, Mapping)
-    return len(value) == 0 or isinstance(value[0], Mapping)
+def _tables(value: Any) -> Sequence[Mapping[str, object]] | None:
+    """Returns the tables that a value is, one or a list of them; None if it is a value of another kind."""
+    if isinstance(value, Mapping):
+        return [value]
+    is_list = isinstance(value, Sequence) and not isinstance(value, str)
+    return value if is_list and all(isinstance(member, Mapping) for member in value) else None
 
 
 def toml_value(value: object) -> str:

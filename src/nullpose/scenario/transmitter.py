@@ -21,7 +21,6 @@ class Transmitter(Section):
         power_dbm: the same in dBm.
     """
 
-    header: ClassVar[str] = "a table headed [transmitter]"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
     power_w: Watts | None = Field(

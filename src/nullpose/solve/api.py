@@ -22,7 +22,7 @@ from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
-from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
+from nullpose.solve.solve_and_prove import solve_and_prove
 
 __all__ = ["best_axis", "compare", "solve"]
 
@@ -69,7 +69,7 @@ def solve(
     links = _links(scenario, scheme, pose)
     has_certificate = bool(outcome.proofs) and claimed_axes(scenario, scheme, null_jammer) is not None
     rigour = Rigour.VERIFIABLE if has_certificate else Rigour.FLOATING_POINT
-    status = _status(outcome)
+    status = Status.of(outcome.upper_bound, outcome.reason)
     return Result(
         scenario=scenario,
         scheme=scheme,
@@ -172,12 +172,6 @@ _NO_BORDERS: dict[str, Any] = {
     "zone_edges": np.zeros((0, 4)),
     "zone_range_m": np.zeros((0, 2)),
 }
-
-
-def _status(outcome: Outcome) -> Status:
-    if outcome.upper_bound is None:
-        return Status.BEST_FOUND
-    return Status.GAP_NOT_REACHED if outcome.reason else Status.CERTIFIED
 
 
 def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:

@@ -1,25 +1,25 @@
-"""Many scenes in one call: a compiled loop, and arrays of results."""
+"""Many scenes in one call, and arrays of results."""
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Unpack
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from nullpose.errors import UsageError
+from nullpose.errors import SolveError, UsageError
 from nullpose.family import AxisField, Family, build_family
 from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many
 from nullpose.scenario import Airframe, Scenario
-from nullpose.solve.batch import Batch, BatchOutcome, same_shape
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.result import Status
 from nullpose.solve.rigour import Rigour, bound_above
+from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["NOWHERE", "ManySolutions", "solve_many"]
 
@@ -104,17 +104,17 @@ def solve_many(
 ) -> ManySolutions:
     """Return the best poses of many scenes, each for one airframe or for several, with their bounds.
 
-    What :func:`solve` does for one scene with the scheme optimum, without its cost in Python: scenes of one
-    shape are searched and proved in one compiled loop. Airframes are solved from the one with most freedom
-    down: what bounds a vehicle bounds any that reaches fewer axes, and its pose is theirs if they reach it,
-    so that most of them need no proof of their own. Values are evaluated by :mod:`nullpose.physics`.
+    What :func:`solve` does for one scene with the scheme optimum, without what it tells of each. Airframes
+    are solved from the one with most freedom down: what bounds a vehicle bounds any that reaches fewer axes,
+    and its pose is theirs if they reach it, so that most of them need no proof of their own. Values are
+    evaluated by :mod:`nullpose.physics`.
 
     Args:
         scenarios: what to solve; the smallest SINR or margin, not a secrecy rate, and one dipole each.
         airframes: the vehicles to try in every scene, None for an omnidirectional one; each scenario's own
             without them.
         on_progress: called now and then with how many scenes are done and how many there are.
-        options: as for :func:`solve`; proofs of the usual size are not interrupted by a time limit.
+        options: as for :func:`solve`.
 
     Raises:
         UsageError: a scenario of another kind, no scenario, a bad seed or limit.
@@ -125,19 +125,19 @@ def solve_many(
     if airframes is not None and not len(airframes):
         raise UsageError("airframes: given none; allowed: one or more")
     results = ManySolutions.blank(len(scenarios), 1 if airframes is None else len(airframes))
-    done = 0
-    for indices, families in _groups(scenarios, own=airframes is None):
-        first = scenarios[indices[0]]
-        of_group = asked.of(first)
-        vehicles = [first.airframe] if airframes is None else airframes
-        for start in range(0, len(indices), _BLOCK):
-            some = np.array(indices[start : start + _BLOCK])
-            block = [scenarios[index] for index in some]
-            for column, known in _solved(families[start : start + _BLOCK], vehicles, of_group):
-                _fill(block, some, vehicles[column], known, column, results)
-            done += len(some)
-            if on_progress is not None:
-                on_progress(done, len(scenarios))
+    for first in range(0, len(scenarios), _BLOCK):
+        block = scenarios[first : first + _BLOCK]
+        vehicles = [[scenario.airframe] if airframes is None else list(airframes) for scenario in block]
+        outcomes = [_by_vehicle(*each, asked) for each in zip(block, vehicles, strict=True)]
+        for column in range(results.value.shape[1]):
+            alike = defaultdict(list)  # what is evaluated together has so many nodes and jammers
+            for row, scenario in enumerate(block):
+                kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
+                alike[kind].append((first + row, scenario, outcomes[row][column]))
+            for (airframe, *_), answers in alike.items():
+                _fill(results, column, airframe, answers)
+        if on_progress is not None:
+            on_progress(first + len(block), len(scenarios))
     return results
 
 
@@ -154,72 +154,76 @@ def _check(scenarios: Sequence[Scenario]) -> None:
             )
 
 
-def _groups(scenarios: Sequence[Scenario], *, own: bool) -> list[tuple[list[int], list[Family]]]:
-    """Return the scenes by the shape of their families, and by their own airframes if those count."""
-    groups: dict[object, tuple[list[int], list[Family]]] = defaultdict(lambda: ([], []))
-    for index, scenario in enumerate(scenarios):
-        family = build_family(scenario)
-        indices, families = groups[same_shape(family), scenario.airframe if own else None]
-        indices.append(index)
-        families.append(family)
-    return list(groups.values())
-
-
-def _solved(
-    families: list[Family], vehicles: Sequence[Airframe | None], options: SolveOptions
-) -> Iterator[tuple[int, BatchOutcome]]:
-    """Yield what each vehicle reaches in scenes of one shape, the one with most freedom first."""
-    batch = Batch(families)
+def _by_vehicle(
+    scenario: Scenario, vehicles: Sequence[Airframe | None], asked: SolveOptions
+) -> list[Outcome | None]:
+    """Return what each vehicle reaches, that with most freedom solved first; None where no pose was found."""
+    family, options = build_family(scenario), asked.of(scenario)
     bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
-    solved: dict[tuple[float, float], BatchOutcome] = {}
-    for column in sorted(range(len(bands)), key=lambda c: bands[c][0] - bands[c][1]):
-        band = bands[column]
-        if band not in solved:
-            known = BatchOutcome.blank(len(families), len(families[0].numerator_point))
-            for wider, larger in solved.items():
-                if wider[0] <= band[0] and band[1] <= wider[1]:
-                    known.learn_from(larger, band)
-            batch.solve_and_prove(AxisField.within(*band), options, known)
-            if INTERRUPT in known.reason:
-                raise KeyboardInterrupt
-            solved[band] = known
-        yield column, solved[band]
+    solved: dict[tuple[float, float], Outcome | None] = {}
+    for band in sorted(dict.fromkeys(bands), key=lambda band: band[0] - band[1]):
+        wider = [known for (low, high), known in solved.items() if low <= band[0] and band[1] <= high]
+        solved[band] = _solve_band(family, band, [known for known in wider if known is not None], options)
+    return [solved[band] for band in bands]
+
+
+def _solve_band(
+    family: Family, band: tuple[float, float], wider: list[Outcome], options: SolveOptions
+) -> Outcome | None:
+    """Return the best pose under a band of axes, given what wider bands reach: bounds, and poses."""
+    bound = min((each.upper_bound for each in wider if each.upper_bound is not None), default=math.inf)
+    shared = [each.incumbent for each in wider if band[0] <= _upright(each.incumbent.axis) <= band[1]]
+    known = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
+    try:
+        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=known, bound=bound)
+    except SolveError:
+        return None
+    if outcome.reason == INTERRUPT:
+        raise KeyboardInterrupt
+    return outcome
+
+
+def _upright(axis: FloatArray) -> float:
+    """Return ``u_z^2`` of an axis of any length."""
+    return float(axis[2] ** 2 / np.sum(axis**2))
 
 
 def _fill(
-    scenarios: Sequence[Scenario],
-    indices: IntArray,
-    airframe: Airframe | None,
-    known: BatchOutcome,
-    column: int,
     results: ManySolutions,
+    column: int,
+    airframe: Airframe | None,
+    answers: list[tuple[int, Scenario, Outcome | None]],
 ) -> None:
-    """Put an airframe's answers into the results, their values evaluated at the poses."""
-    placed = known.placed
-    results.reason[indices[~placed], column] = NOWHERE
-    some = indices[placed]
-    if not len(some):
+    """Put one airframe's answers into the results, their values evaluated at the poses."""
+    results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
+    placed = [(row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
+    if not placed:
         return
-    position_m = known.position_m[placed]
+    some = np.array([row for row, _, _ in placed])
+    outcomes = [outcome for _, _, outcome in placed]
+    position_m = np.array([each.incumbent.position_m for each in outcomes])
+    axes = np.array([each.incumbent.axis for each in outcomes])
     mount_rad = 0.0 if airframe is None else airframe.mount_rad
     if airframe is None:
-        roll, pitch = attitude_from_axis(known.axis[placed])
+        roll, pitch = attitude_from_axis(axes)
         yaw = np.zeros_like(roll)
     else:
-        roll, pitch, yaw = attitude_within_tilt(known.axis[placed], airframe.tilt_max_rad, mount_rad)
+        roll, pitch, yaw = attitude_within_tilt(axes, airframe.tilt_max_rad, mount_rad)
     axis = antenna_axis(roll, pitch, yaw, mount_rad)
-    here = [scenarios[place] for place in np.flatnonzero(placed).tolist()]
-    margins = margins_of_many(here, position_m, axis)
-    results.binding_node[some, column] = np.argmin(margins, axis=1)
-    results.value[some, column] = value = np.min(margins, axis=1)
-    results.upper_bound[some, column] = bound_above(value, known.bound[placed])
-    results.position_m[some, column] = position_m
-    for angle, name in ((roll, "roll_rad"), (pitch, "pitch_rad"), (yaw, "yaw_rad")):
-        getattr(results, name)[some, column] = angle
-    results.boxes[some, column] = known.boxes[placed]
-    certified, proved = known.certified[placed], np.isfinite(known.bound[placed])
-    results.status[some, column] = Status.BEST_FOUND
-    results.status[some[certified], column] = Status.CERTIFIED
-    results.status[some[~certified & proved], column] = Status.GAP_NOT_REACHED
-    for index, place in zip(some, np.flatnonzero(placed), strict=True):
-        results.reason[index, column] = known.reason[place]
+    margins = margins_of_many([scenario for _, scenario, _ in placed], position_m, axis)
+    value = np.min(margins, axis=1)
+    bounds = np.array([math.inf if each.upper_bound is None else each.upper_bound for each in outcomes])
+    found: dict[str, ArrayLike] = {
+        "value": value,
+        "upper_bound": bound_above(value, bounds),
+        "status": [Status.of(each.upper_bound, each.reason) for each in outcomes],
+        "reason": [each.reason for each in outcomes],
+        "position_m": position_m,
+        "roll_rad": roll,
+        "pitch_rad": pitch,
+        "yaw_rad": yaw,
+        "binding_node": np.argmin(margins, axis=1),
+        "boxes": [each.nodes for each in outcomes],
+    }
+    for name, values in found.items():
+        getattr(results, name)[some, column] = values

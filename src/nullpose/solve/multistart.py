@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 from itertools import permutations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +14,17 @@ from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
 from nullpose.family.airspace import loosened
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.precompile import precompile
+from nullpose.solve.precompile import compile_search
 
 __all__ = [
     "BORDER_M",
-    "CLIMBS",
     "NOT_RECEIVED",
     "NO_POSITION",
     "SearchSettings",
+    "climb",
     "landmarks",
     "multistart",
     "search_settings",
-    "shift_of",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -42,15 +41,12 @@ NOT_RECEIVED = (
     "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
 )
 """What is said where some were."""
-CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
-"""Barrier weights of the climbs after a search."""
+_CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
 _CLIMB_STEPS = 300
-_SAME = 1e-12
 _PAIRED = 4  # interferers whose lines are looked at
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SearchSettings:
+class SearchSettings(NamedTuple):
     """How hard the multistart tries.
 
     Args:
@@ -64,6 +60,9 @@ class SearchSettings:
     polished: int = 24
     rounds: int = 12
     patience: int = 2
+
+
+_NO_SEARCH = SearchSettings(coarse=0, polished=0, rounds=-1, patience=0)
 
 
 def search_settings(proof_follows: bool) -> SearchSettings:
@@ -110,7 +109,7 @@ def _corners(family: Family, most: int = 1000) -> FloatArray:
 
 
 @cache
-def shift_of(seed: int) -> FloatArray:
+def _shift_of(seed: int) -> FloatArray:
     """Return the offset of the low-discrepancy sequence, (3,), that a seed stands for.
 
     Args:
@@ -135,56 +134,67 @@ def multistart(
     Raises:
         SolveError: no position of the domain gave every ratio a positive value.
     """
-    from nullpose.solve.kernels.polish import polish
-    from nullpose.solve.kernels.search import search
-
     settings = settings or SearchSettings()
-    precompile(family, axis_field)
-    position_m, axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
-    multipliers = np.empty(len(family.numerator_point))
-    shift, domain = shift_of(seed), family.domain
+    compile_search()
     places = landmarks(family)
-    for attempt in range(2):
-        if attempt == 1:  # what is allowed may be of no width: a point, a line or a wall
-            domain, places = loosened(family, BORDER_M).domain, np.vstack([places, _corners(family)])
-        log_value, starts, evaluations = search(
-            family.arrays,
-            domain,
-            axis_field.arrays,
-            places,
-            shift,
-            settings.coarse,
-            settings.polished,
-            settings.rounds,
-            settings.patience,
-            position_m,
-            axis,
-            multipliers,
-        )
-        if math.isfinite(log_value):
-            break
-    else:
-        raise SolveError(NOT_RECEIVED if evaluations else NO_POSITION)
-    for mu in CLIMBS:  # along a flat, curved ridge the search's steps may not have sufficed
-        before = log_value
-        log_value, steps = polish(
-            family.arrays,
-            domain,
-            axis_field.arrays,
-            position_m,
-            axis,
-            mu,
-            _CLIMB_STEPS,
-            multipliers,
-        )
-        evaluations += steps
-        if steps < _CLIMB_STEPS and log_value <= before + _SAME:
-            break
+    found = _run(family, axis_field, places, seed, settings)
+    if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
+        places = np.vstack([places, _corners(family)])
+        found = _run(loosened(family, BORDER_M), axis_field, places, seed, settings)
+        if not math.isfinite(found.log_value):
+            raise SolveError(NOT_RECEIVED if found.evaluations else NO_POSITION)
+    return found
+
+
+def climb(
+    family: Family, axis_field: AxisField, position_m: FloatArray, axis: FloatArray, *, mu: float, steps: int
+) -> Incumbent:
+    """Return the local maximum that a pose leads to.
+
+    Args:
+        family: the ratios and their domain.
+        axis_field: which axes are allowed.
+        position_m: (3,) metres, in the domain.
+        axis: (3,) unit axis.
+        mu: first barrier weight, in units of the log ratio.
+        steps: most steps.
+    """
+    pose = (position_m.copy(), axis.copy())
+    return _run(family, axis_field, np.empty((0, 3)), 0, _NO_SEARCH, (mu,), steps, pose)
+
+
+def _run(
+    family: Family,
+    axis_field: AxisField,
+    places: FloatArray,
+    seed: int,
+    settings: SearchSettings,
+    climbs: tuple[float, ...] = _CLIMBS,
+    steps: int = _CLIMB_STEPS,
+    pose: tuple[FloatArray, FloatArray] | None = None,
+) -> Incumbent:
+    from nullpose.solve.kernels.multistart import search_and_climb
+
+    position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    multipliers = np.empty(len(family.numerator_point))
+    log_value, starts, evaluations = search_and_climb(
+        family.arrays,
+        family.domain,
+        axis_field.arrays,
+        places,
+        _shift_of(seed),
+        settings,
+        np.array(climbs),
+        steps,
+        position_m,
+        axis,
+        multipliers,
+    )
     return Incumbent(
         position_m=position_m,
         axis=axis,
         log_value=log_value,
         multipliers=multipliers,
-        starts=int(starts),
-        evaluations=int(evaluations),
+        starts=starts,
+        evaluations=evaluations,
     )

@@ -1,122 +1,110 @@
-"""The first compilation, shared between two processes.
-
-A second process fills the cache with the choice of a starting axis and the branch and bound, while this one
-compiles a part of that which stands by itself, and then the polish and the search around it.
-"""
+"""The first compilation, shared between two processes: one compiles the proof, the other the search."""
 
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FunctionType
+from typing import Any
+
+import numpy as np
 
 from nullpose.family import AxisField, Family
 
-__all__ = ["precompile", "ready"]
+__all__ = ["compile_proof", "compile_search", "precompile"]
 
-_WAIT_S = 300.0  # it is ended then, and all that it compiled is compiled again
-
-
-def precompile(family: Family, axis_field: AxisField) -> None:
-    """Compile the kernels of the search in two processes if the cache has none.
-
-    Without a second process, or without a cache, the search compiles everything by itself: nothing depends
-    on this but time.
-
-    Args:
-        family: any family: its arrays give the kernels their types.
-        axis_field: any axis field.
-    """
-    from nullpose.solve.kernels.search import search
-
-    if isinstance(search, FunctionType) or search.signatures:  # not to be compiled, or compiled already
-        return
-    cache_path = search.stats.cache_path
-    if cache_path is None or any(Path(cache_path).glob("search.search-*.nbi")):
-        return
-    program = "from nullpose.solve.precompile import compile_other_half as c; c()"
-    try:
-        other = subprocess.Popen(
-            [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
-    except OSError:
-        return
-    try:
-        compile_affine(family, axis_field)
-        compile_search(family, axis_field)
-        other.wait(_WAIT_S)
-    except subprocess.TimeoutExpired:
-        pass
-    finally:
-        other.kill()
-        other.wait()
+_WAIT_S = 300.0  # the other process is ended then, and what it compiled is compiled again
+_PROGRAM = "from nullpose.solve.precompile import compile_proof as c; c()"
 
 
-def ready(family: Family, axis_field: AxisField) -> None:
-    """Compile search and branch and bound, or load them from the cache, unless this process has them.
+def precompile() -> None:
+    """Compile search and proof if this process has not, or load them from the cache.
 
-    Args:
-        family: any family.
-        axis_field: any axis field.
+    Without a second process, or without a cache, this one compiles both: nothing depends on that but time.
     """
     from nullpose.solve.kernels.branch import branch
 
-    if isinstance(branch, FunctionType) or branch.signatures:
+    if _is_compiled(branch):
         return
-    precompile(family, axis_field)
-    compile_search(family, axis_field)
-    compile_branch(family, axis_field)
+    cache_path = branch.stats.cache_path
+    cached = cache_path is None or any(Path(cache_path).glob("branch.branch-*.nbi"))
+    other = None if cached else _started()
+    try:
+        compile_search()
+        if other is not None:
+            other.wait(_WAIT_S)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        if other is not None:
+            other.kill()
+            other.wait()
+    compile_proof()
 
 
-def compile_branch(family: Family, axis_field: AxisField) -> None:
-    """Compile the branch and bound by giving it no node to work off."""
-    import numpy as np
+def _started() -> subprocess.Popen[bytes] | None:
+    try:
+        command = [sys.executable, "-c", _PROGRAM]
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    except OSError:
+        return None
 
+
+def _is_compiled(kernel: Any) -> bool:
+    """Return whether there is nothing to compile in this process: done, or told not to."""
+    return isinstance(kernel, FunctionType) or bool(kernel.signatures)
+
+
+def compile_proof() -> None:
+    """Compile the branch and bound by giving it no box to work off."""
     from nullpose.solve.kernels import branch, node
 
-    row, rows = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS))
-    node.keep_largest(np.ones(1), 1, row)
-    none = (0, rows.copy(), 0, 1, np.empty(3), np.empty(3))
-    branch.branch(family.arrays, family.domain, axis_field.arrays, 1.0, 1.0, row, 1.0, rows, *none)
+    family, field = _smallest_family(), AxisField.free()
+    row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
+    with _collecting_no_garbage():
+        branch.branch(
+            family.arrays, family.domain, field.arrays, 1.0, 1.0, row, 1.0, rows, 0, rows, 0, 1, none, none
+        )
 
 
-def compile_affine(family: Family, axis_field: AxisField) -> None:
-    """Compile the part of the branch and bound for axes that positions give, which needs none of the rest."""
-    import numpy as np
-    from numba import typeof
+def compile_search() -> None:
+    """Compile what is needed beside that, by a search of no round and a climb of no step."""
+    from nullpose.solve.kernels.links import min_log_ratio
+    from nullpose.solve.kernels.multistart import search_and_climb
+    from nullpose.solve.kernels.node import COLUMNS, keep_largest
+    from nullpose.solve.kernels.search import cut_box
+    from nullpose.solve.multistart import climb
 
-    from nullpose.solve.kernels import branch, node
-
-    row = np.zeros(node.COLUMNS)
-    scenery = (family.arrays, family.domain, axis_field.arrays, (1.0, row, 1.0))
-    arguments = (*scenery, row, branch.make_room.py_func(family.arrays), np.empty(3))
-    types = tuple(typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
-    branch.examine_affine.compile(types)
-
-
-def compile_search(family: Family, axis_field: AxisField) -> None:
-    """Compile the polish, by running no step of it, and the search, by running no round of it."""
-    import numpy as np
-
-    from nullpose.solve.kernels.polish import polish
-    from nullpose.solve.kernels.search import cut_box, search
-
-    ratios = len(family.numerator_point)
-    p, u, z = np.full(3, 1e3), np.array([0.0, 0.0, 1.0]), np.empty(ratios)
-    polish(family.arrays, family.domain, axis_field.arrays, p, u, 0.1, 0, z)
-    cut_box(family.arrays, family.low_m, family.high_m, 0.0, np.empty(3), np.empty(3))
-    none = np.empty((0, 3))
-    search(family.arrays, family.domain, axis_field.arrays, none, np.zeros(3), 1, 0, 0, 0, p, u, z)
+    if _is_compiled(search_and_climb):
+        return
+    family, none, one = _smallest_family(), np.empty(3), np.ones(1)
+    up, high_m = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0])
+    with _collecting_no_garbage():
+        climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
+        cut_box(family.arrays, family.low_m, family.high_m, 0.0, none, none)
+        min_log_ratio(family.arrays, high_m, up, one, one)
+        keep_largest(one, 1, np.zeros(COLUMNS))
 
 
-def compile_other_half() -> None:
-    """Compile the choice of a starting axis and the branch and bound; run by the second process."""
-    import numpy as np
+@contextmanager
+def _collecting_no_garbage() -> Iterator[None]:
+    """Leave garbage uncollected: a compiler makes little, and looking for it is a fifth of its time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
-    from nullpose.solve.kernels.search import likely_axis
 
-    family = Family(
+def _smallest_family() -> Family:
+    """Return a family of one ratio: its arrays have the types of any other's."""
+    return Family(
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),
@@ -131,5 +119,3 @@ def compile_other_half() -> None:
         keep_out_points_m=np.zeros((0, 3)),
         keep_out_m=1.0,
     )
-    likely_axis(family.arrays, np.array([0.0, 0.0, 10.0]), np.empty(3))
-    compile_branch(family, AxisField.free())

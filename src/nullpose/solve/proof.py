@@ -13,26 +13,26 @@ from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.incumbent import Incumbent
+from nullpose.solve.multistart import climb
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Task, WorkerPool, processors
 
-__all__ = ["DIRECT_NODES", "INSIDE", "INTERRUPT", "BudgetUsed", "Proof", "late_nodes", "prove"]
+__all__ = ["INTERRUPT", "BudgetUsed", "Proof", "prove"]
 
 FloatArray = NDArray[np.float64]
 
-DIRECT_NODES = 20_000
-"""Nodes of a try with axes split early; most problems of the paper's size need a few hundred."""
+_DIRECT_NODES = 20_000  # of a try with axes split early; most problems of the paper's size need a few hundred
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
+_KEPT = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.25  # each stage's gap, as a share of the one before
 _NEARLY = 2.0  # a stage that ends so near to the target goes all the way
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
 _MOST_LEAVES = 250_000
 _MOST_REFINED = 200_000  # which are then held twice, beside those made of them
 _WIDEST_GAP = 1e6
-INSIDE = 1.0 - 1e-4
-"""The gap that is aimed at, of the gap that is asked for: value and bound are rounded."""
+_INSIDE = 1.0 - 1e-4  # the gap that is aimed at, of the gap asked for: value and bound are rounded
 
 INTERRUPT = "an interrupt"
 """The reason of a run that was ended by Ctrl-C."""
@@ -66,12 +66,10 @@ class BudgetUsed:
     Args:
         seconds: time.
         nodes: nodes examined.
-        direct: whether the target was tried directly, in vain.
     """
 
     seconds: float = 0.0
     nodes: int = 0
-    direct: bool = False
 
 
 class _Run:
@@ -84,6 +82,7 @@ class _Run:
         incumbent: Incumbent,
         limits: SolveOptions,
         used: BudgetUsed,
+        bound: float,
     ) -> None:
         from nullpose.solve.kernels import branch, node
 
@@ -96,8 +95,9 @@ class _Run:
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
+        self.proved = min(self.proved, bound)
         self.doubt, self.axes_above = 0.0, self.kernel.EARLY
-        self.target = INSIDE * limits.ratio_gap(self.value)
+        self.target = _INSIDE * limits.ratio_gap(self.value)
         self.favourite = self._favourite()
 
     @property
@@ -134,11 +134,14 @@ class _Run:
         Splitting axes late takes some hundred nodes where splitting them early takes many thousands, and the
         other way round, and nothing cheap was found that tells which beforehand.
         """
-        tries = [(self.kernel.EARLY, DIRECT_NODES)]
-        if self.kernel.may_have_gaps(self.family.arrays, self.axis_field.arrays):
-            tries.insert(0, (self.kernel.LATE, late_nodes(self.family)))
+        tries = [(self.kernel.EARLY, _DIRECT_NODES)]
+        ratios = len(self.family.numerator_point)
+        if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
+            tries.insert(0, (self.kernel.LATE, min(_LATE_NODES, _LATE_NODES_EACH * ratios)))
         for self.axes_above, nodes in tries:
-            done, reason = self.stage(self.target, root, min(nodes, self.node_limit - self.nodes))
+            done, reason = self.stage(
+                self.target, root, min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
+            )
             if not reason or time.perf_counter() > self.deadline or self.nodes >= self.node_limit:
                 break
         return done, reason
@@ -179,28 +182,17 @@ class _Run:
 
     def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
         from nullpose.solve.kernels.links import min_log_ratio
-        from nullpose.solve.kernels.polish import polish
 
         ratios, groups = len(self.family.numerator_point), len(self.family.denominator_isotropic)
-        multipliers = np.empty(ratios)
-        start_value = float(
-            min_log_ratio(self.family.arrays, position_m, axis, np.empty(groups), np.empty(ratios))
-        )
-        p, u = position_m.copy(), axis.copy()
-        value, steps = polish(
-            self.family.arrays, self.family.domain, self.axis_field.arrays, p, u, 0.01, 100, multipliers
-        )
-        if value < start_value:
-            value, p, u = start_value, position_m.copy(), axis.copy()
-        if value > self.incumbent.log_value:
+        start = float(min_log_ratio(self.family.arrays, position_m, axis, np.empty(groups), np.empty(ratios)))
+        found = climb(self.family, self.axis_field, position_m, axis, mu=0.01, steps=100)
+        if found.log_value < start:
+            found = replace(found, log_value=start, position_m=position_m, axis=axis)
+        if found.log_value > self.incumbent.log_value:
             self.incumbent = replace(
-                self.incumbent,
-                position_m=p,
-                axis=u,
-                log_value=value,
-                multipliers=multipliers,
+                found,
                 starts=self.incumbent.starts + 1,
-                evaluations=self.incumbent.evaluations + steps,
+                evaluations=self.incumbent.evaluations + found.evaluations,
             )
             self.favourite = self._favourite()
         else:  # the two evaluations differ in their rounding: do not ask again
@@ -231,15 +223,6 @@ class _Run:
         return leaf
 
 
-def late_nodes(family: Family) -> int:
-    """Return how many nodes a first try at the target may take, in which axes are split late.
-
-    Args:
-        family: whose ratios are counted.
-    """
-    return min(_LATE_NODES, _LATE_NODES_EACH * len(family.numerator_point))
-
-
 def prove(
     family: Family,
     axis_field: AxisField,
@@ -247,6 +230,7 @@ def prove(
     limits: SolveOptions,
     *,
     used: BudgetUsed | None = None,
+    bound: float = math.inf,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
@@ -260,9 +244,9 @@ def prove(
         limits: target gap, time, nodes and progress; a KeyboardInterrupt during the run ends it with the
             bound reached.
         used: what was used of the limits before.
+        bound: known before, of a field that holds all axes of this one; the leaves do not show it.
     """
-    used = used or BudgetUsed()
-    run = _Run(family, axis_field, incumbent, limits, used)
+    run = _Run(family, axis_field, incumbent, limits, used or BudgetUsed(), bound)
     root = run.root()
     leaves = run.by_distance(root)
     target = run.target
@@ -270,9 +254,7 @@ def prove(
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result(root, leaves, "")
-        done, reason = root, "tried before"
-        if not used.direct:
-            done, reason = run.directly(root)
+        done, reason = run.directly(root)
         if not reason:
             leaves = run.shown(done, leaves)
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:

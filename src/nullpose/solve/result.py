@@ -32,6 +32,18 @@ class Status(StrEnum):
         """The status as a sentence."""
         return _MESSAGES[self]
 
+    @classmethod
+    def of(cls, upper_bound: float | None, reason: str) -> Status:
+        """Return how a solve ended that proved so much.
+
+        Args:
+            upper_bound: what was proved; None for nothing.
+            reason: why the gap was not reached; empty if it was.
+        """
+        if upper_bound is None:
+            return cls.BEST_FOUND
+        return cls.GAP_NOT_REACHED if reason else cls.CERTIFIED
+
 
 _MESSAGES = {
     Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",

@@ -11,7 +11,7 @@ from nullpose.family import AxisField, Family
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import multistart, search_settings
 from nullpose.solve.options import SolveOptions
-from nullpose.solve.precompile import ready
+from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import BudgetUsed, Proof, prove
 
 __all__ = ["Outcome", "solve_and_prove"]
@@ -41,7 +41,14 @@ class Outcome:
         return sum(proof.nodes for proof in self.proofs)
 
 
-def solve_and_prove(family: Family, fields: Sequence[AxisField], options: SolveOptions) -> Outcome:
+def solve_and_prove(
+    family: Family,
+    fields: Sequence[AxisField],
+    options: SolveOptions,
+    *,
+    known: Incumbent | None = None,
+    bound: float = math.inf,
+) -> Outcome:
     """Return the best pose over the axis fields, with a proof if one is asked for.
 
     Every field is searched; then it is proved of each that it does not beat the best of all.
@@ -50,17 +57,17 @@ def solve_and_prove(family: Family, fields: Sequence[AxisField], options: SolveO
         family: the ratios and their domain.
         fields: the axis fields, one or more.
         options: what is asked for, its gap stated.
+        known: a pose under the only field, in place of a search.
+        bound: known before of more axes than the fields have.
 
     Raises:
         SolveError: no pose reaches every node.
     """
     if options.certify:
-        ready(family, fields[0])  # compiling must not count against the time limit
+        precompile()  # compiling must not count against the time limit
     began = time.perf_counter()
-    each = [
-        multistart(family, field, seed=options.seed, settings=search_settings(options.certify))
-        for field in fields
-    ]
+    settings = search_settings(options.certify)
+    each = [known or multistart(family, field, seed=options.seed, settings=settings) for field in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
@@ -72,7 +79,7 @@ def solve_and_prove(family: Family, fields: Sequence[AxisField], options: SolveO
         least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
         start = replace(each[i], log_value=max(best.log_value, least))
         used = BudgetUsed(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
-        proof = prove(family, field, start, options, used=used)
+        proof = prove(family, field, start, options, used=used, bound=bound)
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:

@@ -129,7 +129,7 @@ def test_no_toml(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "path", "message"),
     [
-        ({"sweep": {"jammers.N.power_w": [1.0]}}, 'sweep."jammers.N.power_w"', "no member N"),
+        ({"sweep": {"jammers.N.power_w": [1.0]}}, 'sweep."jammers.N.power_w"', "got N, must be one of"),
         ({"sweep": {"nodes.count": [2.5]}}, 'sweep."nodes.count"', "whole number"),
         ({"sweep": {"jammers.M.power_w": [1.0, -1.0]}}, 'sweep."jammers.M.power_w"', r"\(at -1\)"),
         ({"cases": [{"robust": True}]}, "cases[0]", "state no errors"),

@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.airframes import answer_lines
+from nullpose.report.airframes import answer_lines, numbers_of
 from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import number, share_text
@@ -52,26 +52,13 @@ def draw_airframes(comparison: AirframeComparison) -> Figure:
         look: dict[str, Any] = {"fontsize": 9.0, "fontweight": "bold", "color": INK, "parse_math": False}
         axes.set_title(scenario.name, loc="left", **look)
         axes.set_xlabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
-        figure.legend(
-            handles=_legend(comparison), loc="outside upper center", ncols=3, frameon=False, handlelength=1.6
-        )
+        figure.legend(loc="outside upper center", ncols=3, frameon=False, handlelength=1.6)
         draw_caption(figure, lines)
     return figure
 
 
-def _columns(comparison: AirframeComparison, quantity: Quantity) -> FloatArray:
-    """Return value, bound, and what the pose shown and the robust one guarantee, (4, n); NaN for none."""
-    rows = []
-    for result in comparison.results:
-        objective, guaranteed = result.objective, result.guaranteed
-        found = [None] * 2 if objective is None else [objective.value, objective.upper_bound]
-        kept = [None] * 2 if guaranteed is None else [guaranteed.nominal_pose, guaranteed.robust_pose]
-        rows.append([math.nan if each is None else quantity.in_unit(each) for each in (*found, *kept)])
-    return np.transpose(rows)
-
-
 def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, places: FloatArray) -> None:
-    numbers = _columns(comparison, quantity)
+    numbers = numbers_of(comparison)[:4]
     known = numbers[np.isfinite(numbers)]
     high, low = max(known.max(initial=0.0), 1e-3), 0.0  # a rate is drawn from nothing
     if not quantity.is_rate:
@@ -81,14 +68,24 @@ def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, p
     axes.set_xlim(low, high + 0.2 * (high - low))
     values, bounds, nominal, _ = numbers
     lengths = np.nan_to_num(np.maximum(numbers, low) - low)
-    colours, hatches = zip(*map(_look, comparison.results), strict=True)
+    cases = [result.case for result in comparison.results]
+    colours = [VEHICLES["array" if case.array else case.name].colour for case in cases]
+    hatches = ["////" if case.combining == "analogue" else "" for case in cases]
     bars: dict[str, Any] = {"color": colours, "hatch": hatches, "edgecolor": "white", "linewidth": 0.0}
     axes.barh(places, lengths[0], left=low, height=0.62, zorder=2.0, **bars)
-    axes.barh(places, lengths[3], left=low, height=0.22, color=INK, zorder=2.2)
     axes.hlines(places, low + lengths[0], bounds, color=INK, linewidth=1.0, zorder=3.0)
-    axes.plot(bounds, places, "|", color=INK, markersize=7.0, zorder=3.0)
-    seen = np.where(nominal >= low, nominal, math.nan)
-    axes.plot(seen, places, "d", color="white", markeredgecolor=INK, markersize=5.0, zorder=2.4)
+    axes.plot(bounds, places, "|", color=INK, markersize=7.0, zorder=3.0, label="no pose is above this")
+    if comparison.scenario.is_uncertain:
+        label = "guaranteed, robust pose"
+        axes.barh(places, lengths[3], left=low, height=0.22, color=INK, zorder=2.2, label=label)
+        seen = np.where(nominal >= low, nominal, math.nan)
+        diamonds: dict[str, Any] = {
+            "color": "white",
+            "markeredgecolor": INK,
+            "markersize": 5.0,
+            "zorder": 2.4,
+        }
+        axes.plot(seen, places, "d", label="guaranteed, pose shown", **diamonds)
     for place in places[values < low]:
         axes.plot([low], [place], "<", color=GREY, clip_on=False, zorder=3.0)
     ends = low + np.maximum(lengths[0], lengths[1])
@@ -113,30 +110,3 @@ def _words(comparison: AirframeComparison, quantity: Quantity, result: AirframeR
     if share is None or result is comparison.omnidirectional:
         return number(value, quantity)
     return f"{number(value, quantity)}  ({share_text(share)})"
-
-
-def _look(result: AirframeResult) -> tuple[str, str]:
-    """Return the colour and the hatch of a vehicle's bar."""
-    if result.case.array is None:
-        return VEHICLES[result.case.name].colour, ""
-    return VEHICLES["array"].colour, "////" if result.case.combining == "analogue" else ""
-
-
-def _legend(comparison: AirframeComparison) -> list[Any]:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    bound = Line2D(
-        [], [], color=INK, linewidth=1.0, marker="|", markersize=7.0, label="no pose is above this"
-    )
-    diamond: dict[str, Any] = {"marker": "d", "color": "white", "markeredgecolor": INK, "linestyle": ""}
-    grey, own = VEHICLES["array"].colour, VEHICLES["stated"].colour
-    analogue = Patch(facecolor=grey, edgecolor="white", hatch="////", label="analogue array")
-    handles = {
-        bound: True,
-        analogue: bool(comparison.arrays),
-        Patch(color=own, label="the file's vehicle"): comparison.stated is not None,
-        Patch(color=INK, label="guaranteed, robust pose"): comparison.scenario.is_uncertain,
-        Line2D([], [], label="guaranteed, pose shown", **diamond): comparison.scenario.is_uncertain,
-    }
-    return [handle for handle, shown in handles.items() if shown]

@@ -10,37 +10,30 @@ import numpy as np
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.labels import Label
 from nullpose.report.figures.style import GREY
-from nullpose.report.geometry import outline_m
 from nullpose.scenario import Eavesdropper, Jammer, NoFlyZone
 
-__all__ = ["draw_fence", "draw_set", "draw_zone", "set_box_m"]
+__all__ = ["draw_set", "draw_zone", "set_box_m"]
 
 _MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
 
 
-def draw_fence(axes: Any, corners_m: FloatArray) -> None:
-    """Draw a geofence as a line on the ground.
-
-    Args:
-        axes: where to draw, its limits set.
-        corners_m: seen from above, shape ``(n, 2)``, metres.
-    """
-    ring = np.vstack([corners_m, corners_m[:1]])
-    look = {"color": GREY, "linewidth": 1.2, "linestyle": (0, (6, 2))}
-    axes.plot(*ring.T, axes.get_zlim()[0], label="geofence", **look)
-
-
-def draw_zone(axes: Any, zone: NoFlyZone, colour: str) -> list[Label]:
+def draw_zone(axes: Any, zone: NoFlyZone | None, corners_m: FloatArray, colour: str) -> list[Label]:
     """Return a zone's name on its upper end, after drawing it as a body that can be seen through.
 
     Args:
         axes: where to draw, its limits set; what reaches beyond them ends there.
-        zone: any; nothing is drawn of one that lies above or below the limits.
+        zone: any; nothing is drawn of one that lies above or below the limits. None: the geofence, which has
+            no name and is a line on the ground.
+        corners_m: seen from above, shape ``(n, 2)``, metres.
         colour: of the zone.
     """
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    corners_m, (bottom_m, top_m) = outline_m(zone), axes.get_zlim()
+    bottom_m, top_m = axes.get_zlim()
+    if zone is None:
+        ring = np.vstack([corners_m, corners_m[:1]])
+        axes.plot(*ring.T, bottom_m, color=GREY, linewidth=1.2, linestyle=(0, (6, 2)), label="geofence")
+        return []
     low_m, high_m = max(zone.floor_m, bottom_m), min(zone.ceiling_m, top_m)
     if not high_m > low_m:
         return []
@@ -68,12 +61,10 @@ def draw_set(axes: Any, point: Jammer | Eavesdropper, colour: str, label: str) -
 
     Args:
         axes: where to draw.
-        point: with its uncertainty; nothing is drawn without one.
+        point: with its uncertainty.
         colour: of its kind.
         label: for the legend.
     """
-    if not point.uncertainty_reach_m > 0.0:
-        return
     around, down = np.meshgrid(
         np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1),
         np.linspace(0.0, math.pi, (_PARALLELS + 1) * _STEPS + 1),

@@ -59,9 +59,8 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
         rows: the poses to draw, each at its own jamming level.
     """
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
-    poses = [row.pose for row in rows]
-    stages = [Stage(scenario=scenario, poses=(pose,), view=PANELS) for pose in poses]
-    return draw_panels(stages, poses, _draw_dipole, surface=_SURFACE, titles=titles)
+    stage = Stage(scenario=scenario, poses=tuple(row.pose for row in rows), view=PANELS)
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, titles=titles)
 
 
 def draw_pose(solution: Result) -> Figure:
@@ -73,7 +72,7 @@ def draw_pose(solution: Result) -> Figure:
     scenario, pose = solution.scenario, solution.pose
     words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
-    return draw_panels([stage], [pose], _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
 
 
 def draw_robust(solution: Result) -> Figure:
@@ -86,7 +85,6 @@ def draw_robust(solution: Result) -> Figure:
     """
     scenario, quantity = solution.scenario, Quantity.of(solution.scenario)
     both = {"robust pose": solution.details.robust, "best pose as stated": solution.details.nominal}
-    poses = [one.pose for one in both.values()]
     titles = []
     for name, one in both.items():
         guaranteed = with_unit(quantity.in_unit(one.guaranteed), quantity)
@@ -94,8 +92,10 @@ def draw_robust(solution: Result) -> Figure:
         titles.append(f"{name}\n{guaranteed} guaranteed, {stated} without errors")
     errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
     head = f"{scenario.name}\n{textwrap.shorten(errors, _LETTERS, placeholder=' ...')}"
-    stage = Stage(scenario=scenario, poses=tuple(poses), view=PAIR, uncertain=True)
-    return draw_panels([stage, stage], poses, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
+    stage = Stage(
+        scenario=scenario, poses=tuple(one.pose for one in both.values()), view=PAIR, uncertain=True
+    )
+    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
 
 
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
@@ -142,8 +142,7 @@ def draw_array(solution: Result) -> Figure:
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
     view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
     return draw_panels(
-        [Stage(scenario=solution.scenario, poses=(solution.pose,), view=view)],
-        [solution.pose],
+        Stage(scenario=solution.scenario, poses=(solution.pose,), view=view),
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
         surface=f"gain of the beam{whose}, horizontal cut as a line",
         head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}",

@@ -8,7 +8,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from numba import njit
+from numba import config
+
+from nullpose.solve.kernels.linked import LinkedDispatcher
 
 __all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
 
@@ -47,11 +49,11 @@ def inner_heap_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    try:
-        dispatcher = njit(cache=True, **options)(function)
-    except RuntimeError:  # numba's word for "no locator available"
-        return njit(**options)(function)
-    if dispatcher is not function:  # numba hands it back as it is where NUMBA_DISABLE_JIT is set
+    if getattr(config, "DISABLE_JIT", False):
+        return function
+    dispatcher = LinkedDispatcher(function, {"nopython": True, "boundscheck": None, **options})
+    with contextlib.suppress(RuntimeError):  # numba's word for "no locator available"
+        dispatcher.enable_caching()
         _drop_outdated(dispatcher.stats.cache_path)
     return dispatcher
 

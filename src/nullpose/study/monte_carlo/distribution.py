@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from nullpose.scenario.faults import Place, collected
-from nullpose.scenario.rules import ListOf, Quantity, Rule
-from nullpose.scenario.section import MOST_MEMBERS, Section
+from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
+from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, exactly_one
 from nullpose.scenario.wording import plain
 

@@ -182,7 +182,6 @@ class Nodes(Points):
         min_sinr_db: what it requires [dB].
     """
 
-    header: ClassVar[str] = "a table headed [nodes]"
     letter: ClassVar[str] = "S"
     fewest: ClassVar[int] = 1
     ways: ClassVar[tuple[Ways, ...]] = (
@@ -215,7 +214,6 @@ class Jammers(Points):
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
 
-    header: ClassVar[str] = "a table headed [jammers]"
     letter: ClassVar[str] = "M"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
@@ -241,7 +239,6 @@ class Eavesdroppers(Points):
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
 
-    header: ClassVar[str] = "a table headed [eavesdroppers]"
     letter: ClassVar[str] = "E"
     fewest: ClassVar[int] = 1
 

@@ -24,8 +24,8 @@ from nullpose.scenario import (
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
 from nullpose.scenario.origin import POINT_LISTS, located
-from nullpose.scenario.rules import Choice, ListOf, Members
-from nullpose.scenario.section import MOST_MEMBERS, Section
+from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
+from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, at_most_one
 
 __all__ = ["SceneBase"]
@@ -61,7 +61,7 @@ class SceneBase(Section):
         description="Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
         examples=[["north.toml", "south.toml"]],
     )
-    scenarios: Annotated[tuple[Scenario, ...], Members("scene.scenarios")] = Field(
+    scenarios: Annotated[tuple[Scenario, ...], list_of_tables("scene.scenarios")] = Field(
         default=(), description="What file or files hold. Filled in when the spec is read."
     )
     objective: _Objective = Field(default=USUAL, description="As in a scenario file.", examples=list(RECORDS))
@@ -71,15 +71,15 @@ class SceneBase(Section):
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
     receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
     transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
-    nodes: Annotated[tuple[Node, ...], Members("scene.nodes", Node.letter)] = Field(
+    nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(
         default=(), description="Tables headed [[scene.nodes]], where they are not drawn."
     )
-    jammers: Annotated[tuple[Jammer, ...], Members("scene.jammers", Jammer.letter)] = Field(
+    jammers: Annotated[tuple[Jammer, ...], list_of_tables("scene.jammers")] = Field(
         default=(), description="Tables headed [[scene.jammers]], where they are not drawn."
     )
-    eavesdroppers: Annotated[
-        tuple[Eavesdropper, ...], Members("scene.eavesdroppers", Eavesdropper.letter)
-    ] = Field(default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn.")
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("scene.eavesdroppers")] = Field(
+        default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn."
+    )
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:

@@ -15,7 +15,7 @@ from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Title
 from nullpose.scenario.origin import POINT_LISTS
-from nullpose.scenario.rules import Count, Members
+from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
@@ -87,7 +87,7 @@ class StudySpec(Section):
         default=None,
         description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
     )
-    cases: Annotated[tuple[StudyCase, ...], Members("cases", StudyCase.letter, fewest=1)] = Field(
+    cases: Annotated[tuple[StudyCase, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(StudyCase(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
         "the optimum with the scene's own vehicle.",
