@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
 from multiprocessing import get_context
 
 from rich.console import Console
@@ -44,8 +45,11 @@ def main(arguments: list[str] | None = None) -> int:
         for kind in kinds
     ]
     tallies = {kind: Tally() for kind in kinds}
-    with ProcessPoolExecutor(options.workers, mp_context=get_context("spawn")) as pool:
-        done = pool.map(tally_of, parts)
+    with ExitStack() as stack:
+        done = map(tally_of, parts)
+        if options.workers > 1:
+            pool = ProcessPoolExecutor(options.workers, mp_context=get_context("spawn"))
+            done = stack.enter_context(pool).map(tally_of, parts)
         bar = track(done, "mutations", total=len(parts), console=Console(stderr=True))
         for (kind, _, _), tally in zip(parts, bar, strict=True):
             tallies[kind].add(tally)

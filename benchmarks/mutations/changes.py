@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,11 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 
 __all__ = ["CLASSES", "MORE", "changed", "forged", "mutated", "spoiled"]
+
+
+def _copy(sound: Data) -> Data:
+    data: Data = json.loads(json.dumps(sound))
+    return data
 
 
 def numbers(value: Any, path: tuple = ()) -> list[tuple]:
@@ -131,7 +137,7 @@ def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
 
 def spoiled(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
     """Return a certificate's data with one change of a class, or None if it has no such place."""
-    data = copy.deepcopy(sound)
+    data = _copy(sound)
     leaves = data["trees"][int(rng.integers(len(data["trees"])))]["leaves"]
     if kind in ("leaf dropped", "leaf moved"):
         row = int(rng.integers(len(leaves["box"])))
@@ -204,7 +210,7 @@ def mutated(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
         kind: one of ``CLASSES`` or ``MORE``.
         rng: what is changed, and how much.
     """
-    data: Data = copy.deepcopy(sound)
+    data = _copy(sound)
     if kind == "several":
         for one in rng.choice([*CLASSES, *_AFTER_EACH_OTHER], size=int(rng.integers(2, 6))):
             if all(tree["leaves"]["box"] for tree in data["trees"]) and data["trees"]:

@@ -2,12 +2,9 @@
 
 import copy
 import dataclasses
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from benchmarks.mutations.__main__ import by_change, table
+from benchmarks.mutations.__main__ import by_change, main, table
 from benchmarks.mutations.bases import KINDS, bases_of, optima_of
 from benchmarks.mutations.changes import CLASSES, MORE
 from benchmarks.mutations.run import FALSE, REFUSED, REJECTED, TRUE, Mutations, Tally
@@ -15,7 +12,6 @@ from benchmarks.mutations.run import FALSE, REFUSED, REJECTED, TRUE, Mutations, 
 import nullpose.certificate
 
 COUNT = 200
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module", params=list(KINDS))
@@ -80,23 +76,12 @@ def test_a_lenient_verifier_is_found_out(monkeypatch: pytest.MonkeyPatch) -> Non
     )
 
 
-def test_the_command_prints_a_table() -> None:
+def test_the_command_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:
     """The counts of each kind add up; nothing false means success."""
-    command = [
-        "-m",
-        "benchmarks.mutations",
-        "--count",
-        "4",
-        "--kind",
-        "margins",
-        "--workers",
-        "1",
-        "--by-change",
-    ]
-    done = subprocess.run([sys.executable, *command], capture_output=True, text=True, cwd=ROOT, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "| margins | 4 |" in done.stdout
-    assert "| all | 4 |" in done.stdout
+    assert main(["--count", "4", "--kind", "margins", "--workers", "1", "--by-change"]) == 0
+    printed = capsys.readouterr().out
+    assert "| margins | 4 |" in printed
+    assert "| all | 4 |" in printed
 
 
 def test_tables_count() -> None:

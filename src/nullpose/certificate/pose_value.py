@@ -86,16 +86,12 @@ def square_root(x: Fraction) -> Fraction:
 
 def sine_cosine(x: Fraction) -> tuple[Fraction, Fraction]:
     """Return sine and cosine of an angle within four, to thirty digits."""
-    powers, short = [Fraction(1)], rounded(x)
-    for n in range(1, 2 * _TERMS):
-        powers.append(rounded(powers[-1] * short / n))
-    signed = [power * (-1) ** (n // 2) for n, power in enumerate(powers)]
-    return sum(signed[1::2], Fraction(0)), sum(signed[0::2], Fraction(0))
-
-
-def rounded(x: Fraction) -> Fraction:
-    """Return a number to so many bits after the point: keeps the fractions short."""
-    return Fraction(round(x * 2**_BITS), 2**_BITS)
+    one = 2**_BITS
+    angle, power, sums = round(x * one), one, [0, 0]
+    for n in range(2 * _TERMS):  # in units of 2^-bits, each term off by a few of them
+        sums[n % 2] += power * (-1) ** (n // 2)
+        power = power * angle // (one * (n + 1))
+    return Fraction(sums[1], one), Fraction(sums[0], one)
 
 
 def sine2(x: Exact, y: Exact) -> Fraction:

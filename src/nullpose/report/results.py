@@ -97,14 +97,13 @@ def solution_view(solution: Result) -> RenderableType:
     scenario, objective, pose = solution.scenario, solution.objective, solution.pose
     rate = objective.quantity.is_rate
     gains = antenna_gain(pose.position_m, pose.antenna_axis, scenario.node_positions_m)
-    azimuth = azimuth_text(pose)
-    leaning = "" if azimuth == "-" else f", azimuth {azimuth} deg (0 east, 90 north)"
+    leaning = f"azimuth {azimuth_text(pose)} deg (0 east, 90 north)"
+    airframe = scenario.airframe
     own = [
-        ("antenna axis", f"{degrees_text(tilt_rad(pose), 3)} deg from vertical{leaning}"),
+        ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
+        ("antenna axis", f"{degrees_text(tilt_rad(pose), 3)} deg from vertical, {leaning}"),
         ("", _in_brackets(pose.antenna_axis)),
     ]
-    if scenario.airframe is not None:
-        own.insert(0, ("airframe", airframe_words(scenario.airframe, pose.tilt_rad)))
     note = "Jamming does not depend on the pose; it is counted in the noise of the nodes."
     return document(
         _head(solution, solution.label, requirement_words(solution), solution.note),
@@ -180,7 +179,9 @@ def _guarded_cells(objective: Objective, one: GuardedPose) -> dict[str, str]:
     }
 
 
-def _pose_rows(scenario: Scenario, pose: Pose, own: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+def _pose_rows(
+    scenario: Scenario, pose: Pose, own: Iterable[tuple[str, str | None]]
+) -> list[tuple[str, str | None]]:
     """Return where the drone is and its attitude: names and words, between them what the antenna has."""
     place = ", ".join(
         f"{axis} {fixed(float(at), 4)} m" for axis, at in zip("xyz", pose.position_m, strict=True)
