@@ -28,17 +28,17 @@ def test_statuses_are_counted() -> None:
     assert found.to_dict()["largest_relative_gap"] == 0.25
     assert not found.complete
     words = found.words()
-    assert words.startswith("4 values, 2 certified, 1 with a bound farther off")
-    assert "1 best found, with no bound; largest relative gap 0.25" in words
+    assert words.startswith("4 values: 2 certified, 1 with a bound farther off")
+    assert words.endswith("1 best found, with no bound; largest relative gap 0.25")
 
 
 def test_complete_is_said_only_of_what_is() -> None:
     """Values are all certified only if there are some and each is."""
     assert Certainty.of([PROVED]).complete
-    assert Certainty.of([PROVED]).words() == "1 value, 1 certified; largest relative gap 9e-7"
+    assert Certainty.of([PROVED]).words().startswith("1 value: 1 certified, 0 with")
     assert not Certainty.of([]).complete
     assert not Certainty.of([PROVED, SEARCHED]).complete
-    assert Certainty.of([SEARCHED]).words() == "1 value, 1 best found, with no bound"
+    assert "1 best found, with no bound" in Certainty.of([SEARCHED]).words()
 
 
 def test_lines_name_the_curves_that_are_not_proved() -> None:

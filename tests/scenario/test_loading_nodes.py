@@ -168,7 +168,7 @@ GEOJSON_CASES = [
         "must be [longitude, latitude, altitude]",
     ),
     (collection(feature([14.5, None, 1])), "n.geojson: features[0].geometry.coordinates", "must be [long"),
-    (collection(feature(alt_m=3.0)), "n.geojson: features[0].properties.alt_m", "third of the coordinates"),
+    (collection(feature(alt_m=3.0)), "n.geojson: features[0].properties.alt_m", "remove this property"),
     (collection(feature(lat_deg=3.0)), "n.geojson: features[0].properties.lat_deg", "remove this property"),
     (
         collection(feature(), feature([14.5, 91.0, 1])),
@@ -386,3 +386,9 @@ def test_too_many_nodes(tmp_path: Path) -> None:
     ):
         fault = faults_of(tmp_path, file, content)[-1]
         assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"
+
+
+def test_a_geometry_that_is_a_text(tmp_path: Path) -> None:
+    """A text in place of a geometry is refused like any other value, whatever it says."""
+    (fault,) = faults_of(tmp_path, "n.geojson", collection(feature() | {"geometry": "Point"}))
+    assert fault.path == "n.geojson: features[0].geometry"

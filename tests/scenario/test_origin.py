@@ -210,3 +210,16 @@ def test_nodes_built_in_python_move_with_no_origin() -> None:
     scenario = Scenario.from_dict(data())
     with pytest.raises(ScenarioError, match="m apart, must be one place"):
         scenario.model_copy(update={"origin": Origin(lat_deg=50.001, lon_deg=14.5, alt_m=230.0)})
+
+
+def test_the_origin_of_degrees_needs_an_origin_too() -> None:
+    """Latitude, longitude and altitude of zero are stated like any others."""
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_dict(
+            {
+                "airspace": {"altitude_m": [8, 30]},
+                "receiver": {"noise_w": 1.0, "frequency_hz": 1e9},
+                "nodes": [{"power_w": 1.0, "lat_deg": 0, "lon_deg": 0, "alt_m": 0}],
+            }
+        )
+    assert [fault.path for fault in caught.value.faults] == ["origin"]

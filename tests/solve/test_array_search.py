@@ -7,7 +7,7 @@ import pytest
 
 from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_finish import finished
-from nullpose.solve.array_search import ArrayFound, ArraySettings, Pool, search_array
+from nullpose.solve.array_search import ArraySearch, ArraySettings, Pool
 from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.multistart import landmarks
 
@@ -16,10 +16,10 @@ LIGHT = ArraySettings(first=40, patience=100, most=400)
 
 def _search(
     scenario: Scenario, seed: int, *, shared: bool, settings: ArraySettings = LIGHT
-) -> tuple[ArrayTask, ArrayFound]:
+) -> tuple[ArrayTask, ArraySearch]:
     array = Array(elements=4, layout="linear", spacing_wavelengths=0.5)
     task = ArrayTask.of(scenario, array, shared=shared)
-    return task, search_array(task, np.random.default_rng(seed), landmarks(task.family), settings)
+    return task, ArraySearch(task, np.random.default_rng(seed), landmarks(task.family), settings)
 
 
 def test_a_pool_keeps_the_best_of_each_value() -> None:
@@ -65,4 +65,4 @@ def test_independent_searches_agree(random_scene: Callable) -> None:
 def test_nothing_is_found_where_nothing_is(scene: Callable) -> None:
     """Where the only position has the node in every dipole's null, no state is kept."""
     point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
-    assert _search(point, 0, shared=False)[1].states == ()
+    assert _search(point, 0, shared=False)[1].states == []

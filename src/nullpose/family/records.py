@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Axes", "Domain", "Ratios"]
+__all__ = ["ArrayProblem", "Axes", "Domain", "Ratios"]
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
@@ -52,3 +52,13 @@ class Axes(NamedTuple):
     kind: int
     offset: FloatArray
     matrix: FloatArray
+
+
+class ArrayProblem(NamedTuple):
+    """What an array on a level vehicle hears; m points, the nodes first, and k elements."""
+
+    points_m: FloatArray  # (m, 3)
+    strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires
+    nodes: int
+    base: FloatArray  # (k, 2) elements in body axes, wavelengths
+    shared: bool  # whether one beam serves all nodes; otherwise each has its own weights

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,19 +13,13 @@ from nullpose.family.ratios import Family, FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
-__all__ = ["BindingCase", "build_robust_family", "disturber_offsets_m", "point_uncertainty_m"]
+__all__ = ["BindingCase", "build_robust_family", "interferer_field", "point_uncertainty_m"]
 
 
-@dataclass(frozen=True, slots=True)
-class BindingCase:
-    """An error case and the one ratio of the nominal family that it is bad for.
+class BindingCase(NamedTuple):
+    """An error case and the one ratio of the nominal family that it is bad for."""
 
-    Args:
-        ratio: index of the ratio in the nominal family.
-        case: the error case.
-    """
-
-    ratio: int
+    ratio: int  # its index in the nominal family
     case: ErrorCase
 
     def is_same(self, other: BindingCase) -> bool:
@@ -48,17 +43,26 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         scenario: nodes, jammers or eavesdroppers, receiver and airspace.
         cases: one or more.
     """
-    nominal = build_family(scenario)
-    copies = _Copies()
+    nominal, moved = build_family(scenario), interferer_field(scenario, "offsets")
+    copies: dict[bytes, tuple[FloatArray, FloatArray]] = {}  # each moved point with its rotation once
+    places: dict[bytes, int] = {}
+
+    def copied(point_m: FloatArray, rotation: FloatArray) -> int:
+        """Return the index of a copy, new or not."""
+        key = point_m.tobytes() + rotation.tobytes()
+        copies.setdefault(key, (point_m, rotation))
+        return places.setdefault(key, len(places))
+
     groups: dict[tuple[int, bytes], int] = {}
     numerator_point, denominator_of, of_group = [], [], []
     entries: list[int] = []
     weights: list[FloatArray] = []
     start = [0]
     for each in cases:
-        moved_m = nominal.points_m - each.case.position_offset_m + disturber_offsets_m(scenario, each.case)
+        offsets_m = _of_points(nominal, scenario, getattr(each.case, moved))
+        moved_m = nominal.points_m - each.case.position_offset_m + offsets_m
         rotation = each.case.rotation_world
-        numerator_point.append(copies.add(moved_m[nominal.numerator_point[each.ratio]], rotation))
+        numerator_point.append(copied(moved_m[nominal.numerator_point[each.ratio]], rotation))
         group = int(nominal.denominator_of[each.ratio])
         bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
         disturbers_m = moved_m[nominal.denominator_point[bounds]]
@@ -66,15 +70,16 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         if key not in groups:
             groups[key] = len(groups)
             of_group.append(group)
-            entries += [copies.add(point_m, rotation) for point_m in disturbers_m]
+            entries += [copied(point_m, rotation) for point_m in disturbers_m]
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
+    points_m, rotations = (np.array(each) for each in zip(*copies.values(), strict=True))
     return replace(
         nominal,
-        points_m=np.array(copies.points_m),
-        turn=copies.turn,
+        points_m=points_m,
+        turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],
         numerator_weight=nominal.numerator_weight[ratios],
         numerator_point=np.array(numerator_point, dtype=np.int64),
@@ -86,57 +91,29 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     )
 
 
-class _Copies:
-    """The points of a robust family, each moved point with its turn once."""
-
-    def __init__(self) -> None:
-        self.points_m: list[FloatArray] = []
-        self.rotations: list[FloatArray] = []
-        self._index: dict[bytes, int] = {}
-
-    def add(self, point_m: FloatArray, rotation: FloatArray) -> int:
-        """Return the index of a copy, new or not."""
-        key = point_m.tobytes() + rotation.tobytes()
-        if key not in self._index:
-            self._index[key] = len(self.points_m)
-            self.points_m.append(point_m)
-            self.rotations.append(rotation)
-        return self._index[key]
-
-    @property
-    def turn(self) -> FloatArray:
-        """The turns as a family has them: none at all if no point has one."""
-        turn = np.array(self.rotations)
-        return turn if np.any(turn != np.eye(3)) else np.zeros((0, 3, 3))
-
-
-def disturber_offsets_m(scenario: Scenario, case: ErrorCase) -> FloatArray:
-    """Return how far each point of the nominal family is from where it is stated, (m, 3), metres.
-
-    Args:
-        scenario: its objective says whether jammers or eavesdroppers are in the denominators.
-        case: the error case.
-    """
-    secret = scenario.objective == "secrecy-rate"
-    return _of_points(scenario, case.eavesdropper_offsets_m if secret else case.jammer_offsets_m)
-
-
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
     """Return the matrices of the sets in which each point of the nominal family may be, (m, 3, 3), metres.
 
     Args:
         scenario: nodes, which are known, and jammers or eavesdroppers.
     """
-    secret = scenario.objective == "secrecy-rate"
-    return _of_points(
-        scenario, scenario.eavesdropper_uncertainty_m if secret else scenario.jammer_uncertainty_m
-    )
+    sets_m = getattr(scenario, interferer_field(scenario, "uncertainty"))
+    return _of_points(build_family(scenario), scenario, sets_m)
 
 
-def _of_points(scenario: Scenario, of_disturbers: FloatArray) -> FloatArray:
+def interferer_field(scenario: Scenario, what: str) -> str:
+    """Return the name of a field about those in the denominators, as in ``"jammer_offsets_m"``.
+
+    Args:
+        scenario: its objective says who they are.
+        what: offsets or uncertainty.
+    """
+    return f"{scenario.objective_record.interferers.removesuffix('s')}_{what}_m"
+
+
+def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:
     """Return what belongs to the points in the denominators, with zeros for nodes and for all others."""
     first = len(scenario.nodes)
-    others = len(scenario.jammers) if scenario.objective == "secrecy-rate" else 0
-    everyone = np.zeros((first + len(of_disturbers) + others, *of_disturbers.shape[1:]))
-    everyone[first : first + len(of_disturbers)] = of_disturbers
+    everyone = np.zeros((len(nominal.points_m), *of_interferers.shape[1:]))
+    everyone[first : first + len(of_interferers)] = of_interferers
     return everyone

@@ -18,6 +18,8 @@ POINTED_DEG = 1.0
 ABOVE_M = 0.1
 BETTER_DB = 1e-4
 
+_ANGLE, _AWAY = "angle_between_null_and_jammer_deg", "horizontal_distance_m"
+
 _GAIN, _VERTICAL, _PRINTED = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL, Scheme.MAXIMUM_GAIN_PRINTED
 
 
@@ -27,47 +29,20 @@ def null_at_jammer(study: JammingStudy) -> Measured:
     Args:
         study: the data.
     """
-    jammer_m = study.scenario.jammer_positions_m[0]
     strongest = study.levels[-1]
-
-    def off_deg(level: float) -> float:
-        return math.degrees(null_angle_rad(study.at(_GAIN, level).pose, jammer_m))
-
-    limit = study.holds_from(lambda level: off_deg(level) <= POINTED_DEG)
-    levels = (0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, strongest)
-    place = ", ".join(f"{x:.2f}" for x in study.at(_GAIN, strongest).pose.position_m)
+    limit = study.holds_from(lambda level: _row(study, _GAIN, level)[_ANGLE] <= POINTED_DEG)
+    rows = [_row(study, _GAIN, level) for level in (0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, strongest)]
+    place = ", ".join(f"{x:.2f}" for x in rows[-1]["position_m"])
     return {
         "holds": limit is not None,
         "finding": f"The null is within {POINTED_DEG:g} degree of the jammer from {told(limit)} on, and "
-        f"{off_deg(strongest):.2g} degrees off it at P_M/P = {strongest:g}, where the drone is at ({place}) "
-        f"m; along the line of the nodes the jammer is at y = {jammer_m[1]:g} m.",
-        "evidence": {
-            "levels": [
-                {
-                    RATIO: level,
-                    "angle_between_null_and_jammer_deg": off_deg(level),
-                    "jamming_to_noise_db": _jamming_to_noise_db(study, level),
-                    "position_m": study.at(_GAIN, level).pose.position_m.tolist(),
-                }
-                for level in levels
-            ]
-        },
+        f"{rows[-1][_ANGLE]:.2g} degrees off it at P_M/P = {strongest:g}, where the drone is at ({place}) m; "
+        f"along the line of the nodes the jammer is at y = {study.scenario.jammer_positions_m[0, 1]:g} m.",
+        "evidence": {"levels": rows},
         "proved": "At every level looked at, no pose of the case is better, by more than the gap, than the "
         "one whose angle is measured.",
         "holds_from": limit,
     }
-
-
-def _jamming_to_noise_db(study: JammingStudy, level: float) -> float:
-    scenario, pose = with_jamming(study.scenario, level), study.at(_GAIN, level).pose
-    received_w = received_power_w(
-        pose.position_m,
-        pose.antenna_axis,
-        scenario.jammer_positions_m,
-        scenario.jammer_powers_w,
-        scenario.receiver.reference_gain,
-    )
-    return float(to_db(received_w.sum() / scenario.receiver.noise_power_w))
 
 
 def above_jammer(study: JammingStudy) -> Measured:
@@ -76,34 +51,37 @@ def above_jammer(study: JammingStudy) -> Measured:
     Args:
         study: the data.
     """
-
-    def off_m(level: float) -> float:
-        away_m = study.at(_VERTICAL, level).pose.position_m - study.scenario.jammer_positions_m[0]
-        return math.hypot(away_m[0], away_m[1])
-
-    limit = study.holds_from(lambda level: off_m(level) <= ABOVE_M)
+    limit = study.holds_from(lambda level: _row(study, _VERTICAL, level)[_AWAY] <= ABOVE_M)
     weakest, strongest = study.levels[0], study.levels[-1]
-    before = [level for level in study.levels if limit is None or level < limit] or [weakest]
+    before = max((level for level in study.levels if limit is None or level < limit), default=weakest)
+    levels = sorted({weakest, 0.01, 0.1, before, 1.0, 10.0, 1000.0, strongest})
+    rows = {level: _row(study, _VERTICAL, level) for level in levels}
     return {
         "holds": limit is not None,
         "finding": f"Within {ABOVE_M} m of the vertical above the jammer from {told(limit)} on, and "
-        f"{off_m(strongest):.1g} m from it at P_M/P = {strongest:g}. It does not glide there: it is "
-        f"{off_m(weakest):.1f} m from it at P_M/P = {weakest:g}, {off_m(before[-1]):.1f} m at "
-        f"{before[-1]:.3g}, and then jumps.",
-        "evidence": {
-            "levels": [
-                {
-                    RATIO: level,
-                    "horizontal_distance_m": off_m(level),
-                    "position_m": study.at(_VERTICAL, level).pose.position_m.tolist(),
-                    "value_db": study.at(_VERTICAL, level).min_sinr_db,
-                }
-                for level in sorted({weakest, 0.01, 0.1, before[-1], 1.0, 10.0, 1000.0, strongest})
-            ]
-        },
+        f"{rows[strongest][_AWAY]:.1g} m from it at P_M/P = {strongest:g}. It does not glide there: it is "
+        f"{rows[weakest][_AWAY]:.1f} m from it at P_M/P = {weakest:g}, {rows[before][_AWAY]:.1f} m at "
+        f"{before:.3g}, and then jumps.",
+        "evidence": {"levels": list(rows.values())},
         "proved": "At every level looked at, no upright pose is better, by more than the gap, than the one "
         "whose distance is measured.",
         "holds_from": limit,
+    }
+
+
+def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
+    """Return where a scheme's pose is at a level, seen from the jammer, and what it receives of it."""
+    scenario, row = with_jamming(study.scenario, level), study.at(scheme, level)
+    (jammer_m,), position_m, receiver = scenario.jammer_positions_m, row.pose.position_m, scenario.receiver
+    place = (position_m, row.pose.antenna_axis, scenario.jammer_positions_m)
+    received_w = received_power_w(*place, scenario.jammer_powers_w, receiver.reference_gain)
+    return {
+        RATIO: level,
+        _ANGLE: math.degrees(null_angle_rad(row.pose, jammer_m)),
+        _AWAY: math.hypot(*(position_m - jammer_m)[:2]),
+        "jamming_to_noise_db": float(to_db(received_w.sum() / receiver.noise_power_w)),
+        "position_m": position_m.tolist(),
+        "value_db": row.min_sinr_db,
     }
 
 

@@ -115,14 +115,14 @@ def sinr_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case:
     jammers_m = scenario.jammer_positions_m + case.jammer_offsets_m
     signal_w = received_power_w(p, u, scenario.node_positions_m, scenario.node_powers_w, g0)
     jamming_w = received_power_w(p, u, jammers_m, scenario.jammer_powers_w, g0)
-    noise_w = np.sum(jamming_w, axis=-1, keepdims=True) + scenario.receiver.noise_power_w
+    noise_w = np.sum(jamming_w, axis=-1, keepdims=True) + scenario.objective_record.noise_w(scenario)
     return np.asarray(signal_w / noise_w)
 
 
 def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:
     """Return the ratios of which the objective takes the smallest, when an error case comes true.
 
-    Every node's margin, its SINR over its weight or requirement; or with objective "secrecy-rate" the ratio
+    Every node's margin, its SINR over its weight or requirement; or where the drone transmits the ratio
     ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper, whose logarithm to base 2 is their rate.
 
     Args:
@@ -135,9 +135,9 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
         Array of shape ``(..., n_nodes, 1)``, or ``(..., n_nodes, n_eavesdroppers)``.
 
     Raises:
-        ValueError: objective "secrecy-rate" without a transmitter.
+        ValueError: the drone transmits, and no transmitter is stated.
     """
-    if scenario.objective != "secrecy-rate":
+    if not scenario.objective_record.transmits:
         margins = sinr_under(scenario, position_m, axis, case) / scenario.node_required_sinr
         return np.asarray(margins[..., None])
     p, u = _actual(position_m, axis, case)
@@ -167,9 +167,8 @@ def objective_under(
         Array of shape ``(...)``: power ratios, or bits/s/Hz.
     """
     smallest = np.min(ratios_under(scenario, position_m, axis, case), axis=(-2, -1))
-    return np.asarray(
-        np.log2(np.maximum(1.0, smallest)) if scenario.objective == "secrecy-rate" else smallest
-    )
+    is_rate = scenario.objective_record.quantity(scenario).is_rate
+    return np.asarray(np.log2(np.maximum(1.0, smallest)) if is_rate else smallest)
 
 
 def _actual(position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> tuple[FloatArray, FloatArray]:

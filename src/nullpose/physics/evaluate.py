@@ -12,9 +12,10 @@ from nullpose.physics.objective import margin
 from nullpose.physics.pose import Pose
 from nullpose.physics.secrecy import node_snr, secrecy_rate
 from nullpose.physics.sinr import sinr
+from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["Link", "evaluate", "min_margin", "min_secrecy_rate", "min_sinr"]
+__all__ = ["Link", "evaluate", "links_of", "min_margin", "min_secrecy_rate", "min_sinr"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +56,19 @@ def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]:
     """
     at = (scenario, pose.position_m, pose.antenna_axis)
     record = scenario.objective_record
-    ratios = node_snr(*at) if record.transmits else sinr(*at)
-    margins = margin(*at) if scenario.has_margins else None
     rates = secrecy_rate(*at) if record.quantity(scenario).is_rate else None
+    return links_of(scenario, node_snr(*at) if record.transmits else sinr(*at), rates)
+
+
+def links_of(scenario: Scenario, ratios: FloatArray, rates: FloatArray | None = None) -> tuple[Link, ...]:
+    """Return every node's link from its SINR, in the scenario's order.
+
+    Args:
+        scenario: the nodes.
+        ratios: (n_nodes,) power ratios.
+        rates: (n_nodes,) secrecy rates, bits/s/Hz, if the objective is one.
+    """
+    margins = ratios / scenario.node_required_sinr if scenario.has_margins else None
     return tuple(
         Link(
             node=name,

@@ -105,12 +105,11 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     """
     labelled = [(result.case.label, result) for result in comparison.results]
     gaps = [each.objective.relative_gap for _, each in labelled if each.objective is not None]
-    widest = max((gap for gap in gaps if gap is not None), default=math.nan)
+    known = [gap for gap in gaps if gap is not None]
     lines = ["Difference: from the omnidirectional vehicle."]
     lines += dict.fromkeys(each.status.message for _, each in labelled if each.status is not None)
     lines += grouped((label, each.reason) for label, each in labelled)
-    if not math.isnan(widest):
-        lines.append(f"The widest relative gap between value and bound is {short(widest)}.")
+    lines += [f"The widest relative gap between value and bound is {short(max(known))}."] if known else []
     lines += rigour_lines((label, each.objective.rigour) for label, each in labelled if each.objective)
     if comparison.scenario.is_uncertain:
         lines.append(

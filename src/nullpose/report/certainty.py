@@ -60,16 +60,13 @@ class Certainty:
         return asdict(self)
 
     def words(self) -> str:
-        """Return the counts in words, as in ``436 values, 436 certified; largest relative gap 1e-6``."""
-        counts = {
-            "certified": self.certified,
-            "with a bound farther off than asked for": self.gap_not_reached,
-            "best found, with no bound": self.best_found,
-        }
-        named = [f"{count} {status}" for status, count in counts.items() if count]
-        gap = self.largest_relative_gap
-        widest = "" if gap is None else f"; largest relative gap {short(gap)}"
-        return f"{', '.join([count_of(self.values, 'value'), *named])}{widest}"
+        """Return the counts in words, as in ``9 values: 9 certified, ...; largest relative gap 1e-6``."""
+        gap = "none" if self.largest_relative_gap is None else short(self.largest_relative_gap)
+        return (
+            f"{count_of(self.values, 'value')}: {self.certified} certified, {self.gap_not_reached} with a "
+            f"bound farther off than asked for, {self.best_found} best found, with no bound; largest "
+            f"relative gap {gap}"
+        )
 
     @property
     def weakest(self) -> Status:

@@ -83,11 +83,7 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     rows: list[Mapping[str, str]] = []
     for cells in (_value_cells, _pose_cells, _link_cells):
         rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
-    others = ""
-    if scenario.array is not None:
-        others = "These cases have one dipole. For the file's array: solve, or compare --airframes"
-    elif scenario.airframe is not None:
-        others = "Other vehicles in this scene: compare --airframes"
+    others = "Each case has one dipole on the file's vehicle. Other vehicles, and arrays: compare --airframes"
     return document(
         head(scenario.name),
         table("", rows, bold=[f"smallest {quantity.short} ({quantity.unit})"]),

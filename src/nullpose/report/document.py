@@ -6,7 +6,7 @@ Every text is shown as it is given: what looks like markup is none.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["beside", "document", "grouped", "head", "markdown_table", "pairs", "rows", "table"]
 
 Row = Mapping[str, str]
+
+_LOOK: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "pad_edge": False}
 
 
 def document(*parts: RenderableType | None) -> RenderableType:
@@ -69,8 +71,7 @@ def table(
 
     if not any(rows):
         return None
-    view = Table(title=title or None, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
-    view.pad_edge = False
+    view = Table(title=title or None, box=box.SIMPLE_HEAD, **_LOOK)
     for place, heading in enumerate(rows[0]):
         view.add_column(Text(heading), no_wrap=no_wrap and place > 0, overflow="fold")
         if place and heading not in left:
@@ -147,9 +148,7 @@ def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> RenderableType:
     from rich.table import Table
     from rich.text import Text
 
-    look = box.SIMPLE if title else None
-    view = Table(title=title or None, box=look, title_justify="left", title_style="bold", show_header=False)
-    view.pad_edge = False
+    view = Table(title=title or None, box=box.SIMPLE if title else None, show_header=False, **_LOOK)
     for name, words in rows:
         if words is not None:
             view.add_row(Text(name), Text(words))

@@ -46,7 +46,7 @@ class Airframe(Section):
     )
     tilt_max_deg: TiltDegrees | None = Field(
         default=None,
-        description="Largest tilt of the vehicle from level, in degrees. Either this or preset.",
+        description="Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.",
         examples=[10.0],
     )
     mount_deg: MountDegrees = Field(

@@ -19,17 +19,17 @@ _Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear",
 
 
 class Array(Section):
-    """Upright dipoles on a level vehicle, in a row or on a circle, with yaw free.
+    """Upright dipoles on a horizontal vehicle, in a row or on a circle, with yaw free.
 
     Args:
         elements: number of dipoles.
-        layout: linear, evenly spaced on a level line; or circular, evenly spaced on a level circle.
+        layout: linear, evenly spaced on a horizontal line; or circular, evenly spaced on such a circle.
         spacing_wavelengths: distance between neighbours in wavelengths.
     """
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
     layout: _Layout = Field(
-        description="How they stand: linear (on a level line) or circular (on a level circle).",
+        description="How they stand: linear (on a horizontal line) or circular (on a horizontal circle).",
         examples=["linear"],
     )
     spacing_wavelengths: Wavelengths = Field(

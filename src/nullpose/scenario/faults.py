@@ -73,9 +73,8 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
         data: the input that was judged.
         source: the file or object at fault, as the user would name it.
     """
-    found = [(tuple(entry["loc"]), entry["msg"]) for entry in error.errors(include_url=False)]
-    found.sort(key=lambda fault: _ranks(fault[0], data))
-    return ScenarioError([Fault(path_of(place), message) for place, message in found], source)
+    found = sorted(error.errors(include_url=False), key=lambda entry: _ranks(entry["loc"], data))
+    return ScenarioError([Fault(path_of(entry["loc"]), entry["msg"]) for entry in found], source)
 
 
 def _ranks(place: Place, data: Any) -> list[int]:

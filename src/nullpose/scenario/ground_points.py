@@ -157,25 +157,25 @@ class Node(Emitter):
     )
     noise_w: Watts | None = Field(
         default=None,
-        description="Noise power of the node's own receiver, in watts; with objective secrecy-rate. Either "
+        description="Noise power of the node's own receiver, in watts; where the drone transmits. Either "
         "this or noise_dbm. Left out: the noise of [receiver].",
         examples=[1e-3],
     )
     noise_dbm: DecibelMilliwatts | None = Field(
         default=None,
-        description="Noise power of the node's own receiver, in dBm; with objective secrecy-rate. Either "
+        description="Noise power of the node's own receiver, in dBm; where the drone transmits. Either "
         "this or noise_w.",
         examples=[-97.0],
     )
     jamming_w: Watts | None = Field(
         default=None,
-        description="Jamming power that the node's own receiver gets, in watts; with objective secrecy-rate. "
+        description="Jamming power that the node's own receiver gets, in watts; where the drone transmits. "
         "Either this or jamming_dbm. Left out: worked out from the jammers, in line of sight.",
         examples=[1e-3],
     )
     jamming_dbm: DecibelMilliwatts | None = Field(
         default=None,
-        description="Jamming power that the node's own receiver gets, in dBm; with objective secrecy-rate. "
+        description="Jamming power that the node's own receiver gets, in dBm; where the drone transmits. "
         "Either this or jamming_w.",
         examples=[-90.0],
     )

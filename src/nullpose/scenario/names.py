@@ -24,6 +24,8 @@ def _line(value: object) -> str:
 
 
 def _name(value: object) -> str:
+    if value is None:
+        return ""  # left out: named by its place
     if isinstance(value, str) and not value.strip():
         raise rejection(f"got {described(value)}, must be a name with at least one visible character")
     return _line(value)

@@ -68,18 +68,16 @@ def _values(feature: Any) -> tuple[dict[str, object], bool]:
     _require(is_feature, "", _type(feature), 'an object with "type": "Feature"')
     properties, geometry = feature.get("properties"), feature.get("geometry")
     _require(properties is None or isinstance(properties, dict), ".properties", properties, "an object")
-    _require(_type(geometry) == "Point", ".geometry", _type(geometry), 'a geometry of type "Point"')
+    is_point = isinstance(geometry, dict) and geometry.get("type") == "Point"
+    _require(is_point, ".geometry", _type(geometry), 'a geometry of type "Point"')
     here, coordinates = ".geometry.coordinates", geometry.get("coordinates")
     is_place = isinstance(coordinates, list) and len(coordinates) in (2, 3) and None not in coordinates
     _require(is_place, here, coordinates, _COORDINATES)
     values = {key: value for key, value in (properties or {}).items() if value is not None}
-    for key in ("position_m", "lat_deg", "lon_deg"):
+    lon_deg, lat_deg, *height_m = coordinates
+    _require(height_m or "alt_m" in values, here, coordinates, f"{_COORDINATES}; {_ADD_HEIGHT}")
+    for key in ("position_m", "lat_deg", "lon_deg", *(["alt_m"] if height_m else [])):
         allowed = "left out, for the place of a feature is its geometry's coordinates; remove this property"
         _require(key not in values, f".properties.{key}", values.get(key), allowed)
-    lon_deg, lat_deg, *height_m = coordinates
-    stated_m = values.pop("alt_m", None)
-    twice = "left out, for the altitude is the third of the coordinates already; remove this property"
-    _require(height_m or stated_m is not None, here, coordinates, f"{_COORDINATES}; {_ADD_HEIGHT}")
-    _require(not height_m or stated_m is None, ".properties.alt_m", stated_m, twice)
-    alt_m = height_m[0] if height_m else stated_m
+    alt_m = height_m[0] if height_m else values["alt_m"]
     return values | {"lat_deg": lat_deg, "lon_deg": lon_deg, "alt_m": alt_m}, bool(height_m)

@@ -127,12 +127,13 @@ def origin_faults(
         stated: the raw scenario, which says in which way each is stated.
     """
     earthly = {place: point for place, point in points.items() if None not in _geodetic(point)}
-    if earthly and origin is None:
-        yield (
-            ("origin",),
-            f"missing, but {path_of(next(iter(earthly)))} is stated by {_WORDS}; add a table headed [origin] "
-            f"with {_WORDS} of the place where position_m is to be [0, 0, 0]",
-        )
+    if origin is None:
+        for place in [place for place, point in points.items() if _geodetic(point) != (None,) * 3][:1]:
+            message = (
+                f"missing, but {path_of(place)} is stated by {_WORDS}; add a table headed [origin] with "
+                f"{_WORDS} of the place where position_m is to be [0, 0, 0]"
+            )
+            yield ("origin",), message
     yield from _mixed(earthly, points, stated)
     if not earthly or origin is None:
         return

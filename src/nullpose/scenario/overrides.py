@@ -77,18 +77,17 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     """
     data = scenario.to_dict()
     faults: list[Fault] = []
-    applied: list[Override] = []
-    for override in overrides:
+    given = list(overrides)
+    for override in given:
         try:
             parsed = parse_override(override) if isinstance(override, str) else override
-            applied.append(parsed)
             steps = _steps(parsed.path)
             _assign(Scenario, data, steps, deepcopy(plain(parsed.value)), parsed.path)
             if steps[0] == "origin":
                 _unlocate(data)
         except ScenarioError as error:
             faults += error.faults
-    source = f"override {listed([str(override) for override in applied])}"
+    source = f"override {listed([str(override) for override in given])}"
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:

@@ -25,8 +25,6 @@ _NUMBER = re.compile(r"[-+.\deE]*\d[-+.\deE]*")
 class Rule:
     """What a value must be, as the metadata of an annotated type."""
 
-    __slots__ = ()
-
     def read(self, value: object) -> Any:
         """Returns a raw value as its type takes it, or raises the fault that says what is wrong with it."""
         return value

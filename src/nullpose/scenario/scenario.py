@@ -44,11 +44,11 @@ class Scenario(Section):
         airframe: which antenna axes it reaches; None for all of them.
         array: several upright dipoles in place of the one, or None.
         receiver: its noise, the path gain at 1 m, and how well the vehicle holds a pose.
-        transmitter: the drone's own power, with "secrecy-rate" only.
+        transmitter: the drone's own power, where it transmits.
         nodes: the legitimate nodes, one or more.
         nodes_from: only in files, in place of nodes: the file that lists them; None once it has been read.
         jammers: the jammers, none or more.
-        eavesdroppers: who listens in, with "secrecy-rate" only.
+        eavesdroppers: who listens in, where the drone transmits.
 
     Raises:
         ScenarioError: with every fault of the values together.
@@ -89,7 +89,7 @@ class Scenario(Section):
     )
     array: Array | None = Field(
         default=None,
-        description="A table headed [array]: several upright dipoles on a level vehicle in place of the one.",
+        description="A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one.",
     )
     receiver: Receiver = Field(
         description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
@@ -97,8 +97,7 @@ class Scenario(Section):
     )
     transmitter: Transmitter | None = Field(
         default=None,
-        description="A table headed [transmitter]: the drone's own power (W or dBm); with objective "
-        "secrecy-rate only.",
+        description="A table headed [transmitter]: the drone's own power (W or dBm), where it transmits.",
     )
     nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
@@ -108,7 +107,7 @@ class Scenario(Section):
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
         default=(),
-        description="Tables headed [[eavesdroppers]], one for each; with objective secrecy-rate only.",
+        description="Tables headed [[eavesdroppers]], one for each; where the drone transmits.",
     )
 
     @classmethod

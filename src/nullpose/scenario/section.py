@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from itertools import chain
@@ -123,9 +123,15 @@ class Section(BaseModel):
                 error, cls.model_fields, meant | otherwise if faults or error.error_count() > 1 else ()
             )
             judged = cls._sound_part(completed)
-        faults += _news(judged.faults(stated), [place for place, _ in faults], meant)
-        if faults:
-            raise collected(cls.__name__, faults)
+        # What only follows from a value's own fault, or from a misspelt key, is not told.
+        broken = {place[:depth] for place, _ in faults for depth in range(1, len(place) + 1)}
+        between = [
+            (place, message)
+            for place, message in judged.faults(stated)
+            if place not in broken and meant.isdisjoint(map(str, place[:1]))
+        ]
+        if faults or between:
+            raise collected(cls.__name__, [*faults, *between])
         return judged
 
     @classmethod
@@ -165,8 +171,9 @@ class Section(BaseModel):
 
     def __eq__(self, other: object) -> bool:
         # Not pydantic's own comparison, which would meet the cached arrays too.
-        same = type(self) is type(other)
-        return same and all(getattr(self, key) == getattr(other, key) for key in type(self).model_fields)
+        return type(self) is type(other) and all(
+            getattr(self, key) == getattr(other, key) for key in type(self).model_fields
+        )
 
 
 def inner_section(field: FieldInfo) -> type[Section] | None:
@@ -184,16 +191,6 @@ def inner_section(field: FieldInfo) -> type[Section] | None:
 def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
     """Returns what reads the value of one key of a table."""
     return TypeAdapter(kind.model_fields[key].rebuild_annotation())
-
-
-def _news(
-    faults: Iterable[tuple[Place, str]], told: Iterable[Place], meant: Collection[str]
-) -> Iterator[tuple[Place, str]]:
-    """Yields the faults between values that do not only follow from one of their own, or a misspelt key."""
-    broken = {place[:depth] for place in told for depth in range(1, len(place) + 1)}
-    for place, message in faults:
-        if place not in broken and not (place and place[0] in meant):
-            yield place, message
 
 
 def _plain(value: object) -> object:

@@ -37,16 +37,23 @@ SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
 
 
-_POWER_HINT = "a power is never zero or negative; a value in dBm belongs to the key that ends in _dbm"
-_METRES_HINT = "use metres from a nearby local origin: east, north and up"
-
-Watts = Annotated[float, Quantity("a power in W", 1e-30, 1e30, _POWER_HINT)]
+Watts = Annotated[
+    float,
+    Quantity(
+        "a power in W",
+        1e-30,
+        1e30,
+        "a power is never zero or negative; a value in dBm belongs to the key that ends in _dbm",
+    ),
+]
 DecibelMilliwatts = Annotated[
     float, Quantity("a power in dBm", -270.0, 330.0, "a value in W belongs to the key that ends in _w")
 ]
 Decibels = Annotated[float, Quantity("a gain in dB", -300.0, 300.0, "0 dB is a gain of 1, 10 dB one of 10")]
 Hertz = Annotated[float, Quantity("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
-Metres = Annotated[float, Quantity("a length in m", -1e7, 1e7, _METRES_HINT)]
+Metres = Annotated[
+    float, Quantity("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
+]
 KeepOutMetres = Annotated[
     float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
 ]
@@ -54,7 +61,6 @@ RadiusMetres = Annotated[float, Quantity("a radius in m", 1e-3, 1e7, "a shape ha
 ErrorMetres = Annotated[
     float, Quantity("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")
 ]
-_ANGLE_HINT = "angles in files are in degrees"
 TiltDegrees = Annotated[
     float, Quantity("an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude")
 ]
@@ -64,7 +70,9 @@ MountDegrees = Annotated[
 ErrorDegrees = Annotated[
     float, Quantity("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
 ]
-AttitudeDegrees = Annotated[float, Quantity("an angle in degrees", -360.0, 360.0, _ANGLE_HINT)]
+AttitudeDegrees = Annotated[
+    float, Quantity("an angle in degrees", -360.0, 360.0, "angles in files are in degrees")
+]
 RatioDecibels = Annotated[
     float, Quantity("a ratio in dB", -300.0, 300.0, "0 dB is a ratio of 1, 10 dB one of 10")
 ]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Unpack, get_args
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
 from nullpose.objectives import Quantity
-from nullpose.physics import Link, Pose, to_db
+from nullpose.physics import Pose
 from nullpose.physics.array import (
     analogue_sinr,
     analogue_weights,
@@ -20,24 +20,26 @@ from nullpose.physics.array import (
     digital_weights,
     element_positions,
 )
+from nullpose.physics.evaluate import links_of
 from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
-from nullpose.solve.array_hunt import ArrayHunt
+from nullpose.solve.array_search import ArrayHunt
 from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Objective, Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Stats, Status, objective_of
 
 __all__ = ["COMBININGS", "ArrayDetails", "solve_array"]
 
 FloatArray = NDArray[np.float64]
 
-Combining = Literal["digital", "analogue"]
-"""Each node with its own weights, or one beam of phase shifters for all nodes."""
+COMBININGS = "digital", "analogue"
+"""The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""
 
-COMBININGS: tuple[Combining, ...] = get_args(Combining)
-"""The ways to combine the elements."""
-
+_SHORT = {
+    "digital": "the most boxes of positions and yaws that are looked at",
+    "analogue": "the bound is that of digital combining, which a shared beam does not reach",
+}  # why a gap was not reached
 _WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for
 
 
@@ -54,7 +56,7 @@ class ArrayDetails:
             (K,) analogue; complex, read-only.
     """
 
-    combining: Combining
+    combining: str
     elements: int
     layout: str
     spacing_wavelengths: float
@@ -119,7 +121,8 @@ def solve_array(
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.
     """
-    kind = _combining(combining)
+    if combining not in COMBININGS:
+        raise UsageError(f"combining: given {combining!r}; allowed: {', '.join(COMBININGS)}")
     array = _array(scenario, elements, layout, spacing_wavelengths)
     if scenario.objective_record.transmits:
         raise UsageError(
@@ -127,22 +130,22 @@ def solve_array(
             "under which the drone receives; arrays are not there for others"
         )
     asked = SolveOptions(**options).of(scenario)
-    seed, target = asked.seed, asked.target
     began = time.perf_counter()
-    task = ArrayTask.of(scenario, array, shared=kind == "analogue")
-    if not asked.certify:
-        hunt, bound = _searched(ArrayHunt(task, seed)), None
-    else:
-        hunt, bound = _digital(task, target, seed) if kind == "digital" else _analogue(task, target, seed)
-    state = hunt.state
-    pose = Pose(state[:3], 0.0, 0.0, math.remainder(state[3], 2.0 * math.pi))
-    weights, links = _evaluated(scenario, array, kind, pose, state[4:])
+    task = ArrayTask.of(scenario, array, shared=combining == "analogue")
+    hunt, bound = _solved(task, asked)
+    pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
+    weights, ratios = _evaluated(scenario, array, combining, pose, hunt.state[4:])
+    links = links_of(scenario, ratios)
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
-    status = _status(objective, target)
+    gap = objective.relative_gap
+    status, reason = Status.BEST_FOUND, ""
+    if gap is not None:
+        status = Status.CERTIFIED if gap <= asked.target else Status.GAP_NOT_REACHED
+        reason = _SHORT[combining] if gap > asked.target else ""
     return Result(
         scenario=scenario,
-        scheme=f"array-{kind}",
+        scheme=f"array-{combining}",
         status=status,
         objective=objective,
         pose=pose,
@@ -155,23 +158,10 @@ def solve_array(
             searches=len(hunt.ends),
             agreeing=hunt.agreeing,
         ),
-        provenance=provenance(seed) | asked.settings,
-        reason=_reason(kind) if status is Status.GAP_NOT_REACHED else "",
-        details=ArrayDetails(
-            combining=kind,
-            elements=array.elements,
-            layout=array.layout,
-            spacing_wavelengths=array.spacing_wavelengths,
-            weights=weights,
-        ),
+        provenance=provenance(asked.seed) | asked.settings,
+        reason=reason,
+        details=ArrayDetails(combining=combining, weights=weights, **array.to_dict()),
     )
-
-
-def _combining(name: str) -> Combining:
-    for known in COMBININGS:
-        if name == known:
-            return known
-    raise UsageError(f"combining: given {name!r}; allowed: {', '.join(COMBININGS)}")
 
 
 def _array(
@@ -190,75 +180,44 @@ def _array(
     return Array.from_dict(values)
 
 
-def _searched(hunt: ArrayHunt) -> ArrayHunt:
-    """Search until another search is not likely to change anything."""
-    while hunt.is_open:
+def _solved(task: ArrayTask, asked: SolveOptions) -> tuple[ArrayHunt, ArrayBound | None]:
+    """Return the searches, and what is proved if that is asked for.
+
+    Digital: one search and a proof, then more searches, and another proof, where that does not get there;
+    what turns up in the first proof is taken up. Analogue: the bound of digital combining, then searches.
+    """
+    if not asked.certify:
+        return _searched(ArrayHunt(task, asked.seed)), None
+    hunt = ArrayHunt(task.digital(), asked.seed)
+    hunt.search()
+    effort = _WATCHED if task.problem.shared else 1.0
+    bound = array_bound(hunt.task, hunt.best, gap=asked.target, effort=effort)
+    if task.problem.shared:
+        return _searched(ArrayHunt(task, asked.seed, hunt.state[:3]), bound.value, asked.target), bound
+    if hunt.reaches(bound.value, asked.target):
+        return hunt, bound
+    before = hunt.best
+    if bound.state is not None:
+        hunt.look(bound.state)
+    if _searched(hunt).best <= before + asked.target:
+        return hunt, bound
+    again = array_bound(task, hunt.best, gap=asked.target)
+    return hunt, replace(again, value=min(bound.value, again.value), boxes=bound.boxes + again.boxes)
+
+
+def _searched(hunt: ArrayHunt, bound: float = math.inf, gap: float = 0.0) -> ArrayHunt:
+    """Search until another search is not likely to change anything, or a bound is reached."""
+    while hunt.is_open and not hunt.reaches(bound, gap):
         hunt.search()
     return hunt
 
 
-def _digital(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
-    """Return a search and a proof; more searches, and another proof, where that does not get there.
-
-    What turns up in the first proof is taken up by the search.
-    """
-    hunt = ArrayHunt(task, seed)
-    hunt.search()
-    first = array_bound(task, hunt.best, gap=gap)
-    if hunt.reaches(first.value, gap):
-        return hunt, first
-    before = hunt.best
-    if first.state is not None:
-        hunt.look(first.state)
-    if _searched(hunt).best <= before + gap:
-        return hunt, first
-    second = array_bound(task, hunt.best, gap=gap)
-    return hunt, replace(second, value=min(first.value, second.value), boxes=first.boxes + second.boxes)
-
-
-def _analogue(task: ArrayTask, gap: float, seed: int) -> tuple[ArrayHunt, ArrayBound]:
-    """Return several searches, and the bound of digital combining."""
-    apart = ArrayHunt(task.digital(), seed)
-    apart.search()
-    bound = array_bound(apart.task, apart.best, gap=gap, effort=_WATCHED)
-    hunt = ArrayHunt(task, seed, apart.state[:3])
-    while hunt.is_open and not hunt.reaches(bound.value, gap):
-        hunt.search()
-    return hunt, bound
-
-
 def _evaluated(
-    scenario: Scenario, array: Array, combining: Combining, pose: Pose, phases_rad: FloatArray
-) -> tuple[NDArray[np.complex128], tuple[Link, ...]]:
-    """Return the weights and every node's link, by the physics."""
+    scenario: Scenario, array: Array, combining: str, pose: Pose, phases_rad: FloatArray
+) -> tuple[NDArray[np.complex128], FloatArray]:
+    """Return the weights and every node's SINR, by the physics."""
     places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
     if combining == "digital":
         weights = digital_weights(scenario, pose.position_m, places)
-        ratios = digital_sinr(scenario, pose.position_m, places)
-    else:
-        weights = analogue_weights(phases_rad)
-        ratios = analogue_sinr(scenario, pose.position_m, places, phases_rad)
-    margins = ratios / scenario.node_required_sinr
-    return weights, tuple(
-        Link(
-            node=name,
-            sinr=float(ratio),
-            sinr_db=float(to_db(ratio)),
-            margin=float(margin) if scenario.has_margins else None,
-            margin_db=float(to_db(margin)) if scenario.has_margins else None,
-        )
-        for name, ratio, margin in zip(scenario.node_names, ratios, margins, strict=True)
-    )
-
-
-def _status(objective: Objective, gap: float) -> Status:
-    if objective.relative_gap is None:
-        return Status.BEST_FOUND
-    return Status.CERTIFIED if objective.relative_gap <= gap else Status.GAP_NOT_REACHED
-
-
-def _reason(combining: Combining) -> str:
-    """Return why the gap was not reached."""
-    if combining == "analogue":
-        return "the bound is that of digital combining, which a shared beam does not reach"
-    return "the most boxes of positions and yaws that are looked at"
+        return weights, digital_sinr(scenario, pose.position_m, places)
+    return analogue_weights(phases_rad), analogue_sinr(scenario, pose.position_m, places, phases_rad)

@@ -57,21 +57,18 @@ def array_bound(task: ArrayTask, log_value: float, *, gap: float, effort: float 
     """
     value = math.exp(log_value)
     one = _vertical_bound(task, gap)
-    if len(task.base) == 1 or one.value <= value * (1.0 + gap):
+    if task.elements == 1 or one.value <= value * (1.0 + gap):
         return one
     from nullpose.solve.kernels.array_branch import branch_array
 
-    points_m, _, nodes = task.scene
-    most = effort * _WORK / (nodes * (1 + len(points_m) - nodes) * len(task.base))
+    nodes, jammers = task.problem.nodes, len(task.problem.points_m) - task.problem.nodes
+    most = effort * _WORK / (nodes * (1 + jammers) * task.elements)
     low_m, high_m = task.reach(log_value - _ROUNDING)
-    half_yaw = math.pi / task.symmetry
-    root = np.concatenate(
-        [0.5 * (low_m + high_m), [0.0], 0.5 * (high_m - low_m) * (1.0 + _ROUNDING), [half_yaw]]
-    )
+    half_m = 0.5 * (high_m - low_m) * (1.0 + _ROUNDING)
+    root = np.array([[*(0.5 * (low_m + high_m)), 0.0], [*half_m, math.pi / task.symmetry]])
     state = np.full(4, math.nan)
     bound, boxes = branch_array(
-        task.scene,
-        task.base,
+        task.digital().problem,
         task.family.domain,
         root,
         value * (1.0 + _INSIDE * gap),
@@ -93,10 +90,10 @@ def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
     is a flat ridge, along which a branch and bound is slow, and this bound is met.
     """
     family = task.family
-    if len(task.base) > 1:
+    if task.elements > 1:
         family = silent(family)
     options = SolveOptions(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
     outcome = solve_and_prove(family, [AxisField.vertical()], options)
     assert outcome.upper_bound is not None, "a proof was asked for"
-    value = len(task.base) * outcome.upper_bound * (1.0 + _ROUNDING)
+    value = task.elements * outcome.upper_bound * (1.0 + _ROUNDING)
     return ArrayBound(value=value, boxes=outcome.nodes)

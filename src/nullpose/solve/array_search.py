@@ -1,20 +1,25 @@
-"""Search over the states of an array: climbs from many starts, then hops from the best of them.
+"""Searches over the states of an array: climbs from many starts, then hops from the best of them.
 
 The landscape has many local optima, more the longer the array is, and those with the best values lie close to
-other good ones; so most of the work goes into perturbing what is good already.
+other good ones; so most of the work goes into perturbing what is good already. Independent searches are made
+until several agree.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.solve.array_task import ArrayTask
+from nullpose.errors import SolveError
+from nullpose.family import AxisField
+from nullpose.solve.array_finish import finished
+from nullpose.solve.array_task import ArrayTask, silent
+from nullpose.solve.multistart import NOT_RECEIVED, landmarks, multistart
 
-__all__ = ["ArrayFound", "ArraySettings", "Pool", "search_array"]
+__all__ = ["ArrayHunt", "ArraySearch", "ArraySettings", "Pool"]
 
 FloatArray = NDArray[np.float64]
 
@@ -24,45 +29,25 @@ _STEPS = 60
 _SAME = 1e-4
 _BETTER = 1e-6
 _BATCH = 50  # starts between two looks at how far an optimum can be
-_LEVEL_SHARE = np.array([1.0, 1.0, 0.3])  # hops are shorter upwards: the optimum is often on the floor
+_HOP_SHAPE = np.array([1.0, 1.0, 0.3])  # hops are shorter upwards: the optimum is often on the floor
+_MOST = 6  # searches
+_ENOUGH = 3  # searches with the same end
+_HARSH = 1e4  # jamming above which every other search begins with less of it
+_HARSHER = 10.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArraySettings:
-    """How hard one search tries.
+class ArraySettings(NamedTuple):
+    """How hard one search tries."""
 
-    Args:
-        first: climbs from fresh starts.
-        coarse: states judged for each of them.
-        elites: different optima that are kept.
-        patience: hops without improvement after which it stops.
-        most: most hops.
-    """
-
-    first: int = 300
-    coarse: int = 8
-    elites: int = 8
-    patience: int = 500
-    most: int = 4000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ArrayFound:
-    """What one search comes to.
-
-    Args:
-        states: the best states, each with another value, the best first.
-        climbs: local searches made.
-        evaluations: states evaluated.
-    """
-
-    states: tuple[FloatArray, ...]
-    climbs: int
-    evaluations: int
+    first: int = 300  # climbs from fresh starts
+    coarse: int = 8  # states judged for each of them
+    elites: int = 8  # different optima that are kept
+    patience: int = 500  # hops without improvement after which it stops
+    most: int = 4000  # most hops
 
 
 class Pool:
-    """The best states so far, each with another value.
+    """The best states so far, each with another value, the best first.
 
     Args:
         size: how many are kept.
@@ -79,108 +64,18 @@ class Pool:
 
     def offer(self, value: float, state: FloatArray) -> None:
         """Keep a state if it is among the best, and better than one with the same value."""
-        if not value > -math.inf:
-            return
-        for place, (known, _) in enumerate(self.entries):
-            if abs(value - known) < _SAME:
-                if value > known:
-                    self.entries[place] = (value, state)
-                break
-        else:
+        known = next((i for i, (other, _) in enumerate(self.entries) if abs(value - other) < _SAME), None)
+        if known is None and value > -math.inf:
             self.entries.append((value, state))
-        self.entries.sort(key=lambda entry: -entry[0])
-        del self.entries[self.size :]
+        elif known is not None and value > self.entries[known][0]:
+            self.entries[known] = (value, state)
+        self.entries = sorted(self.entries, key=lambda entry: -entry[0])[: self.size]
 
 
-class _Search:
-    def __init__(self, task: ArrayTask, rng: np.random.Generator, settings: ArraySettings) -> None:
-        self.task, self.rng, self.settings = task, rng, settings
-        self.pool = Pool(settings.elites)
-        self.climbs = self.evaluations = 0
+class ArraySearch:
+    """One search: known places first, then everywhere, then around the best.
 
-    def climbed(self, state: FloatArray, betas: FloatArray = _BETAS) -> float:
-        from nullpose.solve.kernels.array_climb import climb
-
-        task = self.task
-        value, evaluations = climb(
-            task.scene, task.base, task.family.domain, task.shared, state, betas, _STEPS
-        )
-        self.climbs += 1
-        self.evaluations += int(evaluations)
-        return float(value)
-
-    def placed(self, position_m: FloatArray) -> bool:
-        """Move a position into the domain; return whether it got there."""
-        from nullpose.solve.kernels.search import push_out
-
-        return bool(push_out(position_m, self.task.family.domain))
-
-    def begin(self, positions_m: FloatArray) -> None:
-        """Climb from the best of several yaws and phases, each at one of the positions."""
-        from nullpose.solve.kernels.array_climb import judge
-
-        task = self.task
-        states = np.empty((len(positions_m), task.size))
-        states[:, :3] = positions_m
-        states[:, 3:] = self.rng.uniform(-math.pi, math.pi, (len(positions_m), task.size - 3))
-        kept = states[[self.placed(state[:3]) for state in states]]
-        if len(kept):
-            values = np.empty(len(kept))
-            judge(task.scene, task.base, task.shared, kept, values)
-            self.evaluations += len(kept)
-            state = kept[np.argmax(values)].copy()
-            self.pool.offer(self.climbed(state), state)
-
-    def spread(self) -> None:
-        """Climb from fresh starts all over where an optimum can be, every other one on the floor."""
-        settings = self.settings
-        for done in range(settings.first):
-            if done % _BATCH == 0:
-                low_m, high_m = self.task.reach(self.pool.best)
-            shares = self.rng.uniform(size=(settings.coarse, 3))
-            shares[::2, 2] = 0.0
-            self.begin(low_m + shares * (high_m - low_m))
-
-    def hop(self) -> None:
-        """Perturb one of the best states, climb again, and keep what is better."""
-        place = int(self.rng.integers(len(self.pool.entries)))
-        value, state = self.pool.entries[place]
-        state = state.copy()
-        size = 10.0 ** self.rng.uniform(-1.0, 0.3)
-        what = self.rng.integers(4)  # the position, the yaw, the phases, or all of them
-        if what in (0, 3):
-            state[:3] += 10.0 * size * self.rng.normal(size=3) * _LEVEL_SHARE
-        if what in (1, 3):
-            state[3] += 0.5 * size * self.rng.normal()
-        if what in (2, 3):
-            state[4:] += size * self.rng.normal(size=len(state) - 4)
-        if what == 2 and not self.task.shared:
-            state[3] = self.rng.uniform(-math.pi, math.pi)
-        if self.placed(state[:3]):
-            reached = self.climbed(state, _HOP_BETAS)
-            if reached > value + _BETTER:
-                self.pool.entries[place] = (reached, state)
-
-    def run(self, places_m: FloatArray) -> None:
-        """Search: known places first, then everywhere, then around the best."""
-        settings = self.settings
-        for place_m in places_m:
-            self.begin(np.tile(place_m, (settings.coarse, 1)))
-        self.spread()
-        idle = hops = 0
-        while self.pool.entries and idle < settings.patience and hops < settings.most:
-            before = self.pool.best
-            self.hop()
-            hops += 1
-            idle = 0 if self.pool.best > before + _SAME else idle + 1
-
-
-def search_array(
-    task: ArrayTask, rng: np.random.Generator, places_m: FloatArray, settings: ArraySettings | None = None
-) -> ArrayFound:
-    """Return the best states that one search finds.
-
-    Their positions may be a little outside the domain and their values a little short: see
+    Positions may end a little outside the domain, and values a little short: see
     :func:`nullpose.solve.array_finish.finished`.
 
     Args:
@@ -189,9 +84,153 @@ def search_array(
         places_m: (m, 3) positions worth a start of their own.
         settings: how hard to try.
     """
-    search = _Search(task, rng, settings or ArraySettings())
-    search.run(places_m)
-    ranked = sorted(search.pool.entries, key=lambda entry: -entry[0])
-    return ArrayFound(
-        states=tuple(state for _, state in ranked), climbs=search.climbs, evaluations=search.evaluations
-    )
+
+    def __init__(
+        self,
+        task: ArrayTask,
+        rng: np.random.Generator,
+        places_m: FloatArray,
+        settings: ArraySettings | None = None,
+    ) -> None:
+        self.task, self.rng, self.settings = task, rng, settings or ArraySettings()
+        self.pool = Pool(self.settings.elites)
+        self.climbs = self.evaluations = 0
+        for place_m in places_m:
+            self._begin(np.tile(place_m, (self.settings.coarse, 1)))
+        self._spread()
+        idle = hops = 0
+        while self.pool.entries and idle < self.settings.patience and hops < self.settings.most:
+            before = self.pool.best
+            self._hop()
+            hops += 1
+            idle = 0 if self.pool.best > before + _SAME else idle + 1
+
+    @property
+    def states(self) -> list[FloatArray]:
+        """The best states, each with another value, the best first."""
+        return [state for _, state in sorted(self.pool.entries, key=lambda entry: -entry[0])]
+
+    def _climbed(self, state: FloatArray, betas: FloatArray) -> float:
+        """Climb from a state, which is overwritten; return its value."""
+        from nullpose.solve.kernels.array_climb import climb
+
+        value, evaluations = climb(self.task.problem, self.task.family.domain, state, betas, _STEPS)
+        self.climbs += 1
+        self.evaluations += int(evaluations)
+        return float(value)
+
+    def _placed(self, position_m: FloatArray) -> bool:
+        """Move a position into the domain; return whether it got there."""
+        from nullpose.solve.kernels.search import push_out
+
+        return bool(push_out(position_m, self.task.family.domain))
+
+    def _begin(self, positions_m: FloatArray) -> None:
+        """Climb from the best of several yaws and phases, each at one of the positions."""
+        from nullpose.solve.kernels.array_climb import judge
+
+        angles = self.rng.uniform(-math.pi, math.pi, (len(positions_m), self.task.size - 3))
+        states = np.hstack([positions_m, angles])
+        kept = states[[self._placed(state[:3]) for state in states]]
+        if len(kept):
+            values = np.empty(len(kept))
+            judge(self.task.problem, kept, values)
+            self.evaluations += len(kept)
+            state = kept[np.argmax(values)].copy()
+            self.pool.offer(self._climbed(state, _BETAS), state)
+
+    def _spread(self) -> None:
+        """Climb from fresh starts all over where an optimum can be, every other one on the floor."""
+        for done in range(self.settings.first):
+            if done % _BATCH == 0:
+                low_m, high_m = self.task.reach(self.pool.best)
+            shares = self.rng.uniform(size=(self.settings.coarse, 3))
+            shares[::2, 2] = 0.0
+            self._begin(low_m + shares * (high_m - low_m))
+
+    def _hop(self) -> None:
+        """Perturb one of the best states, climb again, and keep what is better."""
+        place = int(self.rng.integers(len(self.pool.entries)))
+        value, state = self.pool.entries[place]
+        state = state.copy()
+        size = 10.0 ** self.rng.uniform(-1.0, 0.3)
+        what = self.rng.integers(4)  # the position, the yaw, the phases, or all of them
+        if what in (0, 3):
+            state[:3] += 10.0 * size * self.rng.normal(size=3) * _HOP_SHAPE
+        if what in (1, 3):
+            state[3] += 0.5 * size * self.rng.normal()
+        if what in (2, 3):
+            state[4:] += size * self.rng.normal(size=len(state) - 4)
+        if what == 2 and not self.task.problem.shared:
+            state[3] = self.rng.uniform(-math.pi, math.pi)
+        if self._placed(state[:3]):
+            reached = self._climbed(state, _HOP_BETAS)
+            if reached > value + _BETTER:
+                self.pool.entries[place] = (reached, state)
+
+
+class ArrayHunt:
+    """The best state of several independent searches, and how far they agree.
+
+    Args:
+        task: what is searched.
+        seed: seed of the searches.
+        places_m: (..., 3) positions worth a start of their own, beside those that every array has.
+    """
+
+    def __init__(self, task: ArrayTask, seed: int, *places_m: FloatArray) -> None:
+        self.task, self.seed = task, seed
+        self.ends: list[float] = []
+        self.best, self.state = -math.inf, np.empty(0)
+        families = task.family, silent(task.family)
+        vertical = [multistart(family, AxisField.vertical(), seed=seed) for family in families]
+        self.starts = sum(found.starts for found in vertical)
+        self.evaluations = sum(found.evaluations for found in vertical)
+        heard_m = [found.position_m for found in vertical]
+        self.places_m = np.vstack([*places_m, *heard_m, landmarks(task.family)])
+
+    @property
+    def agreeing(self) -> int:
+        """How many searches ended at the best value."""
+        return sum(end > self.best - _SAME for end in self.ends)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether another search may change anything."""
+        return len(self.ends) < _MOST and self.agreeing < _ENOUGH
+
+    def reaches(self, bound: float, gap: float) -> bool:
+        """Return whether the best value is within a relative gap of a bound."""
+        return bound <= math.exp(self.best) * (1.0 + gap)
+
+    def search(self) -> None:
+        """Make one more search.
+
+        Raises:
+            SolveError: nothing was found by any search yet.
+        """
+        number = len(self.ends)
+        harsh = self.task.jamming > _HARSH and number % 2 == 1
+        rng = np.random.default_rng([self.seed, number])
+        found = ArraySearch(self.task.calmed(_HARSH) if harsh else self.task, rng, self.places_m)
+        self.starts += found.climbs
+        self.evaluations += found.evaluations
+        states = [self._hardened(state) if harsh else state for state in found.states]
+        self.ends.append(max((self.look(state) for state in states), default=-math.inf))
+        if not self.best > -math.inf:
+            raise SolveError(NOT_RECEIVED)
+
+    def look(self, state: FloatArray) -> float:
+        """Finish a state, which is kept if it is better than all before; return its value."""
+        value, state = finished(self.task, state)
+        if value > self.best:
+            self.best, self.state = value, state
+        return value
+
+    def _hardened(self, state: FloatArray) -> FloatArray:
+        """Return a state found with little jamming, carried along as that grows to what it is."""
+        jamming = _HARSH
+        while jamming < self.task.jamming:
+            state = finished(self.task.calmed(jamming), state)[1]
+            jamming *= _HARSHER
+        return state

@@ -15,8 +15,8 @@ LOW, HIGH = np.array([0.0, 0.0, 8.0, -math.pi / 2]), np.array([60.0, 60.0, 12.0,
 
 def _branch(task: ArrayTask, target: float, most: int = 200_000) -> tuple[float, int, np.ndarray]:
     state = np.full(4, math.nan)
-    root = np.concatenate([0.5 * (LOW + HIGH), 0.5 * (HIGH - LOW)])
-    bound, boxes = branch_array(task.scene, task.base, task.family.domain, root, target, most, state)
+    root = np.array([0.5 * (LOW + HIGH), 0.5 * (HIGH - LOW)])
+    bound, boxes = branch_array(task.problem, task.family.domain, root, target, most, state)
     return bound, boxes, state
 
 

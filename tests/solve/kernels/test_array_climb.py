@@ -17,7 +17,7 @@ def _task(scenario: Scenario, shared: bool) -> ArrayTask:
 
 
 def _climb(task: ArrayTask, state: np.ndarray, steps: int = 60) -> tuple[float, int]:
-    return climb(task.scene, task.base, task.family.domain, task.shared, state, BETAS, steps)
+    return climb(task.problem, task.family.domain, state, BETAS, steps)
 
 
 @pytest.mark.parametrize("shared", [False, True])
@@ -70,5 +70,5 @@ def test_judging_is_evaluating(shared: bool, random_scene: Callable) -> None:
     task = _task(random_scene(rng, 3, 2), shared)
     states = rng.uniform(9.0, 20.0, (7, task.size))
     values = np.empty(7)
-    judge(task.scene, task.base, task.shared, states, values)
+    judge(task.problem, states, values)
     np.testing.assert_array_equal(values, [task.value(state) for state in states])

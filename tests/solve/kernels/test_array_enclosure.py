@@ -35,7 +35,7 @@ def test_nothing_in_a_box_exceeds_it(layout: str, jamming_w: float, random_scene
         task = _task(scene, int(rng.integers(1, 9)), layout)
         centre = np.append(rng.uniform([0.0, 0.0, 6.0], [99.0, 99.0, 30.0]), rng.uniform(-3.0, 3.0))
         half = 10.0 ** rng.uniform(-4.0, 0.5) * rng.uniform([0, 0, 0, 0], [2.0, 2.0, 2.0, 0.3])
-        bound = box_bound(task.scene, task.base, centre, half)
+        bound = box_bound(task.problem, centre, half)
         assert _largest(task, centre, half, rng) <= bound * (1.0 + 1e-9)
 
 
@@ -50,7 +50,7 @@ def test_boxes_over_a_point(where: str, reach_m: float, random_scene: Callable) 
         below = scene.jammer_positions_m[0] if where == "jammer" else scene.node_positions_m[0]
         half = np.append(reach_m * rng.uniform(0.1, 1.0, 3), 0.1)
         centre = np.append(below + np.array([0.0, 0.0, 9.0]), 0.3) + half * rng.uniform(-0.9, 0.9, 4)
-        bound = box_bound(task.scene, task.base, centre, half)
+        bound = box_bound(task.problem, centre, half)
         assert np.isfinite(bound)
         assert _largest(task, centre, half, rng) <= bound * (1.0 + 1e-9)
 
@@ -58,8 +58,8 @@ def test_boxes_over_a_point(where: str, reach_m: float, random_scene: Callable) 
 def _excess(task: ArrayTask, centre: np.ndarray, half: np.ndarray) -> float:
     """How far the bound of a one-node scene is above the value and the slope at the centre."""
     logs, slopes = np.empty(1), np.empty((1, 4))
-    value = math.exp(respond(task.scene, task.base, False, centre, logs, slopes))
-    return box_bound(task.scene, task.base, centre, half) - value * (1.0 + np.abs(slopes[0]) @ half)
+    value = math.exp(respond(task.problem, centre, logs, slopes))
+    return box_bound(task.problem, centre, half) - value * (1.0 + np.abs(slopes[0]) @ half)
 
 
 def test_it_is_exact_to_the_first_order(random_scene: Callable) -> None:
@@ -80,8 +80,7 @@ def test_slopes_of_several_nodes_cancel(scene: Callable) -> None:
     centre = np.array([20.0, 0.0, 20.0, 0.0])
     value = math.exp(task.value(centre))
     excess = [
-        box_bound(task.scene, task.base, centre, np.array([size, 0.0, 0.0, 0.0])) / value - 1.0
-        for size in (0.2, 0.1)
+        box_bound(task.problem, centre, np.array([size, 0.0, 0.0, 0.0])) / value - 1.0 for size in (0.2, 0.1)
     ]
     assert excess[0] == pytest.approx(4.0 * excess[1], rel=0.1)
     assert excess[0] < 1e-3

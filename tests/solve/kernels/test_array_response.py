@@ -14,9 +14,9 @@ CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 
 
 def _response(task: ArrayTask, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    logs, slopes = np.empty(task.scene[2]), np.empty((task.scene[2], task.size))
-    worst = respond(task.scene, task.base, task.shared, state, logs, slopes)
-    assert worst == np.min(logs) == array_value(task.scene, task.base, task.shared, state)
+    logs, slopes = np.empty(task.problem.nodes), np.empty((task.problem.nodes, task.size))
+    worst = respond(task.problem, state, logs, slopes)
+    assert worst == np.min(logs) == array_value(task.problem, state)
     return logs, slopes
 
 

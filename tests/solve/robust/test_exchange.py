@@ -37,7 +37,7 @@ def test_cases_promise_no_less_than_is_guaranteed(strong: Scenario, exchange: Ex
         p = rng.uniform([-40.0, -20.0, 8.0], [40.0, 60.0, 30.0])
         u = rng.normal(size=3)
         u /= np.linalg.norm(u)
-        worst = min(one.value for one in exchange.inner.worst(p, u))
+        worst = min(one.worst for one in exchange.inner.worst(p, u))
         assert promised(strong, exchange.cases, p, u) >= worst * (1.0 - 1e-12)
 
 

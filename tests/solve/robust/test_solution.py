@@ -25,7 +25,7 @@ def test_as_plain_data(solved: RobustSolution) -> None:
         assert one["nominal"] == held.nominal == min(node["nominal"] for node in one["nodes"])
         assert one["position_m"] == [float(x) for x in held.pose.position_m]
         assert one["worst_case_errors"]["axis_error_deg"] == pytest.approx(2.0, rel=1e-9)
-        assert one["worst_case"].startswith("axis 2 deg off, to the ")
+        assert one["worst_case"].startswith("axis 2 deg off")
         assert [node["node"] for node in one["nodes"]] == ["S1", "S2"]
 
 

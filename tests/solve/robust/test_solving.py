@@ -51,7 +51,7 @@ def test_no_pose_guarantees_more_than_the_bound(strong: Scenario, solved: Robust
         u = best.axis + scale * rng.normal(size=3)
         if i % 4 == 0:
             u = strong.jammer_positions_m[0] - p
-        worst = min(one.value for one in inner.worst(p, u / np.linalg.norm(u)))
+        worst = min(one.worst for one in inner.worst(p, u / np.linalg.norm(u)))
         assert worst <= solved.upper_bound
 
 

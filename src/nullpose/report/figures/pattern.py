@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
@@ -26,7 +26,7 @@ def _directions(down: int, around_rad: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def pattern_surface_m(
-    pose: Pose, radius_m: float, around_rad: FloatArray, camera: FloatArray | None = None
+    pose: Pose, radius_m: float, around_rad: FloatArray, camera: ArrayLike = (0.3, -0.5, 0.8)
 ) -> FloatArray:
     """Return points on the dipole's radiation pattern drawn around a pose, a doughnut about its axis.
 
@@ -36,13 +36,13 @@ def pattern_surface_m(
         pose: where the drone is and its attitude.
         radius_m: distance drawn where the gain is 1, metres.
         around_rad: the angles about the axis to draw, shape ``(m,)``, radians; 0 faces the camera.
-        camera: direction towards it, shape ``(3,)``; without it any is taken.
+        camera: direction towards it, shape ``(3,)``.
 
     Returns:
         Array of shape ``(3, n, m)``, world frame, metres.
     """
     axis = pose.antenna_axis
-    towards = np.array([0.3, -0.5, 0.8]) if camera is None else camera
+    towards = np.asarray(camera)
     facing = towards - axis * (towards @ axis)
     facing = facing / np.linalg.norm(facing)
     frame = np.stack([facing, np.cross(axis, facing), axis])

@@ -18,6 +18,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.scene import (
     ALONE,
+    AXIS,
     DRONE,
     PAIR,
     PANELS,
@@ -44,7 +45,6 @@ _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towa
 _SURFACE = "radiation pattern, near side cut away"
 
 # Lengths drawn, as shares of the scene's extent.
-_AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 _ARRAY = 0.10  # from the middle to the outermost element
 _UPRIGHT = 0.018  # half of an element
 _HEADING = _BEAM = 0.20  # the heading's arrow, and the beam where the gain is largest
@@ -111,7 +111,7 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
 def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen."""
     radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
-    reach = _AXIS * radius_m * pose.antenna_axis
+    reach = AXIS * radius_m * pose.antenna_axis
     look = {"linewidth": 1.8, "zorder": 6.5, "label": "antenna axis (null)"}
     draw_line(axes, position - reach, position + reach, color=DRONE, **look)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)

@@ -21,7 +21,7 @@ from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["ALONE", "DRONE", "PAIR", "PANELS", "SURFACE", "Stage", "View", "draw_line", "draw_panels"]
+__all__ = ["ALONE", "AXIS", "DRONE", "PAIR", "PANELS", "SURFACE", "Stage", "View", "draw_line", "draw_panels"]
 
 # Lengths drawn, as shares of the scene's extent.
 _MARGIN = 0.12  # free ground around the scene
@@ -30,7 +30,7 @@ _LEAST_M = 1.0
 _ZOOM = 1.12  # how much of its place a scene fills
 _COLUMN_INCH = 2.3  # of the legend
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
-_AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
+AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
 _FORBIDDEN = "#b36b00"
 _KINDS = {
@@ -210,7 +210,7 @@ def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
     hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
     positions = np.array([pose.position_m[:2] for pose in stage.poses])
-    around = ((points[:, :2], _MARGIN), (positions, _AXIS * stage.view.pattern))  # the latter for the pattern
+    around = ((points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern))  # the latter for the pattern
     flat = [middle + side * reach * extent_m for middle, reach in around for side in (-1.0, 1.0)]
     flat += [corners_m for _, corners_m in stage.zones]
     low, high = np.vstack(flat).min(axis=0), np.vstack(flat).max(axis=0)

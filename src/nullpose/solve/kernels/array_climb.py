@@ -11,10 +11,11 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.array_response import array_value, respond
-from nullpose.solve.kernels.chart import choose_sides, side_slack
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
+from nullpose.solve.kernels.local_coordinates import choose_sides, side_slack
+from nullpose.solve.kernels.vectors import minus, norm, over, store
 
-__all__ = ["climb", "judge"]
+__all__ = ["climb", "judge", "walls"]
 
 _LENGTH_M2 = 25.0  # first guess at the inverse curvature of a position
 _ANGLE = 0.05  # and of an angle
@@ -23,152 +24,142 @@ _SHRINK = 0.4
 _TRIES = 12
 _FLAT = 1e-6
 _GAIN = 1e-5
+_CENTRE_M = 1e-9  # a position this near to the centre of a ball or a cylinder has a way out all the same
 
 
-@inner_kernel
-def walls(domain, x, stiffness, chosen, slope):
+@heap_kernel
+def walls(domain, x):
+    """Return how far a position is outside each keep-out ball and forbidden piece, and the ways out.
+
+    Distances, (w,) metres, negative inside; and their slopes, (w, 3), unit vectors.
+    """
+    balls, pieces = len(domain.keep_out_points_m), len(domain.piece_start) - 1
+    distances, ways = np.empty(balls + pieces), np.empty((balls + pieces, 3))
+    chosen = np.empty(pieces, np.int64)
+    choose_sides(domain, x, chosen)
+    for w in range(balls + pieces):
+        side = domain.piece_sides[chosen[w - balls]] if w >= balls else domain.keep_out_points_m[w]
+        if w >= balls and side[0] == 0.0:
+            distances[w], way = side_slack(side, x), (side[1], side[2], side[3])
+        else:
+            away, radius = minus(x, side), domain.keep_out_m
+            if w >= balls:
+                away, radius = (x[0] - side[1], x[1] - side[2], 0.0), side[4]
+            length = max(norm(away), _CENTRE_M)
+            distances[w], way = length - radius, over(away, length)
+        store(way, ways[w])
+    return distances, ways
+
+
+@inner_heap_kernel
+def penalise(domain, x, stiffness, slope):
     """Return half the stiffness times the square of how far a position is outside; take its slope away."""
-    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
-    keep_radius = domain.keep_out_m
     total = 0.0
     for i in range(3):
-        over = max(low[i] - x[i], 0.0) - max(x[i] - high[i], 0.0)
-        slope[i] += stiffness * over
-        total += over * over
-    for q in range(keep_points.shape[0]):
-        square = 0.0
+        beyond = max(domain.low_m[i] - x[i], 0.0) - max(x[i] - domain.high_m[i], 0.0)
+        slope[i] += stiffness * beyond
+        total += beyond * beyond
+    distances, ways = walls(domain, x)
+    for w in range(len(distances)):
+        inside = max(0.0, -distances[w])
+        total += inside * inside
         for i in range(3):
-            square += (x[i] - keep_points[q, i]) ** 2
-        if square < keep_radius * keep_radius:
-            away = max(math.sqrt(square), 1e-9)
-            over = keep_radius - away
-            total += over * over
-            for i in range(3):
-                slope[i] += stiffness * over * (x[i] - keep_points[q, i]) / away
-    choose_sides(domain, x, chosen)
-    for c in range(chosen.shape[0]):
-        side = domain.piece_sides[chosen[c]]
-        slack = side_slack(side, x)
-        if slack >= 0.0:
-            continue
-        if side[0] == 0.0:
-            total += slack * slack
-            for i in range(3):
-                slope[i] -= stiffness * slack * side[1 + i]
-        else:
-            away = max(math.hypot(x[0] - side[1], x[1] - side[2]), 1e-9)
-            over = side[4] - away
-            total += over * over
-            for i in range(2):
-                slope[i] += stiffness * over * (x[i] - side[1 + i]) / away
+            slope[i] += stiffness * inside * ways[w, i]
     return 0.5 * stiffness * total
 
 
-@inner_kernel
-def soften(scene, base, domain, shared, x, beta, work, slope):
+@inner_heap_kernel
+def soften(problem, domain, x, beta, slope):
     """Return ``-log(sum_k exp(-beta f_k)) / beta`` less the walls' penalty, and the worst f_k less it."""
-    logs, slopes, chosen = work
-    worst = respond(scene, base, shared, x, logs, slopes)
+    logs, slopes = np.empty(problem.nodes), np.empty((problem.nodes, len(x)))
+    worst = respond(problem, x, logs, slopes)
     slope[:] = 0.0
     if not worst > -math.inf:
         return -math.inf, -math.inf
     total = 0.0
-    for q in range(logs.shape[0]):
+    for q in range(len(logs)):
         share = math.exp(-beta * (logs[q] - worst))
         total += share
-        for a in range(slope.shape[0]):
+        for a in range(len(x)):
             slope[a] += share * slopes[q, a]
-    for a in range(slope.shape[0]):
+    for a in range(len(x)):
         slope[a] /= total
-    penalty = walls(domain, x, beta, chosen, slope)
+    penalty = penalise(domain, x, beta, slope)
     return worst - math.log(total) / beta - penalty, worst - penalty
 
 
 @inner_kernel
-def begin_matrix(matrix, scale):
-    """Fill the first inverse curvature."""
-    matrix[:] = 0.0
-    for i in range(matrix.shape[0]):
-        matrix[i, i] = scale * (_LENGTH_M2 if i < 3 else _ANGLE)
-
-
-@inner_kernel
-def direction(matrix, slope, step):
+def direction(inverse, slope, step):
     """Fill the quasi-Newton step; return its climb and the longest share of it that is not too far."""
     rise, largest = 0.0, 0.0
-    for i in range(slope.shape[0]):
+    for i in range(len(slope)):
         step[i] = 0.0
-        for j in range(slope.shape[0]):
-            step[i] += matrix[i, j] * slope[j]
+        for j in range(len(slope)):
+            step[i] += inverse[i, j] * slope[j]
         rise += step[i] * slope[i]
         largest = max(largest, abs(step[i]) / (_LONGEST_M if i < 3 else 1.0))
     return rise, 1.0 / max(1.0, largest)
 
 
 @inner_heap_kernel
-def learn(matrix, step, bend):
+def learn(inverse, step, bend):
     """BFGS update of the inverse curvature by a step and the change of slope, downhill, along it."""
-    n = step.shape[0]
+    n = len(step)
     product = np.zeros(n)
     agreement, size = 0.0, 0.0
     for i in range(n):
         for j in range(n):
-            product[i] += matrix[i, j] * bend[j]
+            product[i] += inverse[i, j] * bend[j]
         agreement += step[i] * bend[i]
         size += product[i] * bend[i]
     if agreement > 1e-12:
+        stretch = 1.0 + size / agreement
         for i in range(n):
             for j in range(n):
-                matrix[i, j] += (
-                    (1.0 + size / agreement) * step[i] * step[j] - product[i] * step[j] - step[i] * product[j]
-                ) / agreement
+                change = stretch * step[i] * step[j] - product[i] * step[j] - step[i] * product[j]
+                inverse[i, j] += change / agreement
 
 
 @heap_kernel
-def climb(scene, base, domain, shared, x, betas, most):
+def climb(problem, domain, x, betas, most):
     """Climb from a state, in place; return its smallest log ratio less the walls' penalty, and evaluations.
 
     Args:
-        scene: as for :func:`respond`.
-        base: (k, 2).
+        problem: the array and its scene.
         domain: box, keep-out balls and forbidden pieces of a family.
-        shared: whether one beam serves all nodes.
         x: the state, overwritten.
         betas: sharpness of the soft minimum, and stiffness of the walls, in each round.
         most: steps in each round.
     """
-    n, nodes = x.shape[0], scene[2]
-    work = (np.empty(nodes), np.empty((nodes, n)), np.empty(domain.piece_start.shape[0] - 1, np.int64))
+    n = len(x)
     slope, new_slope, step, new_x = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    matrix = np.empty((n, n))
-    worst = -math.inf
-    evaluations = 0
+    inverse, worst, evaluations = np.empty((n, n)), -math.inf, 0
     for beta in betas:
-        begin_matrix(matrix, betas[0] / beta)
-        value, worst = soften(scene, base, domain, shared, x, beta, work, slope)
+        inverse[:] = 0.0
+        for i in range(n):
+            inverse[i, i] = betas[0] / beta * (_LENGTH_M2 if i < 3 else _ANGLE)
+        value, worst = soften(problem, domain, x, beta, slope)
         evaluations += 1
         if not value > -math.inf:
             break
         for _ in range(most):
-            rise, scale = direction(matrix, slope, step)
+            rise, scale = direction(inverse, slope, step)
             if rise < _FLAT:
                 break
-            climbed = False
             for _ in range(_TRIES):
                 for i in range(n):
                     new_x[i] = x[i] + scale * step[i]
-                new, new_worst = soften(scene, base, domain, shared, new_x, beta, work, new_slope)
+                new, new_worst = soften(problem, domain, new_x, beta, new_slope)
                 evaluations += 1
-                climbed = new >= value + 1e-4 * scale * rise
-                if climbed:
+                if new >= value + 1e-4 * scale * rise:
                     break
                 scale *= _SHRINK
-            if not climbed:
+            else:
                 break
             for i in range(n):
                 step[i] = new_x[i] - x[i]
                 slope[i] -= new_slope[i]
-            learn(matrix, step, slope)
+            learn(inverse, step, slope)
             x[:] = new_x
             slope[:] = new_slope
             gain, value, worst = new - value, new, new_worst
@@ -178,7 +169,7 @@ def climb(scene, base, domain, shared, x, betas, most):
 
 
 @kernel
-def judge(scene, base, shared, states, values):
+def judge(problem, states, values):
     """Fill the smallest log ratio at each state, (s, n) into (s,)."""
-    for s in range(states.shape[0]):
-        values[s] = array_value(scene, base, shared, states[s])
+    for s in range(len(states)):
+        values[s] = array_value(problem, states[s])

@@ -14,6 +14,7 @@ __all__ = [
     "dot",
     "minus",
     "norm",
+    "over",
     "perpendicular",
     "row",
     "rows",
@@ -61,6 +62,12 @@ def scaled(s, a):
 
 
 @inner_kernel
+def over(a, s):
+    """Return ``a / s``."""
+    return a[0] / s, a[1] / s, a[2] / s
+
+
+@inner_kernel
 def minus(a, b):
     """Return ``a - b``."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
@@ -87,18 +94,18 @@ def cross(a, b):
 @inner_kernel
 def unit(a):
     """Return ``a / |a|``."""
-    return scaled(1.0 / norm(a), a)
+    return over(a, norm(a))
 
 
 @inner_kernel
 def perpendicular(a):
-    """Return a unit vector across a."""
+    """Return a vector across a, not much shorter."""
     x, y, z = abs(a[0]), abs(a[1]), abs(a[2])
     if x <= y and x <= z:
-        return unit((0.0, a[2], -a[1]))
+        return 0.0, a[2], -a[1]
     if y <= z:
-        return unit((-a[2], 0.0, a[0]))
-    return unit((a[1], -a[0], 0.0))
+        return -a[2], 0.0, a[0]
+    return a[1], -a[0], 0.0
 
 
 @inner_kernel

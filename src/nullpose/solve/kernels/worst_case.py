@@ -21,10 +21,10 @@ from nullpose.solve.kernels.vectors import (
     dot,
     minus,
     norm,
+    over,
     row,
     scaled,
     store,
-    unit,
 )
 from nullpose.solve.kernels.worst_case_links import Sets, strongest_link
 
@@ -61,14 +61,14 @@ class Errors(NamedTuple):
 
 
 @inner_kernel
-def link_with_slopes(y, q):
-    """Return ``|y x q|^2 / |q|^4`` and its derivatives by the axis and by an offset of the position."""
+def link_slopes(scale, y, q):
+    """Return the derivatives of ``scale |y x q|^2 / |q|^4`` by the axis and by an offset of the position."""
     square, ahead = dot(q, q), dot(y, q)
     quartic = square * square
     link = (square - ahead * ahead) / quartic
-    by_axis = scaled(2.0 / quartic, along(scaled(square, y), -ahead, q))
-    by_offset = along(scaled(4.0 * link / square, q), -2.0 / quartic, along(q, -ahead, y))
-    return link, by_axis, by_offset
+    by_axis = over(scaled(2.0 * scale, along(scaled(square, y), -ahead, q)), quartic)
+    by_place = over(scaled(2.0, along(q, -ahead, y)), quartic)
+    return by_axis, scaled(-scale, along(by_place, -1.0, over(scaled(4.0 * link, q), square)))
 
 
 @inner_kernel
@@ -83,19 +83,16 @@ def ratio_at(ratio, y, offset, places):
         store(place, places[j])
         below += ratio.shares[j] * root * root
         if root < math.inf:
-            _, by_axis, by_offset = link_with_slopes(y, place)
-            below_y = along(below_y, ratio.shares[j], by_axis)
-            below_d = along(below_d, ratio.shares[j], by_offset)
+            by_axis, by_offset = link_slopes(ratio.shares[j], y, place)
+            below_y, below_d = along(below_y, 1.0, by_axis), along(below_d, 1.0, by_offset)
     q = minus(ratio.node, offset)
     square = dot(q, q)
     if not (square > 0.0 and below < math.inf):
         return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     w = cross(y, q)
     value = (ratio.isotropic + ratio.weight * dot(w, w) / (square * square)) / below
-    _, by_axis, by_offset = link_with_slopes(y, q)
-    by_axis = along(scaled(ratio.weight, by_axis), -value, below_y)
-    by_offset = along(scaled(ratio.weight, by_offset), -value, below_d)
-    return value, scaled(1.0 / below, by_axis), scaled(1.0 / below, by_offset)
+    by_axis, by_offset = link_slopes(ratio.weight, y, q)
+    return value, over(along(by_axis, -value, below_y), below), over(along(by_offset, -value, below_d), below)
 
 
 @inner_kernel
@@ -106,9 +103,10 @@ def into_cone(errors, y):
         ahead, first, second = -ahead, -first, -second
     across = math.sqrt(first * first + second * second)
     if across * errors.cosine > ahead * errors.sine:
-        scale = errors.sine / across
-        return combination(errors.frame, (errors.cosine, scale * first, scale * second))
-    return unit(combination(errors.frame, (ahead, first, second)))
+        rim = (errors.cosine, errors.sine * first / across, errors.sine * second / across)
+        return combination(errors.frame, rim)
+    length = math.sqrt(ahead * ahead + across * across)
+    return over(combination(errors.frame, (ahead, first, second)), length)
 
 
 @inner_kernel
@@ -158,11 +156,11 @@ def null_within_reach(node, errors):
     y = into_cone(errors, node)
     ahead = dot(y, node)
     offset = along(node, -ahead, y)
-    side, reach = norm(offset), errors.reach
-    spare = 0.5 * math.sqrt(max(0.0, reach * reach - side * side))
+    side, reach = dot(offset, offset), errors.reach
+    spare = 0.5 * math.sqrt(max(0.0, reach * reach - side))
     if abs(ahead) < spare:  # not onto the node itself
         offset = along(offset, ahead - spare, y)
-    return side <= reach or side <= 1e-14 * norm(node), y, offset
+    return side <= reach * reach or side <= 1e-28 * dot(node, node), y, offset
 
 
 @inner_kernel
@@ -171,11 +169,14 @@ def worst_found(ratio, errors, places):
     silent, y, offset = null_within_reach(ratio.node, errors)
     if ratio.isotropic == 0.0 and silent:
         return 0.0, y, offset
+    nominal, first, second = errors.frame
     best = math.inf
     for start in range(5 if errors.sine > 0.0 else 1):  # the nominal axis, then four of the cone's rim
-        angle = 0.5 * math.pi * start
-        rim = (errors.cosine, errors.sine * math.cos(angle), errors.sine * math.sin(angle))
-        begin = combination(errors.frame, rim if start > 0 else (1.0, 0.0, 0.0))
+        begin = nominal
+        if start > 0:
+            angle = 0.5 * math.pi * start
+            way = along(scaled(math.cos(angle), first), math.sin(angle), second)
+            begin = along(scaled(errors.cosine, nominal), errors.sine, way)
         value, new_y, new_offset = descend(ratio, errors, into_cone(errors, begin), _NO_OFFSET, places)
         if value < best:
             best, y, offset = value, new_y, new_offset

@@ -21,6 +21,7 @@ from nullpose.solve.kernels.vectors import (
     cross,
     dot,
     norm,
+    over,
     perpendicular,
     row,
     rows,
@@ -81,9 +82,9 @@ def strongest_in_ball(y, q, radius):
         return math.inf, _ORIGIN
     side = along(q, -dot(q, y), y)
     # where the axis points at the centre any direction across it will do
-    side = unit(side) if norm(side) > 1e-12 * norm(q) else perpendicular(y)
-    inverted = scaled(1.0 / clear, along(q, radius, side))
-    return (norm(cross(y, q)) + radius) / clear, scaled(1.0 / dot(inverted, inverted), inverted)
+    side = side if norm(side) > 1e-12 * norm(q) else perpendicular(y)
+    inverted = over(along(q, 1.0, over(scaled(radius, side), norm(side))), clear)
+    return (norm(cross(y, q)) + radius) / clear, over(inverted, dot(inverted, inverted))
 
 
 @inner_kernel
@@ -94,8 +95,8 @@ def touching(w, q, semi, normal):
     wedge = length - ahead  # without cancellation:
     if ahead > 0.0:
         wedge = (norm(cross(w, normal)) + ROUND * length) ** 2 / (length + ahead)
-    delta = -dot(normal, q) - reach - ROUND * (length * norm(q) + reach)
-    x = scaled(1.0 / reach, spread)
+    delta = -dot(normal, q) - (reach + ROUND * (length * norm(q) + reach))
+    x = over(spread, reach)
     place = along(q, 1.0, times(semi, x))
     attained = dot(w, place) / dot(place, place)
     upper = wedge / (2.0 * delta) * (1.0 + _HAIR) if delta > 0.0 else math.inf
@@ -186,7 +187,7 @@ def climb(y, q, semi, best, x):
 @inner_kernel
 def on_circle(y, angle):
     """Return the unit vector across y at an angle."""
-    first = perpendicular(y)
+    first = unit(perpendicular(y))
     return along(scaled(math.cos(angle), first), math.sin(angle), cross(y, first))
 
 

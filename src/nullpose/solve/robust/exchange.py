@@ -14,7 +14,7 @@ from nullpose.family import AxisField, Family
 from nullpose.family.robust import BindingCase, build_robust_family
 from nullpose.physics.error_case import ErrorCase
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.multistart import SearchSettings, multistart, search_settings
+from nullpose.solve.multistart import SearchSettings, climb, multistart, search_settings
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.proof import BudgetUsed, prove
 from nullpose.solve.robust.inner import Inner
@@ -113,10 +113,10 @@ class Exchange:
         """
         unit = axis / np.linalg.norm(axis)
         worst = self.inner.worst(position_m, unit)
-        value = min(one.value for one in worst)
+        value = min(one.worst for one in worst)
         if self.best is None or value > self.best.worst:
             self.best = Visited(position_m.copy(), unit, value)
-        return [one.binding for one in worst if one.value < level * (1.0 - _SAME)]
+        return [one.binding for one in worst if one.worst < level * (1.0 - _SAME)]
 
     def search(self, deadline: float) -> None:
         """Add cases until the finite family promises little more than the best pose guarantees.
@@ -143,25 +143,18 @@ class Exchange:
 
     def _search_once(self, settings: SearchSettings) -> Incumbent:
         """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
-        from nullpose.solve.kernels.polish import polish
-
         family, field = self.family, self.axis_field
         self.rounds += 1
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
-            found = multistart(family, field, seed=self.limits.seed, settings=settings)
+            ends = [multistart(family, field, seed=self.limits.seed, settings=settings)]
+        self.starts += ends[0].starts
         if self.best is not None:
-            p, u = self.best.position_m.copy(), self.best.axis.copy()
-            multipliers = np.empty(len(family.numerator_point))
-            value, steps = polish(
-                family.arrays, family.domain, field.arrays, p, u, _CLIMB, _CLIMB_STEPS, multipliers
+            ends.append(
+                climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
             )
             self.starts += 1
-            self.evaluations += int(steps)
-            if value > found.log_value:
-                found = replace(found, position_m=p, axis=u, log_value=float(value), multipliers=multipliers)
-        self.starts += found.starts
-        self.evaluations += found.evaluations
-        return found
+        self.evaluations += sum(end.evaluations for end in ends)
+        return max(ends, key=lambda end: end.log_value)
 
     def prove(self, level: float, began: float) -> bool:
         """Bound the finite family by a level; return whether to search on, since a better pose turned up.

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import UsageError
-from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
-from nullpose.solve.robust.inner import Inner, Worst
+from nullpose.solve.robust.inner import Inner, RatioGuarantee
 
 __all__ = ["ACCURACY", "Guarantee", "RatioGuarantee", "guarantee", "guarantee_of"]
 
@@ -20,27 +20,6 @@ ACCURACY = 3e-3
 """Relative distance between a guarantee and the worst case found, unless another is asked for."""
 
 _FINEST = 1e-6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RatioGuarantee:
-    """What a pose guarantees to one node.
-
-    Args:
-        node: the node's name.
-        eavesdropper: the eavesdropper's name, or empty.
-        nominal: the ratio without errors.
-        lower: no error makes it smaller than this.
-        worst: the ratio in the worst case found; between the two the smallest lies.
-        case: that case.
-    """
-
-    node: str
-    eavesdropper: str
-    nominal: float
-    lower: float
-    worst: float
-    case: ErrorCase
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -131,13 +110,12 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
         raise UsageError(f"accuracy: given {accuracy!r}; allowed: {_FINEST:g} to 0.5, relative")
     u /= np.linalg.norm(u)
     found = inner.worst(p, u, accuracy)
-    nominal = ratios_under(inner.scenario, p, u, ErrorCase.none(inner.scenario))
     for array in (p, u):
         array.flags.writeable = False
     return Guarantee(
         position_m=p,
         axis=u,
-        ratios=tuple(_named(inner.scenario, one, nominal) for one in found),
+        ratios=found,
         cells=sum(one.cells for one in found),
     )
 
@@ -154,15 +132,3 @@ def require_dipole(scenario: Scenario) -> Scenario:
     if scenario.array is not None:
         raise UsageError("array: guarantees are for one dipole; remove [array], or solve without robust")
     return scenario
-
-
-def _named(scenario: Scenario, one: Worst, nominal: FloatArray) -> RatioGuarantee:
-    names = scenario.eavesdropper_names
-    return RatioGuarantee(
-        node=scenario.node_names[one.node],
-        eavesdropper=names[one.eavesdropper] if names else "",
-        nominal=float(nominal[one.node, one.eavesdropper]),
-        lower=one.lower,
-        worst=one.value,
-        case=one.case,
-    )

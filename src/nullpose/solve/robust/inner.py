@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import build_family
-from nullpose.family.robust import BindingCase, point_uncertainty_m
+from nullpose.family.robust import BindingCase, interferer_field, point_uncertainty_m
 from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
 from nullpose.scenario import Scenario
 
-__all__ = ["Inner", "Worst"]
+__all__ = ["Inner", "RatioGuarantee"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -26,25 +26,27 @@ _MOST_CELLS = 200_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Worst:
-    """The worst found for one ratio at a pose, and a bound on it.
+class RatioGuarantee:
+    """What a pose guarantees to one node.
 
     Args:
+        node: the node's name.
+        eavesdropper: the eavesdropper's name, or empty.
+        nominal: the ratio without errors.
+        lower: no error makes it smaller than this; 0 if that was not asked for.
+        worst: the ratio in the worst case found, by the plain physics; between the two the smallest lies.
+        case: that case.
         ratio: index of the ratio in the nominal family.
-        node: index of its node.
-        eavesdropper: index of its eavesdropper; 0 where there are none.
-        lower: no error makes the ratio smaller than this; 0 if that was not asked for.
-        value: the ratio in the case, by the plain physics; 0 if the null is on the node.
-        case: the worst error case found.
         cells: cells of errors examined.
     """
 
-    ratio: int
-    node: int
-    eavesdropper: int
+    node: str
+    eavesdropper: str
+    nominal: float
     lower: float
-    value: float
+    worst: float
     case: ErrorCase
+    ratio: int
     cells: int
 
     @property
@@ -65,9 +67,13 @@ class Inner:
         self.family = build_family(scenario)
         self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
         self.reach_m = float(scenario.receiver.position_error_m)
+        self.none = ErrorCase.none(scenario)
+        self.moved = interferer_field(scenario, "offsets")
         self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
 
-    def worst(self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0) -> tuple[Worst, ...]:
+    def worst(
+        self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0
+    ) -> tuple[RatioGuarantee, ...]:
         """Return the worst error case of every ratio at a pose.
 
         Args:
@@ -75,19 +81,24 @@ class Inner:
             axis: (3,) the commanded antenna axis, of unit length.
             accuracy: relative distance of the bound from the worst found; 1 asks for no bound.
         """
-        return tuple(self._worst(ratio, position_m, axis, accuracy) for ratio in range(self.n_ratios))
+        nominal = ratios_under(self.scenario, position_m, axis, self.none)
+        return tuple(
+            self._worst(ratio, position_m, axis, accuracy, nominal) for ratio in range(self.n_ratios)
+        )
 
     @property
     def n_ratios(self) -> int:
         """How many ratios the nominal family has."""
         return len(self.family.numerator_point)
 
-    def _worst(self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float) -> Worst:
+    def _worst(
+        self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float, nominal: FloatArray
+    ) -> RatioGuarantee:
         from nullpose.solve.kernels.worst_case import Errors, Ratio
         from nullpose.solve.kernels.worst_case_bound import worst_case
         from nullpose.solve.kernels.worst_case_links import Sets
 
-        family, n_nodes = self.family, len(self.scenario.nodes)
+        family = self.family
         group = family.denominator_of[ratio]
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
@@ -109,35 +120,33 @@ class Inner:
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
         lower, worst, cells = worst_case(numbers, errors, accuracy, _MOST_CELLS, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers.centres - offset))
-        node = int(family.numerator_point[ratio])
-        eavesdropper = int(points[0]) - n_nodes if self.scenario.objective == "secrecy-rate" else 0
+        node, eavesdropper = divmod(ratio, nominal.shape[1])
+        listeners = self.scenario.eavesdropper_names
         # a null on the node is exact in the case, not in its rounded evaluation
         value = float(ratios_under(self.scenario, p, u, case)[node, eavesdropper]) if worst > 0.0 else 0.0
-        return Worst(
-            ratio=ratio,
-            node=node,
-            eavesdropper=eavesdropper,
+        return RatioGuarantee(
+            node=self.scenario.node_names[node],
+            eavesdropper=listeners[eavesdropper] if listeners else "",
+            nominal=float(nominal[node, eavesdropper]),
             lower=float(lower),
-            value=value,
+            worst=value,
             case=case,
+            ratio=ratio,
             cells=int(cells),
         )
 
     def _case(
         self, u: FloatArray, y: FloatArray, offset: FloatArray, points: IntArray, moved: FloatArray
     ) -> ErrorCase:
-        blank = ErrorCase.none(self.scenario)
-        secret = self.scenario.objective == "secrecy-rate"
-        offsets_m = np.array(blank.eavesdropper_offsets_m if secret else blank.jammer_offsets_m)
+        offsets_m = np.array(getattr(self.none, self.moved))
         known = self.radii[points] == 0.0
         offsets_m[points - len(self.scenario.nodes)] = np.where(known[:, None], 0.0, moved)
-        rotation = rotation_between(u, y if float(u @ y) >= 0.0 else -y)
-        return ErrorCase(  # what cannot err has no rounding error either
-            position_offset_m=offset if self.reach_m > 0.0 else np.zeros(3),
-            rotation_world=rotation if self.angle_rad > 0.0 else np.eye(3),
-            jammer_offsets_m=blank.jammer_offsets_m if secret else offsets_m,
-            eavesdropper_offsets_m=offsets_m if secret else blank.eavesdropper_offsets_m,
-        )
+        case = replace(self.none, **{self.moved: offsets_m})
+        if self.reach_m > 0.0:  # what cannot err has no rounding error either
+            case = replace(case, position_offset_m=offset)
+        if self.angle_rad > 0.0:
+            case = replace(case, rotation_world=rotation_between(u, y if float(u @ y) >= 0.0 else -y))
+        return case
 
 
 def _frame(u: FloatArray) -> Any:

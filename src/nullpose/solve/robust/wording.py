@@ -14,9 +14,6 @@ __all__ = ["in_words"]
 
 FloatArray = NDArray[np.float64]
 
-_COMPASS = ("east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east")
-_STEEP = math.radians(67.5)
-_LEVEL = math.radians(22.5)
 _LEAST_RAD = 1e-9
 _LEAST_M = 1e-6
 
@@ -33,25 +30,20 @@ def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
     parts = []
     if case.rotation_rad > _LEAST_RAD:
         lean = case.rotation_world @ up - up
-        parts.append(f"axis {math.degrees(case.rotation_rad):.3g} deg off, to the {_direction(lean)}")
+        parts.append(f"axis {math.degrees(case.rotation_rad):.3g} deg off, {_direction(lean)}")
     moved = [("drone", case.position_offset_m)]
     moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
     moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)
     for name, offset_m in moved:
         distance_m = float(np.linalg.norm(offset_m))
         if distance_m > _LEAST_M:
-            parts.append(f"{name} {distance_m:.3g} m off, to the {_direction(offset_m)}")
+            parts.append(f"{name} {distance_m:.3g} m off, {_direction(offset_m)}")
     return "; ".join(parts) if parts else "everything as stated"
 
 
 def _direction(vector: FloatArray) -> str:
-    """Return a direction as compass points and up or down."""
-    level = math.hypot(vector[0], vector[1])
-    climb = math.atan2(vector[2], level)
-    vertical = "top" if climb > 0.0 else "bottom"
-    if abs(climb) > _STEEP:
-        return vertical
-    compass = _COMPASS[round(math.degrees(math.atan2(vector[1], vector[0])) / 45.0) % 8]
-    if abs(climb) < _LEVEL:
-        return compass
-    return f"{compass} and {'up' if climb > 0.0 else 'down'}"
+    """Return a direction by its bearing, clockwise from north, and its elevation."""
+    east, north, up = vector
+    bearing_deg = math.degrees(math.atan2(east, north)) % 360.0
+    elevation_deg = math.degrees(math.atan2(up, math.hypot(east, north)))
+    return f"bearing {round(bearing_deg) % 360:03d} deg, elevation {round(elevation_deg):d} deg"
