@@ -48,27 +48,26 @@ def search_positions(
     if not starts:  # what is allowed may be of no width
         family = loosened(family, BORDER_M)
         starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    low, high = family.low_m, family.high_m
+    if not starts:
+        raise SolveError(NO_POSITION)
+    domain, low, high = family.domain, family.low_m, family.high_m
     evaluations = 0
 
     def cost(position: FloatArray) -> float:
         nonlocal evaluations
         evaluations += 1
-        return -objective(position) if contains(family.domain, position) else math.inf
+        return -objective(position) if contains(domain, position) else math.inf
 
-    if not starts:
-        raise SolveError(NO_POSITION)
     best_value, best_position = max(((-cost(place), place) for place in starts), key=lambda pair: pair[0])
-    box_low, box_high = np.empty(3), np.empty(3)
-    if math.isfinite(best_value):
-        cut_box(family.arrays, low, high, best_value, box_low, box_high)
-    else:
+    if not math.isfinite(best_value):
         raise SolveError(NOT_RECEIVED)
+    box_low, box_high = np.empty(3), np.empty(3)
+    cut_box(family.arrays, low, high, best_value, box_low, box_high)
     draws = np.random.default_rng(seed).uniform(size=(_COARSE, 3))
     draws[::2, 2] = 0.0  # the optimum is often on the floor
     for draw in draws:
         place = box_low + draw * (box_high - box_low)
-        if push_out(place, family.domain):
+        if push_out(place, domain):
             starts.append(place)
     ranked = sorted(starts, key=cost)[:_POLISHED]
     span = float(np.max(box_high - box_low))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme
@@ -60,6 +59,9 @@ _CASES = (
 )
 
 
+_offered: dict[tuple[object, ...], tuple[Case, ...]] = {}
+
+
 def all_cases() -> tuple[Case, ...]:
     """Return every case, in the order in which they are offered."""
     return _CASES
@@ -79,25 +81,9 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         bool(scenario.jammers),
         len(scenario.nodes),
     )
-    return _cases_with(traits, _Unhashed(scenario))
-
-
-class _Unhashed:
-    """A scenario that a cache does not look at: what cases it has depends on its traits alone."""
-
-    def __init__(self, scenario: Scenario) -> None:
-        self.scenario = scenario
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Unhashed)
-
-    def __hash__(self) -> int:
-        return 0
-
-
-@lru_cache(maxsize=64)
-def _cases_with(traits: tuple[object, ...], of: _Unhashed) -> tuple[Case, ...]:
-    return tuple(case for case in _CASES if case.missing(of.scenario) is None)
+    if traits not in _offered:  # asked at every step of a drag
+        _offered[traits] = tuple(case for case in _CASES if case.missing(scenario) is None)
+    return _offered[traits]
 
 
 def case_named(label: str) -> Case:
