@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme
-from nullpose.study import AIRFRAMECASES, AirframeCase
+from nullpose.study import AIRFRAME_CASES, AirframeCase
 
 __all__ = ["CASES", "OPTIMUM", "Case", "case_named", "cases_of"]
 
@@ -55,7 +55,7 @@ CASES = (
     OPTIMUM,
     *(Case(label=scheme.label, scheme=scheme) for scheme in PAPER_SCHEMES if scheme is not Scheme.OPTIMUM),
     Case(label="Robust pose", robust=True),
-    *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAMECASES),
+    *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )
 """Every case, in the order in which they are offered."""
 
