@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.family.records import Axes, Domain, Ratios
+from nullpose.family.records import Axes, Domain
+from nullpose.objectives.ratios import Ratios
 from nullpose.solve.kernels.barrier import (
     barrier_value,
     bent_step,
