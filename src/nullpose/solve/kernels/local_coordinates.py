@@ -184,7 +184,10 @@ def choose_sides(domain, p, chosen):
 
 @kernel
 def domain_slacks(p, u, domain, axis_field, chosen, out):
-    """Fill the slacks of a pose: faces, keep-out balls (as squares), pieces' chosen sides, ends of a band."""
+    """Fill the slacks of a pose: faces, keep-out balls (as squares), pieces' chosen sides, ends of a band.
+
+    Infinite where there is no such constraint.
+    """
     for i in range(3):
         out[i], out[3 + i] = p[i] - domain.low_m[i], domain.high_m[i] - p[i]
     c = 6
@@ -194,13 +197,11 @@ def domain_slacks(p, u, domain, axis_field, chosen, out):
     for s in chosen:
         out[c] = side_slack(domain.piece_sides[s], p)
         c += 1
-    out[c] = out[c + 1] = 1.0
+    out[c] = out[c + 1] = math.inf
     if axis_field.kind == BAND:
-        size = dot(u, u)
-        out[c], out[c + 1] = (
-            u[2] * u[2] - axis_field.offset[0] * size,
-            axis_field.offset[1] * size - u[2] * u[2],
-        )
+        least, greatest, size = axis_field.offset[0], axis_field.offset[1], dot(u, u)
+        out[c] = u[2] * u[2] - least * size if least > 0.0 else math.inf
+        out[c + 1] = greatest * size - u[2] * u[2] if greatest < 1.0 else math.inf
 
 
 @inner_kernel

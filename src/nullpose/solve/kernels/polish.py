@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.family.records import Axes, Domain, Ratios
+from nullpose.family.records import Axes, Domain
+from nullpose.objectives.ratios import Ratios
 from nullpose.solve.kernels.barrier import (
     barrier_value,
     bent_step,
@@ -55,14 +56,13 @@ FloatArray = NDArray[np.float64]
 
 
 class Problem(NamedTuple):
-    """What is polished: the chosen sides of forbidden pieces, the coordinates and slacks that are in use."""
+    """What is polished: the chosen sides of forbidden pieces, and which coordinates are free."""
 
     family: Ratios
     domain: Domain
     axis_field: Axes
     chosen: NDArray[np.int64]
     free: NDArray[np.bool_]
-    used: NDArray[np.bool_]
 
 
 class Point(NamedTuple):
@@ -84,42 +84,41 @@ class Model(NamedTuple):
 
 @inner_kernel
 def enter(problem, pose):
-    """Move a pose strictly inside its faces and its band; fill which coordinates and slacks are in use."""
-    domain, ends, free, used = problem.domain, problem.axis_field.offset, problem.free, problem.used
+    """Move a pose strictly inside its faces and its band; fill which coordinates are free."""
+    domain, ends = problem.domain, problem.axis_field.offset
     for i in range(3):
         low, high = domain.low_m[i], domain.high_m[i]
-        free[i] = high - low > 1e-9
-        used[i], used[3 + i] = free[i] and low > -math.inf, free[i] and high < math.inf
-        margin = min(1e-2, 1e-3 * (high - low)) if free[i] else 0.0
+        problem.free[i] = high - low > 1e-9
+        margin = min(1e-2, 1e-3 * (high - low)) if problem.free[i] else 0.0
         pose[i] = min(max(pose[i], low + margin), high - margin)
-    band = used.shape[0] - 2
-    is_band = problem.axis_field.kind == BAND
-    used[band], used[band + 1] = is_band and ends[0] > 0.0, is_band and ends[1] < 1.0
-    if is_band:
+    if problem.axis_field.kind == BAND:
         margin = min(1e-3, 1e-2 * (ends[1] - ends[0]))
-        least, greatest = ends[0] + margin * used[band], ends[1] - margin * used[band + 1]
+        least = ends[0] + margin if ends[0] > 0.0 else 0.0
+        greatest = ends[1] - margin if ends[1] < 1.0 else 1.0
         clamp_elevation(least, greatest, pose[3:])
 
 
 @inner_kernel
 def fill_values(problem, pose, logs, values):
-    """Fill the log ratios of a pose and after them its slacks; infinite where one is not in use."""
-    used = problem.used
-    ratios = values.shape[0] - used.shape[0]
-    log_ratios(problem.family, pose[:3], pose[3:], logs, values[:ratios])
-    slacks = values[ratios:]
-    domain_slacks(pose[:3], pose[3:], problem.domain, problem.axis_field, problem.chosen, slacks)
-    for c in range(used.shape[0]):
-        if not used[c]:
-            slacks[c] = math.inf
+    """Fill the log ratios of a pose and after them its slacks, infinite for a coordinate not free."""
+    p, u, ratios = pose[:3], pose[3:], ratio_count(problem)
+    log_ratios(problem.family, p, u, logs, values[:ratios])
+    domain_slacks(p, u, problem.domain, problem.axis_field, problem.chosen, values[ratios:])
+    for i in range(3):
+        if not problem.free[i]:
+            values[ratios + i] = values[ratios + 3 + i] = math.inf
+
+
+@inner_kernel
+def ratio_count(problem):
+    """Return how many of the values are log ratios."""
+    return problem.family.numerator_point.shape[0]
 
 
 @inner_kernel
 def reached(problem, values):
     """Return the smallest log ratio, minus infinity outside the domain."""
-    sides = problem.used.shape[0]
-    ratios = values.shape[0] - sides
-    band = ratios + sides - 2
+    ratios, band = ratio_count(problem), values.shape[0] - 2
     if smallest_of(values[ratios:band]) >= 0.0 and smallest_of(values[band:]) >= -_BAND_EDGE:
         return smallest_of(values[:ratios])
     return -math.inf
@@ -130,7 +129,7 @@ def begin(problem, point, logs, best_pose):
     """Move a pose strictly inside; fill the better of it and the start; return both values."""
     pose = point.pose
     best = value = -math.inf
-    problem.used[:] = True
+    problem.free[:] = True
     clamp_axis(problem.axis_field, pose[3:])
     for attempt in range(2):  # the start itself is the first incumbent
         if attempt == 1:
@@ -155,7 +154,7 @@ def fill_gaps(point, ratios, t):
 @inner_kernel
 def linearise(problem, point, grads, parts, n, model, h):
     """Fill the rates of all gaps in the n search variables and the level, and the Lagrangian's Hessian."""
-    ratios = point.values.shape[0] - problem.used.shape[0]
+    ratios = ratio_count(problem)
     pose, duals, hess = point.pose, model.duals, scratch(6, 6)
     f = point.values[:ratios]
     derivatives(problem.family, pose[:3], pose[3:], duals[:ratios], f, grads[:ratios], hess, parts)
@@ -175,7 +174,7 @@ def linearise(problem, point, grads, parts, n, model, h):
 @inner_kernel
 def longest_scale(problem, gaps, rates, step, n):
     """Return the largest share of a step that stays inside all but the balls, and the step's size."""
-    ratios, balls = gaps.shape[0] - problem.used.shape[0], problem.domain.keep_out_points_m.shape[0]
+    ratios, balls = ratio_count(problem), problem.domain.keep_out_points_m.shape[0]
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
@@ -193,7 +192,7 @@ def line_search(problem, here, t, there, model, n, mu, step, slope, scale, logs)
 
     Before the step is shortened it is bent once, to follow a curved ridge. A share of zero: none climbs.
     """
-    ratios = here.values.shape[0] - problem.used.shape[0]
+    ratios = ratio_count(problem)
     f, new_f, bent = here.values[:ratios], there.values[:ratios], scratch(6)
     floor = barrier_value(here.gaps, t, mu)
     for attempt in range(_ATTEMPTS):
@@ -219,7 +218,7 @@ def put_on_faces(problem, here, there, model, logs, best, best_pose):
 
     A step in the search variables does so, since the axis must follow.
     """
-    ratios, m = model.duals.shape[0] - problem.used.shape[0], 0
+    ratios, m = ratio_count(problem), 0
     step, goal = zeroed(6), scratch(3)
     copy_into(here.pose[:3], goal)
     for i in range(3):
@@ -256,10 +255,10 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         max_steps: limit on interior-point steps.
         multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
     """
-    ratios, sides = family.numerator_isotropic.shape[0], slack_count(domain)
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
-    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_), np.empty(sides, np.bool_))
-    count, groups = ratios + sides, family.denominator_isotropic.shape[0]
+    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_))
+    count = ratios + slack_count(domain)
     here = Point(np.empty(6), np.empty(count), np.empty(count))
     there = Point(np.empty(6), np.empty(count), np.empty(count))
     model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))

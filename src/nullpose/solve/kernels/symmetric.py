@@ -90,7 +90,7 @@ def normalise(v):
 @kernel
 def tangents(u, a, b):
     """Fill two unit vectors that make an orthogonal frame with the unit vector ``u``."""
-    store(perpendicular(u), a)
+    store(unit(perpendicular(u)), a)
     store(cross(u, a), b)
 
 
