@@ -8,7 +8,7 @@ from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
-__all__ = ["OPTIMUM", "Case", "all_cases", "case_named", "cases_of"]
+__all__ = ["CASES", "OPTIMUM", "Case", "case_named", "cases_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,20 +51,16 @@ class Case:
 OPTIMUM = Case(label="Optimum pose")
 """The case that the studio opens with."""
 
-_CASES = (
+CASES = (
     OPTIMUM,
     *(Case(label=scheme.label, scheme=scheme) for scheme in PAPER_SCHEMES if scheme is not Scheme.OPTIMUM),
     Case(label="Robust pose", robust=True),
     *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )
+"""Every case, in the order in which they are offered."""
 
 
 _offered: dict[tuple[object, ...], tuple[Case, ...]] = {}
-
-
-def all_cases() -> tuple[Case, ...]:
-    """Return every case, in the order in which they are offered."""
-    return _CASES
 
 
 def cases_of(scenario: Scenario) -> tuple[Case, ...]:
@@ -82,7 +78,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         len(scenario.nodes),
     )
     if traits not in _offered:  # asked at every step of a drag
-        _offered[traits] = tuple(case for case in _CASES if case.missing(scenario) is None)
+        _offered[traits] = tuple(case for case in CASES if case.missing(scenario) is None)
     return _offered[traits]
 
 
@@ -95,4 +91,4 @@ def case_named(label: str) -> Case:
     Raises:
         KeyError: there is none.
     """
-    return {case.label: case for case in _CASES}[label]
+    return {case.label: case for case in CASES}[label]

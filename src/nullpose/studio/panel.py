@@ -12,7 +12,7 @@ from nullpose.studio.view import POWER_DB, View
 if TYPE_CHECKING:
     from viser import GuiApi
 
-__all__ = ["BEST_MAP", "FOOTPRINT", "NO_CASE", "NO_MAP", "Panel"]
+__all__ = ["BEST_MAP", "NO_CASE", "NO_MAP", "Panel"]
 
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
