@@ -88,5 +88,5 @@ def entry_of(kernel: Any) -> Any:
     Args:
         kernel: any.
     """
-    entries = getattr(kernel, "entries", ())
+    entries: list[Any] = getattr(kernel, "entries", [])
     return entries[0] if len(entries) == 1 else kernel
