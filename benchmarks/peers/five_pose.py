@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from nullpose.family import Family, build_family
-from nullpose.family.records import Ratios
+from nullpose.objectives import Ratios
 from nullpose.physics import Pose, min_sinr
 from nullpose.scenario import Scenario
 from nullpose.solve.kernels.links import derivatives, min_log_ratio

@@ -93,7 +93,7 @@ def _walks(
     axis: Callable[[FloatArray, FloatArray], FloatArray],
     rng: np.random.Generator,
     starts: int,
-    room_m: FloatArray,
+    bounds_m: FloatArray,
     near: tuple[FloatArray, FloatArray],
 ) -> float:
     def values(p: FloatArray, u: FloatArray) -> FloatArray:
@@ -106,8 +106,8 @@ def _walks(
             out[allowed] = objective_value(scenario, p[allowed], unit)
         return out
 
-    p = rng.uniform(room_m[0], room_m[1], size=(starts, 3))
-    p[: starts // 4, 2] = room_m[0, 2]
+    p = rng.uniform(bounds_m[0], bounds_m[1], size=(starts, 3))
+    p[: starts // 4, 2] = bounds_m[0, 2]
     u = rng.normal(size=(starts, 3))
     p[starts // 2 :], u[starts // 2 :] = near
     value = values(p, u)
@@ -116,7 +116,7 @@ def _walks(
     for _ in range(_STEPS):
         step = scale * 10.0 ** rng.uniform(-1.5, 0.3, size=starts)
         sparse = rng.uniform(size=(starts, 3)) < 0.7
-        new_p = np.clip(p + step[:, None] * rng.normal(size=(starts, 3)) * sparse, room_m[0], room_m[1])
+        new_p = np.clip(p + step[:, None] * rng.normal(size=(starts, 3)) * sparse, bounds_m[0], bounds_m[1])
         new_u = u + 0.05 * step[:, None] * rng.normal(size=(starts, 3)) * np.linalg.norm(u, axis=1)[:, None]
         new_value = values(new_p, new_u)
         better = new_value > value

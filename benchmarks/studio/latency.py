@@ -62,7 +62,8 @@ def _server(scene: Scenario, steps: int) -> dict[str, float]:
     took = []
     for step in range(steps):
         began = time.perf_counter()
-        session.move(("jammers", 0), start + np.array([0.05 * (step + 1), 0.0, 0.0]), "drag")
+        place = start + np.array([0.05 * (step + 1), 0.0, 0.0])
+        session.change(lambda view, place=place: view.moved(("jammers", 0), place), "drag")
         while session.version not in answered:
             time.sleep(0.0005)
         took.append(answered[session.version] - began)
@@ -75,24 +76,25 @@ def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
         page.wait_for_timeout(6000)
         ours = next(iter(running.pages.values()))
         marks = Marks()
-        move, told = ours.session.move, ours.session._on_event
+        change, told = ours.session.change, ours.session._on_event
 
-        def moved(*arguments: Any) -> None:
+        def changed(*arguments: Any) -> None:
             heard = time.time()
-            move(*arguments)
+            change(*arguments)
             marks.heard.append((heard, ours.session.version))
 
         def tell(event: Any) -> None:
             if isinstance(event, Answer):
-                marks.solved.append((time.time(), event.version, event.pose.position_m))
+                marks.solved.append((time.time(), event.version, event.result.pose.position_m))
             told(event)
 
-        ours.session.move, ours.session._on_event = moved, tell
+        ours.session.change, ours.session._on_event = changed, tell
         start = np.array(scene.jammers[0].position_m)
         grip = start + np.array([0.06 * ours._size_m, 0.0, 0.0])
         to = grip + np.array([0.1 * ours._size_m, 0.0, 0.0])
         return {
-            how: dragged(page, ours._client.camera, grip, to, marks, steps, how, "/drone-a") for how in STEPS
+            how: dragged(page, ours._client.camera, grip, to, marks, steps, how, "/drone-a/body")
+            for how in STEPS
         }
 
 

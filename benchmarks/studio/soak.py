@@ -49,7 +49,8 @@ def soak(steps: int, most_minutes: float) -> dict[str, Any]:
             place = (17.0 + 12.0 * math.cos(turn), 15.0 + 12.0 * math.sin(turn), 4.0)
             page._dragged(("jammers", 0), place, _PHASES.get(step % _DRAG, "update"))
             if step % _REST_EVERY == _REST_EVERY - 1:
-                page.session.compare(case_named("Vertical") if step % (2 * _REST_EVERY) == 0 else None)
+                second = case_named("Vertical") if step % (2 * _REST_EVERY) == 0 else None
+                page.session.change(lambda view, second=second: view.with_compared(second))
                 page.session.undo()
                 time.sleep(2.5)
             time.sleep(_BETWEEN_S)

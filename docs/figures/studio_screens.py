@@ -23,11 +23,17 @@ IMAGES = ROOT / "docs" / "images"
 
 # name: example, what is done first
 SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
-    "studio-weak": ("paper", lambda session: session.set_power_db(-20.0)),
-    "studio-strong": ("paper", lambda session: session.set_power_db(20.0)),
+    "studio-weak": ("paper", lambda session: session.change(lambda view: view.with_power_db(-20.0))),
+    "studio-strong": ("paper", lambda session: session.change(lambda view: view.with_power_db(20.0))),
     "studio-ten-nodes": ("field", lambda session: None),
-    "studio-comparison": ("paper", lambda session: session.compare(case_named("Vertical"))),
-    "studio-robust": ("robust", lambda session: session.choose(case_named("Robust pose"))),
+    "studio-comparison": (
+        "paper",
+        lambda session: session.change(lambda view: view.with_compared(case_named("Vertical"))),
+    ),
+    "studio-robust": (
+        "robust",
+        lambda session: session.change(lambda view: view.with_case(case_named("Robust pose"))),
+    ),
 }
 _FROM = {"studio-ten-nodes": (-0.72, -0.66, 0.58)}  # where the camera stands, for a drone at the near edge
 _QUIET_MS = 9000  # without a graphics card a frame takes long

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
+from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
+from nullpose.certificate.frames import Frames
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
@@ -226,3 +228,36 @@ def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..
         return (family.numerator_isotropic + above) / below
 
     return ratios
+
+
+@pytest.fixture(scope="session")
+def one_box() -> Callable[[np.random.Generator], Boxes]:
+    """Returns a function: a box above the field."""
+
+    def box(rng: np.random.Generator) -> Boxes:
+        return Boxes(
+            leaf=np.zeros(1, dtype=np.int64),
+            centre=rng.uniform([-30.0, -30.0, 9.0], [80.0, 80.0, 30.0], (1, 3)),
+            half=rng.uniform(0.05, 1.5, (1, 3)),
+        )
+
+    return box
+
+
+@pytest.fixture(scope="session")
+def carried() -> Callable[..., np.ndarray]:
+    """Returns a function: the rotation that carries the frame at a centre along a straight line to p.
+
+    The direction to a point turns in one plane along the line: the least rotation between its ends is it.
+    """
+
+    def rotation(frames: Frames, anchor: np.ndarray, centre: np.ndarray, p: np.ndarray) -> np.ndarray:
+        if not frames.turning[0]:
+            return np.eye(3)
+        d, e = anchor - centre, anchor - p
+        d, e = d / np.linalg.norm(d), e / np.linalg.norm(e)
+        axis = np.cross(d, e)
+        cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+        return np.eye(3) + cross + cross @ cross / (1.0 + d @ e)
+
+    return rotation

@@ -143,9 +143,9 @@ def test_negative_quadratics_are_negative() -> None:
         half = 10.0 ** rng.uniform(-2, 2, 3)
         slack = 10.0 ** rng.uniform(-8, -1) * np.abs(hessian).max()
         scaled = np.array([[hessian[i, k] / (half[i] * half[k])] for i, k in SIX])
-        room = np.array([[slack / (half[i] * half[k])] for i, k in SIX])
+        radius = np.array([[slack / (half[i] * half[k])] for i, k in SIX])
         slopes = Interval((gradient / half)[:, None])
-        bounds = Interval(scaled - room, scaled + room)
+        bounds = Interval(scaled - radius, scaled + radius)
         holds = _quadratic_negative(half[:, None], Interval([value]), slopes, bounds)[0]
         y = np.vstack([rng.uniform(-1, 1, (200, 3)), np.sign(rng.normal(size=(50, 3)))])
         noise = slack * np.triu(rng.choice([-1.0, 1.0], (len(y), 3, 3)))

@@ -21,8 +21,7 @@ CIRCLE = np.array([[55.0, 15.0, 12.0, 0.0]])
 def zoned(family: Family) -> Family:
     """Return a family with a zone of each kind and no ball."""
     block, fence = (np.hstack([each, np.roll(each, -1, axis=0)]) for each in (BLOCK, FENCE))
-    return replace(
-        family,
+    return family.changed(
         keep_out_points_m=np.zeros((0, 3)),
         zone_kind=np.array([0, 1, 2]),
         zone_start=np.array([0, 5, 6, 11]),
@@ -126,7 +125,7 @@ def test_zones_help(
     way = {0: [0.0, 1.0, 0.0], 1: [1.0, 0.0, 0.0], 2: [-1.0, 0.0, 0.0]}[zone]
     # a node behind the wall is nearer to positions that are forbidden
     points = np.array([np.array(out) + 20.0 * np.array(way)])
-    family = replace(family, points_m=points, numerator_isotropic=np.zeros(1))
+    family = family.changed(points_m=points, numerator_isotropic=np.zeros(1))
     boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.array([out]), half=np.full((1, 3), 0.01))
     assert not np.array_equal(points[0], node)
     upright = np.array([0.0, 0.0, 1.0])
@@ -162,8 +161,8 @@ def test_corners_help(random_family: Callable, make_leaves: Callable, dense_rati
         ),  # a corner that points inwards: round it on either side
     ]
     for zone, at, way, expected in cases:
-        here = replace(
-            family, points_m=np.array([at]) + 15.0 * np.array([way]), numerator_isotropic=np.zeros(1)
+        here = family.changed(
+            points_m=np.array([at]) + 15.0 * np.array([way]), numerator_isotropic=np.zeros(1)
         )
         boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.array([at]), half=np.full((1, 3), 1e-3))
         steepness = 1e-4 if expected else 1e-6
@@ -178,7 +177,7 @@ def test_corners_help(random_family: Callable, make_leaves: Callable, dense_rati
 def test_balls_curve(field: AxisField, random_family: Callable, make_leaves: Callable) -> None:
     """A ball in the middle of a box excludes none of what is around it, whatever its multiplier."""
     family = random_family(np.random.default_rng(9), 1, 1)
-    family = replace(family, keep_out_points_m=np.array([[20.0, 20.0, 60.0]]), keep_out_m=1.0)
+    family = family.changed(keep_out_points_m=np.array([[20.0, 20.0, 60.0]]), keep_out_m=1.0)
     test = np.array([WORLD if field.is_free else AFFINE])
     for half, expected in ((0.5, True), (0.6, False), (2.0, False)):
         boxes = Boxes(

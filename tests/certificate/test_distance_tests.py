@@ -1,7 +1,6 @@
 """Distances alone: what is called out of reach is, and so is what a root box leaves out."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from hypothesis import given
@@ -71,11 +70,11 @@ def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_le
     farthest = np.linalg.norm(away, axis=1)
     holds = kept_out_holds(family, AxisField.free(), make_leaves(40, point=ball), boxes)
     assert np.array_equal(holds, farthest < 25.0)
-    larger = replace(family, keep_out_m=float(farthest[0]) * (1.0 + 1e-12))
-    smaller = replace(family, keep_out_m=float(farthest[0]) * (1.0 - 1e-12))
+    larger = family.changed(keep_out_m=float(farthest[0]) * (1.0 + 1e-12))
+    smaller = family.changed(keep_out_m=float(farthest[0]) * (1.0 - 1e-12))
     assert kept_out_holds(larger, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
     assert not kept_out_holds(smaller, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
-    none = replace(family, keep_out_points_m=np.zeros((0, 3)))
+    none = family.changed(keep_out_points_m=np.zeros((0, 3)))
     assert not np.any(kept_out_holds(none, AxisField.free(), make_leaves(40, point=ball), boxes))
 
 
@@ -107,7 +106,7 @@ def test_a_root_of_the_whole_domain_needs_no_reach(random_family: Callable) -> N
     """Where the airspace is bounded its own faces do; a hair inside does not."""
     family = random_family(np.random.default_rng(1), 2, 1)
     low, high = np.array([-5.0, -5.0, 8.0]), np.array([5.0, 5.0, 9.0])
-    bounded = replace(family, low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
+    bounded = family.changed(low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
     assert root_holds(bounded, np.array([low, high]), 1e-3) == ""
     assert "x = " in root_holds(bounded, np.array([low + np.array([1e-12, 0, 0]), high]), 1e-3)
     assert "z = " in root_holds(bounded, np.array([low, high - np.array([0, 0, 1e-12])]), 1e-3)

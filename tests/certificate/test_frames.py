@@ -22,30 +22,6 @@ def full(form: Interval) -> np.ndarray:
     return matrices(form.middle())[0]
 
 
-def one_box(rng: np.random.Generator) -> Boxes:
-    """Return a box above the field."""
-    return Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=rng.uniform([-30.0, -30.0, 9.0], [80.0, 80.0, 30.0], (1, 3)),
-        half=rng.uniform(0.05, 1.5, (1, 3)),
-    )
-
-
-def carried(family: Family, frames: Frames, centre: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Return the rotation that carries the world frame at the centre along a straight line to p.
-
-    The direction to a point turns in one plane along the line: the least rotation between its ends is it.
-    """
-    if not frames.turning[0]:
-        return np.eye(3)
-    anchor = family.points_m[frames.anchor[0]]
-    d, e = anchor - centre, anchor - p
-    d, e = d / np.linalg.norm(d), e / np.linalg.norm(e)
-    axis = np.cross(d, e)
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + cross + cross @ cross / (1.0 + d @ e)
-
-
 def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator, make: Callable) -> Frames:
     """Return the frames of one box, standing still or turning towards some point."""
     point = np.array([int(rng.integers(len(family.points_m)))])
@@ -59,7 +35,13 @@ def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator
 @settings(max_examples=50)
 @given(seed=seeds)
 def test_expansions_enclose_the_forms(
-    turning: bool, seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable
+    turning: bool,
+    seed: int,
+    random_family: Callable,
+    make_leaves: Callable,
+    link_matrix: Callable,
+    carried: Callable,
+    one_box: Callable,
 ) -> None:
     """Value, slopes and remainder enclose the turned form of every point all over the box."""
     rng = np.random.default_rng(seed)
@@ -68,7 +50,7 @@ def test_expansions_enclose_the_forms(
     basis, gram = frames.basis.middle()[:, :, 0], full(frames.gram)
     for x in rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]:
         p = boxes.centre[0] + x
-        rotation = carried(family, frames, boxes.centre[0], p)
+        rotation = carried(frames, family.points_m[frames.anchor[0]], boxes.centre[0], p)
         for j in range(len(family.points_m)):
             form, up, down = expansion(family, frames, boxes, np.array([j]))
             turned = basis.T @ rotation.T @ link_matrix(family.points_m[j] - p) @ rotation @ basis
@@ -82,7 +64,7 @@ def test_expansions_enclose_the_forms(
 
 @given(seed=seeds)
 def test_the_form_at_the_centre_is_exact(
-    seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable
+    seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable, one_box: Callable
 ) -> None:
     """Intervals of the value are narrow and hold the form in the basis; an anchor has its null there."""
     rng = np.random.default_rng(seed)
@@ -100,7 +82,9 @@ def test_the_form_at_the_centre_is_exact(
 
 
 @given(seed=seeds)
-def test_turning_rates_are_derivatives(seed: int, random_family: Callable, make_leaves: Callable) -> None:
+def test_turning_rates_are_derivatives(
+    seed: int, random_family: Callable, make_leaves: Callable, carried: Callable, one_box: Callable
+) -> None:
     """The rate of a turned constant form agrees with differences of the frame that is carried along."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
@@ -110,6 +94,9 @@ def test_turning_rates_are_derivatives(seed: int, random_family: Callable, make_
     centre, step, basis = boxes.centre[0], 1e-4, frames.basis.middle()[:, :, 0]
     slopes = constant(frames, Interval(q[ROW, COLUMN][:, None])).slopes
     for e in range(3):
-        ends = [carried(family, frames, centre, centre + s * step * np.eye(3)[e]) for s in (-1.0, 1.0)]
+        ends = [
+            carried(frames, family.points_m[frames.anchor[0]], centre, centre + s * step * np.eye(3)[e])
+            for s in (-1.0, 1.0)
+        ]
         change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)
         assert full(slopes[:, e]) == pytest.approx(basis.T @ change @ basis, abs=1e-7)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.forms import COLUMN, ROW, matrices
-from nullpose.certificate.frames import Frames, expansion, frames_of
+from nullpose.certificate.frames import expansion, frames_of
 from nullpose.certificate.free_test import (
     free_holds,
     sharper,
@@ -34,26 +34,6 @@ def six_of(matrix: np.ndarray, slack: float = 0.0) -> Interval:
     """Return a symmetric matrix as the form of one box."""
     six = matrix[ROW, COLUMN][:, None]
     return Interval(six - slack, six + slack)
-
-
-def one_box(rng: np.random.Generator) -> Boxes:
-    """Return a box above the field."""
-    return Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=rng.uniform([-30.0, -30.0, 9.0], [80.0, 80.0, 30.0], (1, 3)),
-        half=rng.uniform(0.05, 1.5, (1, 3)),
-    )
-
-
-def carried(frames: Frames, anchor: np.ndarray, centre: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Return the rotation that carries the world frame at the centre along a straight line to p."""
-    if not frames.turning[0]:
-        return np.eye(3)
-    d, e = anchor - centre, anchor - p
-    d, e = d / np.linalg.norm(d), e / np.linalg.norm(e)
-    axis = np.cross(d, e)
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + cross + cross @ cross / (1.0 + d @ e)
 
 
 @given(seed=seeds)
@@ -149,7 +129,12 @@ def axes_within(rng: np.random.Generator, band: tuple[float, float], count: int)
 @pytest.mark.parametrize("turning", [False, True])
 @given(seed=seeds)
 def test_constant_forms_are_enclosed(
-    turning: bool, seed: int, random_family: Callable, make_leaves: Callable
+    turning: bool,
+    seed: int,
+    random_family: Callable,
+    make_leaves: Callable,
+    carried: Callable,
+    one_box: Callable,
 ) -> None:
     """Sides of cells and ends of bands are not negative inside, and turned they keep to the expansion."""
     rng = np.random.default_rng(seed)
@@ -185,7 +170,12 @@ def test_constant_forms_are_enclosed(
 
 @pytest.mark.parametrize("turning", [False, True])
 def test_the_remainder_near_a_null_is_a_bound(
-    turning: bool, random_family: Callable, make_leaves: Callable, link_matrix: Callable
+    turning: bool,
+    random_family: Callable,
+    make_leaves: Callable,
+    link_matrix: Callable,
+    carried: Callable,
+    one_box: Callable,
 ) -> None:
     """Along any axis a link is at least what the smaller remainder leaves of its expansion."""
     rng = np.random.default_rng(7)
@@ -283,7 +273,7 @@ def test_no_pose_of_an_excluded_box_reaches_the_level(
 
 
 def test_multipliers_of_a_band_count(
-    random_family: Callable, make_leaves: Callable, dense_ratios: Callable
+    random_family: Callable, make_leaves: Callable, dense_ratios: Callable, one_box: Callable
 ) -> None:
     """At a level that some axis reaches and none of the band does, a multiplier of the band excludes."""
     rng = np.random.default_rng(11)

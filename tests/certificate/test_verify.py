@@ -112,7 +112,7 @@ def test_balls_count_for_given_axes_too(paper: Callable, certified: Callable) ->
     accepted(certificate)
 
 
-ROOMS = [
+AIRSPACES = [
     {"x_m": (-50.0, 60.0), "y_m": (-20.0, 30.0)},
     {"x_m": (20.0, 60.0), "y_m": (30.0, 90.0), "altitude_m": (12.0, 20.0)},
     {"altitude_m": (8.0, 8.0)},
@@ -122,13 +122,18 @@ ROOMS = [
 ]
 
 
-# in the last room maximum gain has no axis in line with both nodes, and no proof closes there
+# in the last airspace maximum gain has no axis in line with both nodes, and no proof closes there
 @pytest.mark.parametrize(
     ("scheme", "airspace"),
-    [(scheme, room) for scheme in SCHEMES for room in ROOMS if (scheme, room) != ("maximum-gain", ROOMS[-1])],
+    [
+        (scheme, one)
+        for scheme in SCHEMES
+        for one in AIRSPACES
+        if (scheme, one) != ("maximum-gain", AIRSPACES[-1])
+    ],
 )
-def test_every_room_is_proved(scheme: str, airspace: dict, paper: Callable, certified: Callable) -> None:
-    """Bounded rooms, planes, lines, a single position, and room below the ground."""
+def test_every_airspace_is_proved(scheme: str, airspace: dict, paper: Callable, certified: Callable) -> None:
+    """Bounded airspaces, planes, lines, a single position, and one below the ground."""
     accepted(certified(paper(**airspace), scheme, gap=1e-2))
 
 

@@ -18,7 +18,7 @@ from nullpose.scenario import Airspace
 
 seeds = st.integers(0, 2**32 - 1)
 
-ROOM = {"altitude_m": (8.0, 30.0)}
+ALTITUDES = {"altitude_m": (8.0, 30.0)}
 
 
 def random_airspace(rng: np.random.Generator) -> Airspace:
@@ -36,7 +36,8 @@ def random_airspace(rng: np.random.Generator) -> Airspace:
             {"x_m": (-5.0, float(rng.uniform(0.0, 9.0))), "y_m": (4.0, 24.0), "altitude_m": (9.0, 12.0)},
         ]
         try:
-            return Airspace(geofence_m=(np.round(fence) if whole else fence).tolist(), no_fly=zones, **ROOM)
+            geofence = (np.round(fence) if whole else fence).tolist()
+            return Airspace(geofence_m=geofence, no_fly=zones, **ALTITUDES)
         except ScenarioError:  # edges that cross, vertices that meet
             continue
 
@@ -116,7 +117,7 @@ def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
             {"centre_m": (30.0, 0.0), "radius_m": 5.0},
         ],
         geofence_m=[(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)],
-        **ROOM,
+        **ALTITUDES,
     )
     family = family_of(airspace, paper)
     inside = [
@@ -146,7 +147,7 @@ def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
 
 def test_balls_and_zones_are_counted_on(paper: Callable, make_leaves: Callable) -> None:
     """Leaves name zones by numbers that follow the balls', and both are looked at."""
-    airspace = Airspace(no_fly=[{"x_m": (0.0, 30.0), "y_m": (0.0, 30.0)}], keep_out_m=12.0, **ROOM)
+    airspace = Airspace(no_fly=[{"x_m": (0.0, 30.0), "y_m": (0.0, 30.0)}], keep_out_m=12.0, **ALTITUDES)
     family = family_of(airspace, paper)
     balls = len(family.keep_out_points_m)
     assert balls == 3
@@ -164,7 +165,7 @@ def test_constraints_are_of_the_walls(side: int, paper: Callable) -> None:
     """At a wall the one constraint is how far a position is outside, to scale; above and below are added."""
     airspace = Airspace(
         no_fly=[{"x_m": (0.0, 10.0), "y_m": (0.0, 10.0), "altitude_m": (9.0, 20.0)}],
-        **ROOM,
+        **ALTITUDES,
     )
     family = family_of(airspace, paper)
     centre = np.array([[10.0, 5.0, 20.0]]) if side else np.array([[5.0, 0.0, 9.0]])

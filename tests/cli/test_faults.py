@@ -258,7 +258,7 @@ def test_exit_codes(
     run: Run, good: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, words: str
 ) -> None:
     """A solve without an answer and an interrupt end with a line and a code of their own."""
-    monkeypatch.setattr(nullpose.cli.check, "tell", _raising(error))
+    monkeypatch.setattr(nullpose.cli.check, "show", _raising(error))
     result = run("check", good)
     assert (result.exit_code, result.stderr) == (code, words)
 
@@ -274,14 +274,14 @@ def test_interrupt_that_comes_out_as_another_error(
         except KeyboardInterrupt:
             raise RuntimeError("half compiled") from None
 
-    monkeypatch.setattr(nullpose.cli.check, "tell", show)
+    monkeypatch.setattr(nullpose.cli.check, "show", show)
     result = run("check", good)
     assert (result.exit_code, result.stderr) == (INTERRUPTED, "interrupted\n")
 
 
 def test_internal_fault_asks_for_a_report(run: Run, good: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An error that nobody foresaw keeps its traceback, and says whose fault it is."""
-    monkeypatch.setattr(nullpose.cli.check, "tell", _raising(RuntimeError("unforeseen")))
+    monkeypatch.setattr(nullpose.cli.check, "show", _raising(RuntimeError("unforeseen")))
     result = run("check", good)
     assert result.exit_code == INTERNAL
     assert "report it" in result.exception.__notes__[0]

@@ -23,7 +23,7 @@ def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
     for words in (
         "Array of 4, digital: smallest SINR 7.21",
         "certified",
-        "level, yaw",
+        "roll 0.000 deg, pitch 0.000 deg, yaw ",
         "4 upright dipoles, linear",
     ):
         assert words in result.stdout
@@ -99,4 +99,4 @@ def test_a_margin_of_an_array(run: Run, array: str) -> None:
     result = run("solve", array, "--fast", "--set", "nodes.S1.min_sinr_db=3")
     assert result.exit_code == 0
     assert "smallest margin" in result.stdout
-    assert "the requirement is met; node S1" in result.stdout
+    assert "requirement is met; node S1: 5.79 dB above" in result.stdout

@@ -1,5 +1,6 @@
 """Outputs of `solve` and its kin: tried before the solve, never in the place of another file."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -16,11 +17,14 @@ from nullpose.study import SweepPlan
 Run = Callable[..., Result]
 
 LIMITED = """
-import resource, signal, sys
-from nullpose.cli.app import main
+import json, resource, signal, sys
+from typer.testing import CliRunner
+from nullpose.cli.app import app
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
-main()
+for words in json.loads(sys.argv[1]):
+    done = CliRunner().invoke(app, words)
+    print(done.exit_code, done.stderr, end="")
 """
 
 
@@ -99,17 +103,18 @@ def test_other_verbs_try_theirs_too(run: Run, scene: Path) -> None:
 
 def test_a_full_disk_leaves_what_was_there(scene: Path, tmp_path: Path) -> None:
     """Each output that does not fit is a message and exit code 2; the older file stays, and no other."""
-    for option, name in (("--certificate", "p.json"), ("--geojson", "p.geojson"), ("--figure", "p.png")):
-        (tmp_path / name).write_text("old", encoding="utf-8")
-        before = sorted(tmp_path.iterdir())
-        command = [sys.executable, "-c", LIMITED, "solve", scene, "--gap", "0.1", option, tmp_path / name]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert (done.returncode, done.stderr) == (
-            2,
-            f"error: cannot write {tmp_path / name}: File too large\n",
-        )
-        assert (tmp_path / name).read_text(encoding="utf-8") == "old"
-        assert sorted(tmp_path.iterdir()) == before
+    outputs = {"--certificate": "p.json", "--geojson": "p.geojson", "--figure": "p.png"}
+    paths = {option: tmp_path / name for option, name in outputs.items()}
+    for path in paths.values():
+        path.write_text("old", encoding="utf-8")
+    before = sorted(tmp_path.iterdir())
+    runs = [["solve", str(scene), "--gap", "0.1", option, str(path)] for option, path in paths.items()]
+    command = [sys.executable, "-c", LIMITED, json.dumps(runs)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    told = [f"2 error: cannot write {path}: File too large" for path in paths.values()]
+    assert done.stdout.splitlines() == told
+    assert {path.read_text(encoding="utf-8") for path in paths.values()} == {"old"}
+    assert sorted(tmp_path.iterdir()) == before
 
 
 def test_nodes_from_elsewhere_need_an_option(run: Run, scene: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nullpose.family.airspace import FENCE, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, Zones, airspace_zones
+from nullpose.family.airspace import FENCE, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, airspace_zones
 from nullpose.family.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.solve.kernels.zones import in_zone
@@ -49,26 +49,26 @@ def random_airspace(seed: int, *, zones: int, fenced: bool) -> Airspace:
     )
 
 
-def outside_pieces(zones: Zones, positions: np.ndarray) -> np.ndarray:
+def outside_pieces(zones: dict[str, np.ndarray], positions: np.ndarray) -> np.ndarray:
     """Returns by how much positions, (n, 3), are outside of the piece that they are least outside of [m]."""
     least = np.full(len(positions), np.inf)
-    for start, end in zip(zones.piece_start[:-1], zones.piece_start[1:], strict=True):
+    for start, end in zip(zones["piece_start"][:-1], zones["piece_start"][1:], strict=True):
         sides = [
             positions @ side[1:4] - side[4]
             if side[0] == 0.0
             else np.linalg.norm(positions[:, :2] - side[1:3], axis=1) - side[4]
-            for side in zones.piece_sides[start:end]
+            for side in zones["piece_sides"][start:end]
         ]
         least = np.minimum(least, np.max(sides, axis=0))
     return least
 
 
-def in_zones(zones: Zones, positions: np.ndarray) -> np.ndarray:
+def in_zones(zones: dict[str, np.ndarray], positions: np.ndarray) -> np.ndarray:
     """Returns which positions a zone forbids, by the kernel that the branch and bound asks."""
     none, no_points = np.zeros(3), np.zeros((0, 3))
-    ours = {name: getattr(zones, name) for name in zones.__slots__}
+    ours = zones
     domain = Domain(low_m=none, high_m=none, keep_out_points_m=no_points, keep_out_m=1.0, **ours)
-    count = len(zones.zone_kind)
+    count = len(zones["zone_kind"])
     return np.array([any(in_zone(domain, z, p) for z in range(count)) for p in positions])
 
 
@@ -104,24 +104,24 @@ def test_kinds_and_edges() -> None:
     )
     zones = airspace_zones(airspace)
     np.testing.assert_array_equal(
-        zones.zone_kind, [FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, FENCE]
+        zones["zone_kind"], [FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, FENCE]
     )
-    np.testing.assert_array_equal(zones.zone_start, [0, 4, 5, 8, 12])
-    np.testing.assert_array_equal(zones.zone_edges[4], [20.0, 21.0, 4.0, 0.0])
-    np.testing.assert_array_equal(zones.zone_range_m[0], [-np.inf, 12.0])
-    assert np.all(np.isinf(zones.zone_range_m[1:]))
-    edges = zones.zone_edges[5:8]
+    np.testing.assert_array_equal(zones["zone_start"], [0, 4, 5, 8, 12])
+    np.testing.assert_array_equal(zones["zone_edges"][4], [20.0, 21.0, 4.0, 0.0])
+    np.testing.assert_array_equal(zones["zone_range_m"][0], [-np.inf, 12.0])
+    assert np.all(np.isinf(zones["zone_range_m"][1:]))
+    edges = zones["zone_edges"][5:8]
     np.testing.assert_array_equal(edges[:, 2:], np.roll(edges[:, :2], -1, axis=0))
     doubled = np.sum(edges[:, 0] * edges[:, 3] - edges[:, 2] * edges[:, 1])
     assert doubled == 81.0  # twice the area, counter-clockwise
     # the box has a ceiling of its own (its floor is that of all), and the fence one piece for each side
-    np.testing.assert_array_equal(np.diff(zones.piece_start), [5, 1, 3, 1, 1, 1, 1])
+    np.testing.assert_array_equal(np.diff(zones["piece_start"]), [5, 1, 3, 1, 1, 1, 1])
 
 
 def test_planes_have_unit_normals() -> None:
     """Slacks of planes are metres."""
     zones = airspace_zones(random_airspace(11, zones=3, fenced=True))
-    planes = zones.piece_sides[zones.piece_sides[:, 0] == 0.0]
+    planes = zones["piece_sides"][zones["piece_sides"][:, 0] == 0.0]
     assert len(planes) > 0
     np.testing.assert_allclose(np.linalg.norm(planes[:, 1:4], axis=1), 1.0, atol=1e-15)
 
@@ -134,12 +134,12 @@ def test_zones_beyond_the_altitudes_are_left_out(altitude_m: tuple | None, kept:
     """A zone that only touches the lowest or highest altitude, whose border is allowed, takes no part."""
     zone = {"centre_m": (0.0, 0.0), "radius_m": 5.0, "altitude_m": altitude_m}
     zones = airspace_zones(Airspace(altitude_m=(8.0, 30.0), no_fly=(zone,)))
-    assert len(zones.zone_kind) == len(zones.piece_start) - 1 == kept
+    assert len(zones["zone_kind"]) == len(zones["piece_start"]) - 1 == kept
 
 
 def test_without_zones_there_are_none() -> None:
     """An airspace with neither fence nor zones has empty arrays of the right shapes."""
     zones = airspace_zones(Airspace(altitude_m=(8.0, 30.0)))
-    shapes = [getattr(zones, name).shape for name in zones.__slots__]
+    shapes = [array.shape for array in zones.values()]
     assert shapes == [(1,), (0, 5), (0,), (1,), (0, 4), (0, 2)]
-    assert math.prod(zones.piece_start) == math.prod(zones.zone_start) == 0
+    assert math.prod(zones["piece_start"]) == math.prod(zones["zone_start"]) == 0

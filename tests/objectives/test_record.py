@@ -36,13 +36,13 @@ def test_smallest_ratio_is_the_value_of_the_physics(name: str, seed: int) -> Non
     scenario = _scenario(name, rng)
     ratios = RECORDS[name].ratios(scenario)
     pose = Pose(rng.uniform([-90.0, -90.0, 20.0], [90.0, 90.0, 50.0]), *rng.uniform(-1.0, 1.0, 3))
-    away = ratios["points_m"] - pose.position_m
+    away = ratios.points_m - pose.position_m
     squared = np.sum(away**2, axis=1)
     link = 1.0 / squared - (away @ pose.antenna_axis) ** 2 / squared**2
-    leaks = ratios["denominator_weight"] * link[ratios["denominator_point"]]
-    below = ratios["denominator_isotropic"] + np.add.reduceat(leaks, ratios["denominator_start"][:-1])
-    above = ratios["numerator_isotropic"] + ratios["numerator_weight"] * link[ratios["numerator_point"]]
-    smallest = float(np.min(above / below[ratios["denominator_of"]]))
+    leaks = ratios.denominator_weight * link[ratios.denominator_point]
+    below = ratios.denominator_isotropic + np.add.reduceat(leaks, ratios.denominator_start[:-1])
+    above = ratios.numerator_isotropic + ratios.numerator_weight * link[ratios.numerator_point]
+    smallest = float(np.min(above / below[ratios.denominator_of]))
     quantity = Quantity.of(scenario)
     value = float(objective_value(scenario, pose.position_m, pose.antenna_axis))
     assert quantity.of_ratio(smallest) == pytest.approx(value, rel=1e-9, abs=1e-12)

@@ -110,5 +110,5 @@ def test_no_way_out_is_said(paper: Callable) -> None:
     task = _task(paper(1.0, x_m=(17.0, 17.0), y_m=(15.0, 15.0), altitude_m=(5.5, 6.0)))
     position_m = np.array([17.0, 15.0, 5.7])
     np.testing.assert_array_equal(task.repaired(position_m), position_m)
-    covered = replace(task.family, keep_out_points_m=np.array([[17.0, 15.0, 4.0]]), keep_out_m=2.5)
+    covered = task.family.changed(keep_out_points_m=np.array([[17.0, 15.0, 4.0]]), keep_out_m=2.5)
     assert replace(task, family=covered).repaired(position_m) is None

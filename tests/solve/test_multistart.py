@@ -1,6 +1,5 @@
 """The multistart search of a family under an axis field."""
 
-import dataclasses
 import math
 from collections.abc import Callable
 
@@ -169,6 +168,6 @@ def test_a_sliver_is_searched_to_its_best(scene: Callable) -> None:
 def test_no_position_is_said(scene: Callable) -> None:
     """Where nothing is allowed after all, that is said, not that no node is received."""
     family = build_family(scene([(0, 0, 0), (10, 40, 1)], x_m=(-1.0, 1.0), y_m=(-1.0, 1.0)))
-    closed = dataclasses.replace(family, keep_out_points_m=np.array([[0.0, 0.0, 19.0]]), keep_out_m=50.0)
+    closed = family.changed(keep_out_points_m=np.array([[0.0, 0.0, 19.0]]), keep_out_m=50.0)
     with pytest.raises(SolveError, match="no position was found in what the airspace leaves"):
         multistart(closed, AxisField.free(), seed=0)

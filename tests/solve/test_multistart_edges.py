@@ -11,7 +11,7 @@ from nullpose.physics import sinr
 from nullpose.scenario import Scenario
 from nullpose.solve import Scheme, solve
 from nullpose.solve.kernels.axis import best_axis, best_axis_of_forms
-from nullpose.solve.kernels.dual import top_eigenvector
+from nullpose.solve.kernels.symmetric import top_eigenvector
 
 UP = np.array([0.0, 0.0, 1.0])
 BOXED = {

@@ -23,7 +23,6 @@ def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
     compile_search()
     compile_proof()
     before = [len(kernel.signatures) for kernel in KERNELS]
-    assert before == [1] * len(KERNELS)
     family = build_family(paper(1.0))
     for field in (AxisField.free(), AxisField.vertical(), AxisField.within(0.0, 0.1)):
         solve_and_prove(family, [field], SolveOptions(gap=1e-2))

@@ -1,12 +1,12 @@
 """The cases on offer."""
 
 from nullpose.scenario import Scenario
-from nullpose.studio.case import OPTIMUM, all_cases, case_named, cases_of
+from nullpose.studio.case import CASES, OPTIMUM, case_named, cases_of
 
 
 def test_labels_are_unique() -> None:
     """Every case is found by its label again."""
-    assert [case_named(case.label) for case in all_cases()] == list(all_cases())
+    assert [case_named(case.label) for case in CASES] == list(CASES)
 
 
 def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
-from nullpose.studio.colours import KIND_COLOURS, css, scale_colour, scale_colours, scale_range
+from nullpose.studio.colours import KIND_COLOURS, css, scale_colours, scale_range
 
 
 def test_brightness_grows_along_the_scale() -> None:
@@ -34,11 +34,3 @@ def test_nothing_finite_has_a_scale_too() -> None:
 def test_kinds_differ_in_colour() -> None:
     """Nodes, jammers and eavesdroppers have three colours."""
     assert len({css(colour) for colour in KIND_COLOURS.values()}) == 3
-
-
-def test_one_colour_is_that_of_many() -> None:
-    """As plain whole numbers."""
-    for value in (-1.0, 0.0, 0.4, 1.0, 3.0):
-        colour = scale_colour(value, 0.0, 1.0)
-        assert colour == tuple(scale_colours([value], 0.0, 1.0)[0])
-        assert all(type(part) is int for part in colour)

@@ -25,7 +25,7 @@ def test_pose_and_figure_are_of_the_present_scene(paper: Scenario) -> None:
     answer = session.answer(session.view.case)
     assert answer is not None
     solved = json.loads(pose_json(session))
-    assert solved["pose"]["position_m"] == list(answer.pose.position_m)
+    assert solved["pose"]["position_m"] == list(answer.result.pose.position_m)
     assert solved["status"] == "certified"
     assert figure_png(session).startswith(b"\x89PNG")
     assert session.close(120.0)

@@ -20,7 +20,7 @@ def test_the_best_value_is_the_best_axis(paper: Scenario) -> None:
     """At points all over the map the value is that of the solver's best axis there."""
     answer, maps = _map(paper, case_named("Optimum pose"))
     best = maps.best
-    assert best.altitude_m == pytest.approx(answer.pose.position_m[2])
+    assert best.altitude_m == pytest.approx(answer.result.pose.position_m[2])
     assert np.all(np.isfinite(best.values))
     for row, column in ((0, 0), (5, 20), (20, 10), (30, 24), (44, 3)):
         place = np.array([best.east_m[column], best.north_m[row], best.altitude_m])
@@ -68,7 +68,7 @@ def test_the_footprint_is_dark_where_the_null_falls(paper: Scenario) -> None:
     """On the ground the pattern is weakest near where the null's line meets it."""
     loud = paper.model_copy(update={"jammers": (paper.jammers[0].model_copy(update={"power_w": 100.0}),)})
     answer, maps = _map(loud, case_named("Zero interference"))
-    axis, here = answer.pose.antenna_axis, answer.pose.position_m
+    axis, here = answer.result.pose.antenna_axis, answer.result.pose.position_m
     hit = here - axis * here[2] / axis[2]
     east, north = np.meshgrid(maps.footprint.east_m, maps.footprint.north_m)
     near = np.hypot(east - hit[0], north - hit[1])

@@ -4,7 +4,7 @@ from hypothesis import given, seed
 from hypothesis import strategies as st
 
 from nullpose.scenario import Scenario
-from nullpose.studio.case import all_cases
+from nullpose.studio.case import CASES
 from nullpose.studio.history import History
 from nullpose.studio.view import View
 
@@ -44,7 +44,7 @@ def test_redo_takes_back_undo(choices: list[int], back: int) -> None:
     paper = Scenario.from_dict(_PAPER)
     history = History(View(scenario=paper))
     for choice in choices:
-        history = history.changed(history.present.with_case(all_cases()[choice]))
+        history = history.changed(history.present.with_case(CASES[choice]))
     there = history
     steps = min(back, len(history.past))
     for _ in range(steps):

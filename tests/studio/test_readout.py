@@ -7,10 +7,11 @@ import pytest
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.readout import about_html, failure_html, readout_html
-from nullpose.studio.session import Session, scenario_from_text
-from nullpose.studio.steps import quick_answer
+from nullpose.studio.session import Session
+from nullpose.studio.steps import quick_answers
 
 
 class _Text(HTMLParser):
@@ -34,7 +35,7 @@ class _Text(HTMLParser):
 @pytest.fixture
 def idle(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> Session:
     """A session whose worker never answers."""
-    monkeypatch.setattr("nullpose.studio.worker.Worker._serve", lambda self, request: None)
+    monkeypatch.setattr("nullpose.studio.worker.Worker._serve", lambda self, version, view: None)
     session = Session(paper)
     session.start()
     return session
@@ -51,13 +52,16 @@ def test_without_an_answer_there_are_no_numbers(idle: Session) -> None:
 def test_two_cases_differ_by_what_is_known_of_both(idle: Session) -> None:
     """A robust case counts with what it guarantees, once that is known, and it is said that it does."""
     robust = case_named("Robust pose")
-    idle.compare(robust)
-    first = quick_answer(idle.version, idle.view, OPTIMUM)
-    second = replace(first, case=robust, value=0.5 * first.value)
+    idle.change(lambda view: view.with_compared(robust))
+    (first,) = quick_answers(idle.version, idle.view, OPTIMUM)
+    objective = first.result.objective
+    half = replace(objective, value=0.5 * objective.value)
+    second = replace(first, case=robust, result=replace(first.result, objective=half))
     idle._take(first)
     idle._take(second)
     assert 'data-np="difference"' not in readout_html(idle)
-    idle._take(replace(second, bound=0.6 * first.value))
+    known = replace(half, upper_bound=0.6 * objective.value)
+    idle._take(replace(second, result=replace(first.result, objective=known)))
     assert "A over B: 3.01 dB (B guaranteed, A without errors)" in _Text(readout_html(idle)).text
     assert idle.close()
 

@@ -3,10 +3,9 @@
 import pytest
 
 from nullpose.scenario import Scenario
-from nullpose.solve import solve
-from nullpose.studio.answer import Stage
+from nullpose.solve import Status, solve
 from nullpose.studio.case import cases_of
-from nullpose.studio.steps import power_curves, quick_answer
+from nullpose.studio.steps import power_curves, quick_answers
 from nullpose.studio.view import View
 
 
@@ -15,12 +14,12 @@ def test_a_quick_answer_is_the_best_pose(paper: Scenario, power_db: float) -> No
     """Of every case, though nothing of it is said to be proved."""
     view = View(scenario=paper).with_power_db(power_db)
     for case in cases_of(view.scenario):
-        answer = quick_answer(3, view, case)
+        (answer,) = quick_answers(3, view, case)
         assert answer.version == 3
-        assert answer.stage is Stage.BEST_SO_FAR
-        assert answer.bound is answer.gap is None
+        assert answer.result.status is Status.BEST_FOUND
+        assert answer.result.objective.upper_bound is None
         best = solve(case.on(view.scenario), case.scheme)
-        assert answer.value == pytest.approx(best.objective.value, rel=1e-6)
+        assert answer.result.objective.value == pytest.approx(best.objective.value, rel=1e-6)
 
 
 class Enough(BaseException):

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from types import UnionType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -197,18 +198,15 @@ def _refusal(value: Any, path: str, words: str) -> CertificateError:
     return CertificateError(f"{path}: {what}; must be {words}")
 
 
-def _of(*kinds: type, words: str) -> Reader:
-    """Return the reader of values that are as they should be if they are of some kind."""
-
-    def read(value: Any, path: str) -> Any:
-        if not isinstance(value, kinds):
-            raise _refusal(value, path, words)
-        return value
-
-    return read
+def _plain(value: Any, path: str, kinds: type | UnionType, words: str) -> Any:
+    """Return a value that is as it should be if it is of some kind."""
+    if not isinstance(value, kinds):
+        raise _refusal(value, path, words)
+    return value
 
 
-_table, _list = _of(dict, words="a table"), _of(list, words="a list")
+_table = partial(_plain, kinds=dict, words="a table")
+_list = partial(_plain, kinds=list, words="a list")
 
 
 def _numbers(value: Any, path: str, shape: tuple[int, ...] = (), kind: type = float) -> Any:
@@ -261,7 +259,7 @@ def _read(value: Any, path: str, layout: Mapping[str, Reader]) -> dict[str, Any]
     return {key: read(value.get(key, _MISSING), place + key) for key, read in layout.items()}
 
 
-_text, _any = _of(str, words="a text"), _of(object, words="anything")
+_text = partial(_plain, kinds=str, words="a text")
 _POSE: dict[str, Reader] = {
     "position_m": partial(_numbers, shape=(3,)),
     "roll_rad": _numbers,
@@ -273,12 +271,12 @@ _LEAVES: dict[str, Reader] = {
 } | {"mixes": _list_of(_mix)}
 _TREE: dict[str, Reader] = {"axis": _text, "root_m": partial(_numbers, shape=(2, 3)), "leaves": _leaves}
 _LAYOUT: dict[str, Reader] = {
-    "format": _any,
-    "version": _any,
+    "format": _text,
+    "version": partial(_numbers, kind=int),
     "scenario": _table,
     "scenario_sha256": _text,
     "scheme": _text,
-    "null_jammer": _of(str, type(None), words="a name or null"),
+    "null_jammer": partial(_plain, kinds=str | None, words="a name or null"),
     "value": _numbers,
     "upper_bound": _numbers,
     "pose": partial(_read, layout=_POSE),

@@ -108,14 +108,13 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
 
     for tree in certificate.trees:
         if reason:
-            return Verdict(proved=False, message=f"rejected: {reason}", leaves=done)
+            break
         assert fields is not None
         with np.errstate(all="ignore"):  # infinities and undefined numbers fail their comparisons
             reason = _tree_fault(family, fields[tree.axis], tree, certificate.upper_bound, checked)
         done += len(tree.leaves)
-    if reason:
-        return Verdict(proved=False, message=f"rejected: {reason}", leaves=done)
-    return Verdict(proved=True, message=sentence(certificate, total), leaves=total)
+    message = f"rejected: {reason}" if reason else sentence(certificate, total)
+    return Verdict(proved=not reason, message=message, leaves=done)
 
 
 def _tree_fault(
@@ -124,15 +123,10 @@ def _tree_fault(
     fault = (
         _range_fault(family, field, tree, upper_bound)
         or root_holds(family, tree.root_m, upper_bound)
-        or _hole(tree.leaves)
+        or uncovered(tree.leaves)
         or _leaf_fault(family, field, tree, checked)
     )
     return f"tree {tree.axis!r}: {fault}" if fault else ""
-
-
-def _hole(leaves: Leaves) -> str:
-    missing = uncovered(leaves)
-    return f"the leaves do not cover the root: {missing}" if missing else ""
 
 
 def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[[int], None]) -> str:

@@ -17,9 +17,9 @@ from nullpose.cli.options import (
     Overrides,
     ScenarioFile,
     Seed,
-    SolveOptions,
     TimeLimit,
     read_scenario,
+    solve_options,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
 from nullpose.cli.progress import Ticker
@@ -55,9 +55,7 @@ def compare(
     if figure is not None and not airframes:
         raise UsageError("--figure: given without --airframes, which it draws; add it, or leave out --figure")
     scenario = read_scenario(file, overrides, allow_outside)
-    options = SolveOptions(
-        gap=gap, time_limit_s=time_limit, node_limit=node_limit, certify=not fast, seed=seed
-    )
+    options = solve_options(gap, time_limit, node_limit, fast, seed)
     if airframes:
         prepare_outputs(file, figure=figure)
         _compare_airframes(scenario, options, figure, json_output)
@@ -65,19 +63,19 @@ def compare(
     from nullpose.report.comparison import compare_all, comparison_view
 
     with compiling_announced(), Ticker("solving") as ticker:
-        comparison = compare_all(scenario, on_progress=ticker, **options.keywords())
+        comparison = compare_all(scenario, on_progress=ticker, **options)
     tell(comparison, comparison_view, json_output)
 
 
 def _compare_airframes(
-    scenario: Scenario, options: SolveOptions, figure: Path | None, json_output: bool
+    scenario: Scenario, options: dict[str, Any], figure: Path | None, json_output: bool
 ) -> None:
     """Print what was found of each vehicle, and draw it if that was asked for."""
     from nullpose.report.airframes import airframes_view, answer_lines
     from nullpose.study import compare_airframes
 
     with compiling_announced(), Ticker("comparing vehicles") as ticker:
-        vehicles = compare_airframes(scenario, on_progress=ticker, **options.keywords())
+        vehicles = compare_airframes(scenario, on_progress=ticker, **options)
     write_figure(figure, "draw_airframes", vehicles)
     more: dict[str, Any] = {"answer": answer_lines(vehicles)}
     if figure is not None:

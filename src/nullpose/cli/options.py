@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -29,11 +28,11 @@ __all__ = [
     "Robust",
     "ScenarioFile",
     "Seed",
-    "SolveOptions",
     "TimeLimit",
     "Verified",
     "read_scenario",
     "refuse",
+    "solve_options",
 ]
 
 
@@ -151,23 +150,25 @@ OutFolder = Annotated[
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class SolveOptions:
-    """How long and how far to search and prove, by the solver's names."""
+def solve_options(
+    gap: float | None, time_limit: float, node_limit: int, fast: bool, seed: int
+) -> dict[str, Any]:
+    """Return the options of a solve as the solver takes them.
 
-    gap: float | None
-    time_limit_s: float
-    node_limit: int
-    certify: bool
-    seed: int
-
-    def keywords(self, default_gap: float | None = None) -> dict[str, Any]:
-        """Return them as keyword arguments of the solver.
-
-        Args:
-            default_gap: the relative gap in place of none given.
-        """
-        return asdict(self) | {"gap": default_gap if self.gap is None else self.gap}
+    Args:
+        gap: relative gap asked for, or None.
+        time_limit: seconds after which a proof stops.
+        node_limit: boxes after which it stops.
+        fast: whether nothing is to be proved.
+        seed: of the searches.
+    """
+    return {
+        "gap": gap,
+        "time_limit_s": time_limit,
+        "node_limit": node_limit,
+        "certify": not fast,
+        "seed": seed,
+    }
 
 
 def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) -> Scenario:

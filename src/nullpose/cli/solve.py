@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -23,11 +23,11 @@ from nullpose.cli.options import (
     Robust,
     ScenarioFile,
     Seed,
-    SolveOptions,
     TimeLimit,
     Verified,
     read_scenario,
     refuse,
+    solve_options,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
 from nullpose.cli.progress import GapBar, Ticker
@@ -35,8 +35,7 @@ from nullpose.schemes import Scheme
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
-    from nullpose.solve import ArraySolution, Solution
-    from nullpose.solve.robust import RobustSolution
+    from nullpose.solve import Result
 
 __all__ = ["solve"]
 
@@ -70,9 +69,7 @@ def solve(
 
     scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
-    options = SolveOptions(
-        gap=gap, time_limit_s=time_limit, node_limit=node_limit, certify=not fast, seed=seed
-    )
+    options = solve_options(gap, time_limit, node_limit, fast, seed)
     of_one_dipole = {
         "scheme": scheme is not Scheme.OPTIMUM,
         "null_jammer": null_jammer,
@@ -102,9 +99,10 @@ def solve(
         tell(solution, solution_view, json_output, fault=fault)
 
 
-def _solve_robustly(scenario: Scenario, options: SolveOptions) -> RobustSolution:
+def _solve_robustly(scenario: Scenario, options: dict[str, Any]) -> Result:
     """Return the pose that guarantees most under the scenario's errors."""
     from nullpose.errors import UsageError
+    from nullpose.solve.options import SolveOptions
     from nullpose.solve.robust import ROBUST_GAP, solve_robust
 
     if not scenario.is_uncertain:
@@ -113,18 +111,18 @@ def _solve_robustly(scenario: Scenario, options: SolveOptions) -> RobustSolution
             "receiver.attitude_error_deg, receiver.position_error_m, or uncertainty_m of a jammer or "
             "an eavesdropper"
         )
-    limits = options.keywords(ROBUST_GAP)
-    with compiling_announced(), GapBar(limits["gap"]) as bar:
-        return solve_robust(scenario, on_progress=bar, **limits)
+    target = SolveOptions(**options).of(scenario, ROBUST_GAP).target
+    with compiling_announced(), GapBar(target) as bar:
+        return solve_robust(scenario, on_progress=bar, **options)
 
 
-def _solve_array(scenario: Scenario, combining: CombiningName, options: SolveOptions) -> ArraySolution:
+def _solve_array(scenario: Scenario, combining: CombiningName, options: dict[str, Any]) -> Result:
     """Return where a scenario's array reaches most."""
     from nullpose.solve import solve_array
 
     with compiling_announced():
         return solve_array(
-            scenario, combining.value, gap=options.gap, certify=options.certify, seed=options.seed
+            scenario, combining.value, gap=options["gap"], certify=options["certify"], seed=options["seed"]
         )
 
 
@@ -132,33 +130,34 @@ def _solve_dipole(
     scenario: Scenario,
     scheme: Scheme,
     null_jammer: str | None,
-    options: SolveOptions,
+    options: dict[str, Any],
     checked: bool,
     on_map: bool,
-) -> Solution:
+) -> Result:
     """Return where a scenario's dipole hears most, its proof checked if that is wanted.
 
     Raises:
         UsageError: before any work, there is no proof that could be checked, or no place on the map.
     """
     from nullpose.report.geojson import require_origin
-    from nullpose.solve import default_gap_of, require_certificate, verified
+    from nullpose.solve import require_certificate, verified
     from nullpose.solve import solve as solve_scenario
+    from nullpose.solve.options import SolveOptions
 
     if checked:
         require_certificate(scenario, scheme.value, null_jammer)
     if on_map:
         require_origin(scenario)
-    limits = options.keywords(default_gap_of(scenario))
-    with compiling_announced(), GapBar(limits["gap"]) as bar:
-        solution = solve_scenario(scenario, scheme.value, null_jammer=null_jammer, on_progress=bar, **limits)
+    target = SolveOptions(**options).of(scenario).target
+    with compiling_announced(), GapBar(target) as bar:
+        solution = solve_scenario(scenario, scheme.value, null_jammer=null_jammer, on_progress=bar, **options)
     if not checked:
         return solution
     with Ticker("checking leaves") as ticker:
         return verified(solution, ticker)
 
 
-def _write(solution: Solution, certificate: Path | None, geojson: Path | None) -> None:
+def _write(solution: Result, certificate: Path | None, geojson: Path | None) -> None:
     """Write the files that were asked for."""
     from nullpose.certificate import write_certificate
     from nullpose.report.geojson import write_geojson

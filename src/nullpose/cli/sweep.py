@@ -17,6 +17,7 @@ from nullpose.cli.options import (
     ScenarioFile,
     Seed,
     TimeLimit,
+    solve_options,
 )
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
@@ -72,11 +73,7 @@ def sweep(
         log=log,
         schemes=[name.value for name in scheme] if scheme else None,
         out=out,
-        gap=gap,
-        time_limit_s=time_limit,
-        node_limit=node_limit,
-        certify=not fast,
-        seed=seed,
+        **solve_options(gap, time_limit, node_limit, fast, seed),
     )
     outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg")}
     check_outputs(files_of(file), outputs)

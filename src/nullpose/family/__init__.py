@@ -2,6 +2,6 @@
 
 from nullpose.family.axis_field import AxisField
 from nullpose.family.build import build_family
-from nullpose.family.ratios import Family
+from nullpose.family.family import Family
 
 __all__ = ["AxisField", "Family", "build_family"]

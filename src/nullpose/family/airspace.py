@@ -2,37 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 
 from nullpose.family.convex import convex_parts, hull_and_pockets
-from nullpose.family.ratios import Family, FloatArray, IntArray
+from nullpose.family.family import Family
+from nullpose.objectives import FloatArray, IntArray
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import area_m2
 
-__all__ = ["Zones", "airspace_zones", "loosened"]
+__all__ = ["airspace_zones", "loosened"]
 
 _Zone: TypeAlias = tuple[int, FloatArray, float, float]  # kind, edges, lowest and highest altitude
 
 FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FENCE = 0, 1, 2
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Zones:
-    """The arrays of a family that say where in its box positions are forbidden (see ``Family``)."""
-
-    piece_start: IntArray
-    piece_sides: FloatArray
-    zone_kind: IntArray
-    zone_start: IntArray
-    zone_edges: FloatArray
-    zone_range_m: FloatArray
-
-
-def airspace_zones(airspace: Airspace) -> Zones:
-    """Return an airspace's no-fly zones and geofence, without those out of reach or without an inside.
+def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
+    """Return the fields of a domain for no-fly zones and fence, without those that change nothing.
 
     Args:
         airspace: box, zones and fence.
@@ -67,22 +55,20 @@ def loosened(family: Family, by_m: float) -> Family:
         else:
             edges = _edges(_inset(edges[:, :2], -by_m if kind == FENCE else by_m))
         zones.append((kind, edges, low + by_m, high - by_m))
-    arrays = _arrays(zones)
-    changed = {name: getattr(arrays, name) for name in arrays.__slots__}
-    return replace(family, keep_out_m=family.keep_out_m - by_m, **changed)
+    return family.changed(keep_out_m=family.keep_out_m - by_m, **_arrays(zones))
 
 
-def _arrays(zones: list[_Zone]) -> Zones:
+def _arrays(zones: list[_Zone]) -> dict[str, FloatArray | IntArray]:
     pieces = [piece for zone in zones for piece in _pieces(*zone)]
     edges = [edges for _, edges, _, _ in zones]
-    return Zones(
-        piece_start=_starts(pieces),
-        piece_sides=np.vstack([np.zeros((0, 5)), *pieces]),
-        zone_kind=np.array([zone[0] for zone in zones], dtype=np.int64),
-        zone_start=_starts(edges),
-        zone_edges=np.vstack([np.zeros((0, 4)), *edges]),
-        zone_range_m=np.reshape([zone[2:] for zone in zones], (-1, 2)).astype(float),
-    )
+    return {
+        "piece_start": _starts(pieces),
+        "piece_sides": np.vstack([np.zeros((0, 5)), *pieces]),
+        "zone_kind": np.array([zone[0] for zone in zones], dtype=np.int64),
+        "zone_start": _starts(edges),
+        "zone_edges": np.vstack([np.zeros((0, 4)), *edges]),
+        "zone_range_m": np.reshape([zone[2:] for zone in zones], (-1, 2)).astype(float),
+    }
 
 
 def _pieces(kind: int, edges: FloatArray, low: float, high: float) -> list[FloatArray]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.family.airspace import airspace_zones
-from nullpose.family.ratios import Family, FloatArray
+from nullpose.family.family import Family
+from nullpose.objectives import FloatArray
 from nullpose.scenario import Scenario
 
 __all__ = ["LOUDEST", "build_family", "domain_of"]
@@ -29,7 +30,7 @@ def build_family(scenario: Scenario) -> Family:
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
     ratios = scenario.objective_record.ratios(scenario)
-    family = Family(**ratios, **domain_of(scenario, ratios["points_m"]))
+    family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
     _refuse_the_loudest(scenario, family)
     return family
 
@@ -68,13 +69,12 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
     if len(outline):
         low_m[:2] = np.maximum(low_m[:2], outline.min(axis=0))
         high_m[:2] = np.minimum(high_m[:2], outline.max(axis=0))
-    zones = airspace_zones(airspace)
     return {
         "low_m": low_m,
         "high_m": high_m,
         "keep_out_points_m": reachable_points(points_m, low_m, high_m, airspace.keep_out_m),
         "keep_out_m": float(airspace.keep_out_m),
-        **{name: getattr(zones, name) for name in zones.__slots__},
+        **airspace_zones(airspace),
     }
 
 

@@ -7,7 +7,7 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.family.ratios import FloatArray
+from nullpose.objectives import FloatArray
 
 __all__ = ["convex_parts", "hull_and_pockets"]
 

@@ -1,46 +1,45 @@
-"""The arrays of a family, of its domain and of an axis field, by name, as the kernels take them."""
+"""The arrays of a family's domain and of an axis field, by name, as the kernels take them."""
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["ArrayProblem", "Axes", "Domain", "Ratios"]
+from nullpose.objectives import FloatArray, IntArray
 
-FloatArray: TypeAlias = NDArray[np.float64]
-IntArray: TypeAlias = NDArray[np.int64]
-
-
-class Ratios(NamedTuple):
-    """The ratios of a family; :class:`nullpose.family.ratios.Family` says what each array is."""
-
-    points_m: FloatArray
-    numerator_isotropic: FloatArray
-    numerator_weight: FloatArray
-    numerator_point: IntArray
-    denominator_of: IntArray
-    denominator_isotropic: FloatArray
-    denominator_start: IntArray
-    denominator_point: IntArray
-    denominator_weight: FloatArray
-    turn: FloatArray
+__all__ = ["ArrayProblem", "Axes", "Domain"]
 
 
 class Domain(NamedTuple):
-    """The positions of a family: box, keep-out balls, convex forbidden pieces, zones."""
+    """The positions of a family: box, keep-out balls, convex forbidden pieces, zones.
+
+    Args:
+        low_m: (3,) lowest position, minus infinity where unbounded.
+        high_m: (3,) highest position.
+        keep_out_points_m: (q, 3) centres of the balls that positions must stay out of and could reach.
+        keep_out_m: their radius.
+        piece_start: (c + 1,) bounds of each convex forbidden piece's sides. A position is outside a piece if
+            it is on the outer side of one of them.
+        piece_sides: (s, 5) sides: (0, a, b) with ``a.p >= b`` outside, a of unit length, or (1, x, y, 0, r)
+            outside the upright cylinder of radius r.
+        zone_kind: (z,) 0 a forbidden polygon, 1 a forbidden cylinder, 2 a polygon to stay in; the pieces are
+            these zones cut into convex parts.
+        zone_start: (z + 1,) bounds of each zone's edges.
+        zone_edges: (e, 4) an edge's ends (x1, y1, x2, y2), the polygons counter-clockwise; or (x, y, r, 0).
+        zone_range_m: (z, 2) lowest and highest altitude of each zone.
+    """
 
     low_m: FloatArray
     high_m: FloatArray
     keep_out_points_m: FloatArray
     keep_out_m: float
-    piece_start: IntArray
-    piece_sides: FloatArray
-    zone_kind: IntArray
-    zone_start: IntArray
-    zone_edges: FloatArray
-    zone_range_m: FloatArray
+    piece_start: IntArray = np.zeros(1, dtype=np.int64)
+    piece_sides: FloatArray = np.zeros((0, 5))
+    zone_kind: IntArray = np.zeros(0, dtype=np.int64)
+    zone_start: IntArray = np.zeros(1, dtype=np.int64)
+    zone_edges: FloatArray = np.zeros((0, 4))
+    zone_range_m: FloatArray = np.zeros((0, 2))
 
 
 class Axes(NamedTuple):

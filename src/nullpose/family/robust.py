@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from nullpose.family.build import build_family
-from nullpose.family.ratios import Family, FloatArray
+from nullpose.family.family import Family
+from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
@@ -76,8 +76,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
     points_m, rotations = (np.array(each) for each in zip(*copies.values(), strict=True))
-    return replace(
-        nominal,
+    return nominal.changed(
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],

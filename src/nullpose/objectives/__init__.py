@@ -8,10 +8,20 @@ from __future__ import annotations
 
 from nullpose.objectives.min_sinr import MIN_SINR
 from nullpose.objectives.quantity import LEAST_RATE_BPS_HZ, Quantity
-from nullpose.objectives.record import ObjectiveRecord, RatioArrays
+from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
+from nullpose.objectives.record import ObjectiveRecord
 from nullpose.objectives.secrecy_rate import SECRECY_RATE
 
-__all__ = ["LEAST_RATE_BPS_HZ", "RECORDS", "USUAL", "ObjectiveRecord", "Quantity", "RatioArrays"]
+__all__ = [
+    "LEAST_RATE_BPS_HZ",
+    "RECORDS",
+    "USUAL",
+    "FloatArray",
+    "IntArray",
+    "ObjectiveRecord",
+    "Quantity",
+    "Ratios",
+]
 
 RECORDS = {record.name: record for record in (MIN_SINR, SECRECY_RATE)}
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.record import ObjectiveRecord, RatioArrays
+from nullpose.objectives.ratios import Ratios
+from nullpose.objectives.record import ObjectiveRecord
 
 __all__ = ["MIN_SINR"]
 
@@ -13,7 +14,7 @@ _SINR = Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr")
 _MARGIN = Quantity("min_margin", "margin", "a margin", "margin", "dB", "SINR", "margin")
 
 
-def _ratios(scenario: Scenario) -> RatioArrays:
+def _ratios(scenario: Scenario) -> Ratios:
     """Return one ratio for each node, over a denominator that all share.
 
     ``(g0 P_k / (sigma^2 Gamma_k)) T(s_k - p)`` over ``I + sum_j (g0 J_j / sigma^2) T(m_j - p)``:
@@ -21,17 +22,17 @@ def _ratios(scenario: Scenario) -> RatioArrays:
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
     scale = scenario.receiver.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
-    return {
-        "points_m": np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)]),
-        "numerator_isotropic": np.zeros(n_nodes),
-        "numerator_weight": scale * scenario.node_powers_w / scenario.node_required_sinr,
-        "numerator_point": np.arange(n_nodes, dtype=np.int64),
-        "denominator_of": np.zeros(n_nodes, dtype=np.int64),
-        "denominator_isotropic": np.ones(1),
-        "denominator_start": np.array([0, n_jammers], dtype=np.int64),
-        "denominator_point": np.arange(n_nodes, n_nodes + n_jammers, dtype=np.int64),
-        "denominator_weight": scale * scenario.jammer_powers_w,
-    }
+    return Ratios(
+        points_m=np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)]),
+        numerator_isotropic=np.zeros(n_nodes),
+        numerator_weight=scale * scenario.node_powers_w / scenario.node_required_sinr,
+        numerator_point=np.arange(n_nodes, dtype=np.int64),
+        denominator_of=np.zeros(n_nodes, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.array([0, n_jammers], dtype=np.int64),
+        denominator_point=np.arange(n_nodes, n_nodes + n_jammers, dtype=np.int64),
+        denominator_weight=scale * scenario.jammer_powers_w,
+    )
 
 
 MIN_SINR = ObjectiveRecord(

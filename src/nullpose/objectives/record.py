@@ -4,31 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypedDict
-
-import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.objectives.quantity import Quantity, Scenario
+from nullpose.objectives.ratios import FloatArray, Ratios
 
-__all__ = ["ObjectiveRecord", "RatioArrays"]
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-
-class RatioArrays(TypedDict):
-    """The ratios of which the smallest is maximised; :class:`nullpose.family.Family` says what each is."""
-
-    points_m: FloatArray
-    numerator_isotropic: FloatArray
-    numerator_weight: FloatArray
-    numerator_point: IntArray
-    denominator_of: IntArray
-    denominator_isotropic: FloatArray
-    denominator_start: IntArray
-    denominator_point: IntArray
-    denominator_weight: FloatArray
+__all__ = ["ObjectiveRecord"]
 
 
 def _receiver_noise_w(scenario: Scenario) -> float:
@@ -57,7 +37,7 @@ class ObjectiveRecord:
     summary: str
     quantities: tuple[Quantity, ...]
     quantity: Callable[[Scenario], Quantity]
-    ratios: Callable[[Scenario], RatioArrays]
+    ratios: Callable[[Scenario], Ratios]
     interferers: str
     transmits: bool = False
     noise_w: Callable[[Scenario], FloatArray | float] = _receiver_noise_w

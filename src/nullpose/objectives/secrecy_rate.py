@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.record import ObjectiveRecord, RatioArrays
+from nullpose.objectives.ratios import Ratios
+from nullpose.objectives.record import ObjectiveRecord
 
 __all__ = ["SECRECY_RATE"]
 
@@ -14,7 +15,7 @@ _RATE = Quantity(
 )
 
 
-def _ratios(scenario: Scenario) -> RatioArrays:
+def _ratios(scenario: Scenario) -> Ratios:
     """Return one ratio for each node and eavesdropper, two to the power of the rate.
 
     ``I + (g0 P / sigma_k^2) T(s_k - p)`` over ``I + (g0 P / sigma_e^2) T(e_e - p)``.
@@ -28,17 +29,17 @@ def _ratios(scenario: Scenario) -> RatioArrays:
         scenario.eavesdropper_positions_m,
         scenario.jammer_positions_m.reshape(-1, 3),  # in no ratio, but to be kept clear of
     )
-    return {
-        "points_m": np.vstack(positions),
-        "numerator_isotropic": np.ones(len(node)),
-        "numerator_weight": (sent / scenario.node_noise_w)[node],
-        "numerator_point": node.astype(np.int64),
-        "denominator_of": eavesdropper.astype(np.int64),
-        "denominator_isotropic": np.ones(n_eavesdroppers),
-        "denominator_start": np.arange(n_eavesdroppers + 1, dtype=np.int64),
-        "denominator_point": np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
-        "denominator_weight": sent / scenario.eavesdropper_noise_w,
-    }
+    return Ratios(
+        points_m=np.vstack(positions),
+        numerator_isotropic=np.ones(len(node)),
+        numerator_weight=(sent / scenario.node_noise_w)[node],
+        numerator_point=node.astype(np.int64),
+        denominator_of=eavesdropper.astype(np.int64),
+        denominator_isotropic=np.ones(n_eavesdroppers),
+        denominator_start=np.arange(n_eavesdroppers + 1, dtype=np.int64),
+        denominator_point=np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
+        denominator_weight=sent / scenario.eavesdropper_noise_w,
+    )
 
 
 SECRECY_RATE = ObjectiveRecord(

@@ -16,9 +16,9 @@ from nullpose.physics import (
 )
 from nullpose.report.document import beside, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
-from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words
+from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words, with_unit
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
-from nullpose.scenario import Array, Scenario
+from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Result
 from nullpose.solve.robust import GuardedPose
 
@@ -122,20 +122,16 @@ def array_view(solution: Result) -> RenderableType:
     """
     stats, phases_rad = solution.stats, solution.phases_rad
     agreeing = f"{stats.agreeing} of {stats.searches} searches ended at this value"
-    array = Array(
-        elements=solution.elements, layout=solution.layout, spacing_wavelengths=solution.spacing_wavelengths
-    )
-    phases: list[Mapping[str, str]] = []
-    if phases_rad.ndim == 1:
-        phases = [  # the first element's is zero
-            {"element": str(i), "phase (deg)": degrees_text(float(phase_rad), 1)}
-            for i, phase_rad in enumerate(phases_rad - phases_rad[0], start=1)
-        ]
+    turned_rad = phases_rad - phases_rad[0] if phases_rad.ndim == 1 else phases_rad[:0, 0]
+    phases = {
+        "element": [str(i) for i, _ in enumerate(turned_rad, start=1)],
+        "phase (deg)": [degrees_text(float(phase_rad), 1) for phase_rad in turned_rad],
+    }
     return document(
         _head(solution, begun(solution.label), requirement_words(solution), agreeing),
-        pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(array))])),
+        pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(solution.details))])),
         _links_table(solution, {}),
-        table("Phase shifters", phases),
+        table("Phase shifters", rows(phases)),
     )
 
 
@@ -149,9 +145,6 @@ def robust_view(solution: Result) -> RenderableType:
     objective, quantity = solution.objective, solution.objective.quantity
     cells = {"robust pose": robust, "best pose as stated": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
-    more = f"The robust pose guarantees {gain:.4g} {quantity.unit} more than the best as stated."
-    if not nominal.guaranteed > 0.0:
-        more = "The best pose as stated guarantees nothing under these errors."
     unbounded = "no bound on what another pose could guarantee" if solution.upper_bound is None else ""
     errors = f"{count_of(solution.cases, 'error case')}; errors: {error_words(solution.scenario)}"
     return document(
@@ -162,7 +155,7 @@ def robust_view(solution: Result) -> RenderableType:
             bold=[f"guaranteed ({quantity.unit})"],
         ),
         *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
-        f"\n{more}",
+        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best as stated.",
     )
 
 

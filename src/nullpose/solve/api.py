@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -155,23 +154,13 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     if band == (0.0, 1.0):
         kernel(family.arrays, position, axis)
     else:
-        here = replace(family, low_m=position, high_m=position, **_NO_BORDERS)
+        here = family.at(position)
         options = SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
         axis = solve_and_prove(here, [AxisField.within(*band)], options).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 
 
 _AXIS_NODES = 50_000  # of the proof at one position, which needs few if it is closed at all
-
-_NO_BORDERS: dict[str, Any] = {
-    "keep_out_points_m": np.zeros((0, 3)),
-    "piece_start": np.zeros(1, dtype=np.int64),
-    "piece_sides": np.zeros((0, 5)),
-    "zone_kind": np.zeros(0, dtype=np.int64),
-    "zone_start": np.zeros(1, dtype=np.int64),
-    "zone_edges": np.zeros((0, 4)),
-    "zone_range_m": np.zeros((0, 2)),
-}
 
 
 def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:

@@ -148,8 +148,7 @@ def silent(family: Family) -> Family:
     Args:
         family: ratios over interferers.
     """
-    return replace(
-        family,
+    return family.changed(
         denominator_start=np.zeros_like(family.denominator_start),
         denominator_point=np.zeros(0, dtype=np.int64),
         denominator_weight=np.zeros(0),

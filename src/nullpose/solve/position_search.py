@@ -48,38 +48,31 @@ def search_positions(
     if not starts:  # what is allowed may be of no width
         family = loosened(family, BORDER_M)
         starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    domain = family.domain
-    low, high, keep_points, keep_radius = (
-        domain.low_m,
-        domain.high_m,
-        domain.keep_out_points_m,
-        domain.keep_out_m,
-    )
+    if not starts:
+        raise SolveError(NO_POSITION)
+    domain, low, high = family.domain, family.low_m, family.high_m
     evaluations = 0
 
     def inside(position: FloatArray) -> bool:
-        clear = np.sum((keep_points - position) ** 2, axis=1) >= keep_radius**2
+        clear = np.sum((domain.keep_out_points_m - position) ** 2, axis=1) >= domain.keep_out_m**2
         in_box = bool(np.all(position >= low) and np.all(position <= high) and np.all(clear))
-        return in_box and not any(in_zone(family.domain, z, position) for z in range(len(family.zone_kind)))
+        return in_box and not any(in_zone(domain, z, position) for z in range(len(family.zone_kind)))
 
     def cost(position: FloatArray) -> float:
         nonlocal evaluations
         evaluations += 1
         return -objective(position) if inside(position) else math.inf
 
-    if not starts:
-        raise SolveError(NO_POSITION)
     best_value, best_position = max(((-cost(place), place) for place in starts), key=lambda pair: pair[0])
-    box_low, box_high = np.empty(3), np.empty(3)
-    if math.isfinite(best_value):
-        cut_box(family.arrays, low, high, best_value, box_low, box_high)
-    else:
+    if not math.isfinite(best_value):
         raise SolveError(NOT_RECEIVED)
+    box_low, box_high = np.empty(3), np.empty(3)
+    cut_box(family.arrays, low, high, best_value, box_low, box_high)
     draws = np.random.default_rng(seed).uniform(size=(_COARSE, 3))
     draws[::2, 2] = 0.0  # the optimum is often on the floor
     for draw in draws:
         place = box_low + draw * (box_high - box_low)
-        if push_out(place, family.domain):
+        if push_out(place, domain):
             starts.append(place)
     ranked = sorted(starts, key=cost)[:_POLISHED]
     span = float(np.max(box_high - box_low))

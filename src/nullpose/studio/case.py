@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
-__all__ = ["OPTIMUM", "Case", "all_cases", "case_named", "cases_of"]
+__all__ = ["CASES", "OPTIMUM", "Case", "case_named", "cases_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,17 +51,16 @@ class Case:
 OPTIMUM = Case(label="Optimum pose")
 """The case that the studio opens with."""
 
-_CASES = (
+CASES = (
     OPTIMUM,
     *(Case(label=scheme.label, scheme=scheme) for scheme in PAPER_SCHEMES if scheme is not Scheme.OPTIMUM),
     Case(label="Robust pose", robust=True),
     *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )
+"""Every case, in the order in which they are offered."""
 
 
-def all_cases() -> tuple[Case, ...]:
-    """Return every case, in the order in which they are offered."""
-    return _CASES
+_offered: dict[tuple[object, ...], tuple[Case, ...]] = {}
 
 
 def cases_of(scenario: Scenario) -> tuple[Case, ...]:
@@ -79,25 +77,9 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         bool(scenario.jammers),
         len(scenario.nodes),
     )
-    return _cases_with(traits, _Unhashed(scenario))
-
-
-class _Unhashed:
-    """A scenario that a cache does not look at: what cases it has depends on its traits alone."""
-
-    def __init__(self, scenario: Scenario) -> None:
-        self.scenario = scenario
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Unhashed)
-
-    def __hash__(self) -> int:
-        return 0
-
-
-@lru_cache(maxsize=64)
-def _cases_with(traits: tuple[object, ...], of: _Unhashed) -> tuple[Case, ...]:
-    return tuple(case for case in _CASES if case.missing(of.scenario) is None)
+    if traits not in _offered:  # asked at every step of a drag
+        _offered[traits] = tuple(case for case in CASES if case.missing(scenario) is None)
+    return _offered[traits]
 
 
 def case_named(label: str) -> Case:
@@ -109,4 +91,4 @@ def case_named(label: str) -> Case:
     Raises:
         KeyError: there is none.
     """
-    return {case.label: case for case in _CASES}[label]
+    return {case.label: case for case in CASES}[label]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["GROUND", "INK", "KIND_COLOURS", "SLOTS", "css", "scale_colour", "scale_colours", "scale_range"]
+__all__ = ["KIND_COLOURS", "SLOTS", "Rgb", "css", "scale_colours", "scale_range"]
 
 Rgb = tuple[int, int, int]
-
-INK: Rgb = (26, 26, 26)
-GROUND: Rgb = (110, 110, 110)
 
 KIND_COLOURS = MappingProxyType(
     {"nodes": (0, 114, 178), "jammers": (213, 94, 0), "eavesdroppers": (204, 121, 167)}
@@ -27,7 +25,7 @@ _LEAST_SPAN = 6.0
 _MOST_SPAN = 30.0
 
 
-def css(colour: Rgb) -> str:
+def css(colour: Iterable[int]) -> str:
     """Return a colour as style sheets write it.
 
     Args:
@@ -54,18 +52,6 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
     share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
     index = np.nan_to_num(255.0 * share, nan=0.0, posinf=255.0, neginf=0.0).clip(0.0, 255.0)
     return np.asarray(_table()[index.astype(np.intp)])
-
-
-def scale_colour(value: float, low: float, high: float) -> Rgb:
-    """Return the colour of one value; see :func:`scale_colours`.
-
-    Args:
-        value: one.
-        low: value of the dark end.
-        high: value of the bright end.
-    """
-    red, green, blue = scale_colours(value, low, high).tolist()
-    return red, green, blue
 
 
 def scale_range(values: ArrayLike) -> tuple[float, float]:

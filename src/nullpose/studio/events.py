@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import Case
+from nullpose.studio.field_map import FieldMap
 from nullpose.study import SweepTable
 
-__all__ = ["Compiling", "Event", "Failure", "Field", "FieldMap", "PowerCurve"]
-
-FloatArray = NDArray[np.float64]
+__all__ = ["Compiling", "Event", "Failure", "PowerCurve"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,40 +36,6 @@ class Compiling:
     """
 
     version: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Field:
-    """A number at every point of a level grid.
-
-    Args:
-        east_m: (nx,) metres.
-        north_m: (ny,) metres.
-        altitude_m: of the plane, metres.
-        values: (ny, nx), not a number where there is none.
-        unit: as in "dB".
-    """
-
-    east_m: FloatArray
-    north_m: FloatArray
-    altitude_m: float
-    values: FloatArray
-    unit: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FieldMap:
-    """The two maps of a version of the scene.
-
-    Args:
-        version: the version of the scene.
-        best: the objective at the best axis of each position, on a plane at the drone's altitude.
-        footprint: the drone's gain over the path loss, on the ground.
-    """
-
-    version: int
-    best: Field
-    footprint: Field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from contextlib import redirect_stdout
 from io import BytesIO, StringIO
-from typing import Any
 
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
@@ -24,16 +22,16 @@ def pose_json(session: Session) -> bytes:
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    answers = [_current(session, slot) for slot in range(len(session.view.cases))]
-    solved = [{"case": answer.case.label} | answer.solution.to_dict() for answer in answers]
+    solved = [{"case": one.case.label} | one.result.to_dict() for one in _current(session)]
     return (json.dumps(solved[0] if len(solved) == 1 else solved, indent=2, allow_nan=False) + "\n").encode()
 
 
-def _current(session: Session, slot: int) -> Answer:
-    answer = session.answer(session.view.cases[slot])
-    if answer is None or not session.is_current(answer):
+def _current(session: Session) -> list[Answer]:
+    """Return the answers of the cases that are shown, all to the present scene."""
+    current = [answer for answer in map(session.current, session.view.cases) if answer is not None]
+    if len(current) < len(session.view.cases):
         raise UsageError("the scene is being solved; try again when its pose is there")
-    return answer
+    return current
 
 
 def figure_png(session: Session) -> bytes:
@@ -57,39 +55,34 @@ def figure_png(session: Session) -> bytes:
     return picture.getvalue()
 
 
-def scene_html(
-    session: Session,
-    chosen_map: str,
-    link_range_db: tuple[float, float],
-    camera_m: Callable[[Any], tuple[Any, Any]],
-) -> bytes:
+def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, float]) -> bytes:
     """Return the scene as one HTML file that needs neither a server nor a network.
 
     Args:
         session: whose.
         chosen_map: the map that is shown.
         link_range_db: ends of the links' colours, dB.
-        camera_m: tells where the camera stands and what it looks at.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    from nullpose.studio.drone import Carpet, Drone
+    from nullpose.studio.camera import aim
+    from nullpose.studio.carpet import Carpet
+    from nullpose.studio.drone import Drone
     from nullpose.studio.opening import LOOPBACK, open_server
     from nullpose.studio.panel import BEST_MAP, NO_MAP
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
-    view = session.view
-    answers = [_current(session, slot) for slot in range(len(view.cases))]
+    view, answers, fields = session.view, _current(session), session.field_map
+    size_m = scene_size_m(view.scenario)
     server, _ = open_server(LOOPBACK, 0)
     try:
-        server.initial_camera.position, server.initial_camera.look_at = camera_m(view.scenario)
-        Ground(server.scene, None).draw(view, freed=False)
+        aim(server.initial_camera, view.scenario)
+        Ground(server.scene, None).show(view, size_m, freed=False)
         for slot, answer in enumerate(answers):
-            drone = Drone(server.scene, slot, scene_size_m(view.scenario))
-            drone.show(answer, drone_text(session, slot), link_range_db, pattern=True)
-        fields = session.field_map
+            text = drone_text(session, slot)
+            Drone(server.scene, slot, size_m).show(answer, text, link_range_db, pattern=True)
         if fields is not None and chosen_map != NO_MAP:
             Carpet(server.scene).show(fields.best if chosen_map == BEST_MAP else fields.footprint)
         return str(server.scene.as_html()).encode()

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import build_family
-from nullpose.objectives import Quantity
-from nullpose.physics import (
-    antenna_gain,
-    objective_value,
-    to_db,
-)
+from nullpose.physics import antenna_gain, objective_value, to_db
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
-from nullpose.studio.events import Field, FieldMap
 
-__all__ = ["field_map", "map_extent_m"]
+__all__ = ["Field", "FieldMap", "field_map", "map_extent_m"]
 
 FloatArray = NDArray[np.float64]
 
@@ -28,6 +23,41 @@ _AXES = 400
 _MARGIN = 0.35  # free ground around the points, of their extent
 _LEAST_M = 20.0
 _FLOOR_DB = -60.0  # the null itself is minus infinity
+_GOLDEN_RAD = 2.399963229728653  # golden angle
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Field:
+    """A number at every point of a horizontal grid.
+
+    Args:
+        east_m: (nx,) metres.
+        north_m: (ny,) metres.
+        altitude_m: of the plane, metres.
+        values: (ny, nx), not a number where there is none.
+        unit: as in "dB".
+    """
+
+    east_m: FloatArray
+    north_m: FloatArray
+    altitude_m: float
+    values: FloatArray
+    unit: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FieldMap:
+    """The two maps of a version of the scene.
+
+    Args:
+        version: the version of the scene.
+        best: the objective at the best axis of each position, on a plane at the drone's altitude.
+        footprint: the drone's gain over the path loss, on the ground.
+    """
+
+    version: int
+    best: Field
+    footprint: Field
 
 
 def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -39,15 +69,8 @@ def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray
         scenario: the scene.
         position_m: (3,) where the drone is, metres.
     """
-    points = np.vstack(
-        [
-            scenario.node_positions_m,
-            scenario.jammer_positions_m.reshape(-1, 3),
-            scenario.eavesdropper_positions_m.reshape(-1, 3),
-            position_m,
-        ]
-    )[:, :2]
-    low, high = points.min(axis=0), points.max(axis=0)
+    places = np.vstack([_points_m(scenario), position_m])[:, :2]
+    low, high = places.min(axis=0), places.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     half = np.maximum(half + _MARGIN * max(float(half.max()), 0.5 * _LEAST_M), 0.5 * _LEAST_M)
     half = np.maximum(half, 0.6 * half.max())
@@ -65,26 +88,33 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
         answer: whose case, altitude and pose they are of.
         go_on: called now and then; what it raises ends the work.
     """
-    scenario, position_m = answer.scenario, answer.pose.position_m
-    low_m, high_m = map_extent_m(scenario, position_m)
+    scenario, pose, quantity = answer.result.scenario, answer.result.pose, answer.result.objective.quantity
+    low_m, high_m = map_extent_m(scenario, pose.position_m)
     step_m = float(np.max(high_m - low_m)) / (_CELLS - 1)
     east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low_m, high_m, strict=True))
-    altitude_m = float(position_m[2])
-    grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), altitude_m), axis=-1)
-    usable = _usable(scenario, grid)
+    altitude_m = float(pose.position_m[2])
+    grid, ground = (
+        np.stack(np.broadcast_arrays(*np.meshgrid(east, north), up), -1) for up in (altitude_m, 0.0)
+    )
+    nearest_m = np.linalg.norm(grid[..., None, :] - _points_m(scenario), axis=-1).min(axis=-1)
+    usable = scenario.airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m)
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(answer, grid[usable], go_on)
-    quantity = Quantity.of(scenario)
-    if not quantity.is_rate:
-        values = _db(values)
-    ground = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), 0.0), axis=-1)
+    loss = np.sum((ground - pose.position_m) ** 2, axis=-1) / max(1.0, altitude_m**2)
+    gain = antenna_gain(pose.position_m, pose.antenna_axis, ground.reshape(-1, 3)).reshape(loss.shape)
+    plane = {"east_m": east, "north_m": north}
+    best = values if quantity.is_rate else _db(values)
+    footprint = _db(gain / np.maximum(loss, 1e-12))
     return FieldMap(
         version=answer.version,
-        best=Field(east_m=east, north_m=north, altitude_m=altitude_m, values=values, unit=quantity.unit),
-        footprint=Field(
-            east_m=east, north_m=north, altitude_m=0.0, values=_footprint_db(answer, ground), unit="dB"
-        ),
+        best=Field(**plane, altitude_m=altitude_m, values=best, unit=quantity.unit),
+        footprint=Field(**plane, altitude_m=0.0, values=footprint, unit="dB"),
     )
+
+
+def _points_m(scenario: Scenario) -> FloatArray:
+    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
+    return np.vstack([group.reshape(-1, 3) for group in groups])
 
 
 def _db(values: FloatArray) -> FloatArray:
@@ -92,36 +122,24 @@ def _db(values: FloatArray) -> FloatArray:
         return np.asarray(np.where(np.isnan(values), np.nan, np.maximum(to_db(values), _FLOOR_DB)))
 
 
-def _usable(scenario: Scenario, grid: FloatArray) -> NDArray[np.bool_]:
-    points = np.vstack(
-        [
-            scenario.node_positions_m,
-            scenario.jammer_positions_m.reshape(-1, 3),
-            scenario.eavesdropper_positions_m.reshape(-1, 3),
-        ]
-    )
-    nearest_m = np.min(np.linalg.norm(grid[..., None, :] - points, axis=-1), axis=-1)
-    return np.asarray(scenario.airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m))
-
-
 def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
-    scenario, scheme = answer.scenario, answer.case.scheme
-    fields = scheme.record.fields(scenario, None)
-    if fields is None:
-        return objective_value(scenario, positions_m, _gain_axes(scenario, positions_m, go_on))
-    given = [field for field in fields.values() if not field.is_free]
+    """Return the objective at each position with the axis of the answer's case, shape (n,)."""
+    scenario = answer.result.scenario
+    fields = answer.case.scheme.record.fields(scenario, None)
+    given = [field for field in (fields or {}).values() if not field.is_free]
     if given:
         each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in given]
         return np.asarray(np.max(each, axis=0))
-    if scenario.axis_band == (0.0, 1.0) and scenario.objective == "min-sinr":
-        return objective_value(scenario, positions_m, _exact_axes(scenario, positions_m, go_on))
-    axes = _spread_axes(*scenario.axis_band)
-    best = np.empty(len(positions_m))
-    for start in range(0, len(positions_m), _CHUNK):
-        go_on()
-        some = positions_m[start : start + _CHUNK]
-        best[start : start + _CHUNK] = np.max(objective_value(scenario, some[:, None, :], axes), axis=1)
-    return best
+    if fields is None:
+        axes = _ranked_axes((0.0, 1.0), positions_m, lambda some, axes: _served(scenario, some, axes), go_on)
+    elif scenario.axis_band == (0.0, 1.0) and not answer.result.objective.quantity.is_rate:
+        axes = _exact_axes(scenario, positions_m, go_on)
+    else:
+        rank = objective_value
+        axes = _ranked_axes(
+            scenario.axis_band, positions_m, lambda some, axes: rank(scenario, some, axes), go_on
+        )
+    return objective_value(scenario, positions_m, axes)
 
 
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
@@ -135,31 +153,28 @@ def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[],
     return axes
 
 
-def _gain_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
-    """Return the axes that serve the nodes best, the jammers ignored."""
+def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> FloatArray:
+    """Return how well the nodes are served, the jammers ignored."""
     nodes = scenario.node_positions_m
-    axes = _spread_axes(0.0, 1.0)
-    chosen = np.empty_like(positions_m)
-    for i, position_m in enumerate(positions_m):
-        go_on()
-        distance_sq = np.sum((nodes - position_m) ** 2, axis=-1)
-        received = antenna_gain(position_m, axes, nodes) * scenario.node_powers_w / distance_sq
-        chosen[i] = axes[np.argmax(np.min(received / scenario.node_required_sinr, axis=-1))]
-    return chosen
+    loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
+    received = antenna_gain(positions_m, axes, nodes) * scenario.node_powers_w / loss
+    return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
 
 
-def _spread_axes(least: float, greatest: float) -> FloatArray:
-    """Return axes spread evenly over the part of the upper half sphere with u_z^2 between two ends."""
-    low, high = np.sqrt(least), np.sqrt(greatest)
+def _ranked_axes(
+    elevation_band: tuple[float, float],
+    positions_m: FloatArray,
+    rank: Callable[[FloatArray, FloatArray], FloatArray],
+    go_on: Callable[[], None],
+) -> FloatArray:
+    """Return, for each position, the highest ranked of axes spread evenly over a band of ``u_z^2``."""
+    low, high = np.sqrt(elevation_band)
     up = low + (high - low) * np.linspace(0.0, 1.0, _AXES)
-    across = np.sqrt(np.maximum(0.0, 1.0 - up**2))
-    turn = 2.399963229728653 * np.arange(_AXES)  # golden angle, rad
-    return np.stack([across * np.cos(turn), across * np.sin(turn), up], axis=-1)
-
-
-def _footprint_db(answer: Answer, ground_m: FloatArray) -> FloatArray:
-    pose = answer.pose
-    points = ground_m.reshape(-1, 3)
-    gain = antenna_gain(pose.position_m, pose.antenna_axis, points)
-    loss = np.sum((points - pose.position_m) ** 2, axis=-1) / max(1.0, float(pose.position_m[2]) ** 2)
-    return _db(gain / np.maximum(loss, 1e-12)).reshape(ground_m.shape[:-1])
+    across, azimuth_rad = np.sqrt(np.maximum(0.0, 1.0 - up**2)), _GOLDEN_RAD * np.arange(_AXES)
+    axes = np.stack([across * np.cos(azimuth_rad), across * np.sin(azimuth_rad), up], axis=-1)
+    chosen = np.empty_like(positions_m)
+    for start in range(0, len(positions_m), _CHUNK):
+        go_on()
+        some = slice(start, start + _CHUNK)
+        chosen[some] = axes[np.argmax(rank(positions_m[some, None, :], axes), axis=1)]
+    return chosen

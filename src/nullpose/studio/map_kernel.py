@@ -5,8 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
-from types import FunctionType
 
 import numpy as np
 
@@ -29,9 +29,12 @@ class MapKernel:
     def is_ready(self) -> bool:
         """Return whether the kernel is at hand; the first call begins its compilation if it is not."""
         with self._lock:
-            if not self._asked:
-                self._asked = True
-                self._process = _begin()
+            if not self._asked and not _is_compiled():
+                with suppress(OSError):
+                    command = [sys.executable, "-c", _PROGRAM]
+                    quiet = subprocess.DEVNULL
+                    self._process = subprocess.Popen(command, stdin=quiet, stderr=quiet)
+            self._asked = True
             return self._process is None or self._process.poll() is not None
 
     def __del__(self) -> None:
@@ -58,17 +61,11 @@ def compile_map_kernel() -> None:
     best_axis(build_family(scenario).arrays, np.array([5.0, 5.0, 9.0]), np.empty(3))
 
 
-def _begin() -> subprocess.Popen[bytes] | None:
+def _is_compiled() -> bool:
+    """Return whether the kernel is compiled, in this process or on disk, or is not to be compiled at all."""
     from nullpose.solve.kernels.axis import best_axis
 
-    if isinstance(best_axis, FunctionType) or best_axis.signatures:  # not to be compiled, or compiled already
-        return None
+    if getattr(best_axis, "signatures", True):  # a plain function has none
+        return True
     cache_path = best_axis.stats.cache_path
-    if cache_path is None or any(Path(cache_path).glob("axis.best_axis-*.nbi")):
-        return None
-    try:
-        return subprocess.Popen(
-            [sys.executable, "-c", _PROGRAM], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
-    except OSError:
-        return None
+    return cache_path is None or any(Path(cache_path).glob("axis.best_axis-*.nbi"))

@@ -5,25 +5,30 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import NullposeError, ScenarioError
+from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.studio.camera import camera_m, near_m
-from nullpose.studio.case import case_named
-from nullpose.studio.drone import LINK_RANGE_DB, Carpet, Drone
-from nullpose.studio.events import Event, FieldMap
+from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio.camera import aim
+from nullpose.studio.carpet import Carpet
+from nullpose.studio.case import Case, case_named
+from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.exports import figure_png, pose_json, scene_html
+from nullpose.studio.field_map import FieldMap
 from nullpose.studio.map_kernel import MapKernel
-from nullpose.studio.panel import BEST_MAP, FOOTPRINT, NO_CASE, NO_MAP, Panel
+from nullpose.studio.panel import BEST_MAP, NO_CASE, NO_MAP, Panel
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.session import Session
-from nullpose.studio.view import POWER_DB, PointKey
+from nullpose.studio.view import PointKey, View
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -33,6 +38,8 @@ __all__ = ["Page"]
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+
+_OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -53,12 +60,12 @@ class Page:
         self._gesture = 0
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
-        self._size_m = 0.0
+        self._size_m = np.inf
         self._map_shown: tuple[FieldMap | None, str] = (None, NO_MAP)
         self._link_range_db = LINK_RANGE_DB
         self._drones: list[Drone] = []
         self.session = Session(
-            scenario, on_view=self._view_changed, on_event=self._found, map_kernel=map_kernel
+            scenario, on_view=self._view_changed, on_event=self._refresh, map_kernel=map_kernel
         )
         self.panel = Panel(client.gui)
         self._ground = Ground(client.scene, self._dragged)
@@ -79,31 +86,34 @@ class Page:
 
     def _listen(self) -> None:
         panel, session = self.panel, self.session
-        panel.case.on_update(_by_hand(lambda value: self._do(lambda: session.choose(case_named(value)))))
-        panel.compared.on_update(
-            _by_hand(
-                lambda value: self._do(
-                    lambda: session.compare(None if value == NO_CASE else case_named(value))
-                )
-            )
-        )
-        panel.power.on_update(_by_hand(self._slid))
-        panel.map.on_update(_by_hand(lambda value: self._refresh()))
-        panel.pattern.on_update(_by_hand(lambda value: self._refresh()))
-        panel.freed.on_update(_by_hand(lambda value: self._refresh()))
-        panel.undo.on_click(lambda event: self._do(session.undo))
-        panel.redo.on_click(lambda event: self._do(session.redo))
-        panel.aim.on_click(lambda event: self._aim())
+        controls: list[tuple[Any, Callable[[Any], object]]] = [
+            (panel.case, lambda label: self._change(lambda view: view.with_case(case_named(label)))),
+            (panel.compared, lambda label: self._change(lambda view: view.with_compared(_case(label)))),
+            (panel.power, self._slid),
+            *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
+        ]
+        files: list[tuple[Any, str, Callable[[], bytes]]] = [
+            (panel.save, "scenario.toml", lambda: session.view.scenario.to_toml().encode()),
+            (panel.pose, "pose.json", partial(pose_json, session)),
+            (panel.figure, "figure.png", partial(figure_png, session)),
+            (panel.html, "scene.html", lambda: scene_html(session, panel.map.value, self._link_range_db)),
+        ]
+        buttons: list[tuple[Any, Callable[[], object]]] = [
+            (panel.undo, session.undo),
+            (panel.redo, session.redo),
+            (panel.aim, self._aim),
+            *((button, partial(self._send, name, make)) for button, name, make in files),
+        ]
+        for control, action in controls:
+            control.on_update(_by_hand(action))
+        for button, press in buttons:
+            button.on_click(lambda event, press=press: press())
         panel.upload.on_upload(lambda event: self._load(event.target.value))
-        panel.save.on_click(lambda event: self._send("scenario.toml", self._scenario_toml))
-        panel.pose.on_click(lambda event: self._send("pose.json", lambda: pose_json(session)))
-        panel.figure.on_click(lambda event: self._send("figure.png", lambda: figure_png(session)))
-        panel.html.on_click(lambda event: self._send("scene.html", self._html))
 
-    def _do(self, change: Any, name: str = "The change") -> bool:
+    def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
         """Return whether a change was made; if not, its faults are shown."""
         try:
-            change()
+            self.session.change(change, gesture)
         except ScenarioError as error:
             self.panel.faults.content = failure_html(error, name)
             return False
@@ -112,75 +122,48 @@ class Page:
 
     def _slid(self, value: float) -> None:
         now = time.monotonic()
-        if now - self._slid_at > _GESTURE_S:
-            self._gesture += 1
+        self._gesture += now - self._slid_at > _GESTURE_S
         self._slid_at = now
-        self._do(lambda: self.session.set_power_db(float(value), f"power {self._gesture}"))
+        self._change(lambda view: view.with_power_db(float(value)), f"power {self._gesture}")
 
     def _dragged(self, key: PointKey, position_m: NDArray[np.float64], phase: str) -> None:
         if phase == "start":
             self._gesture += 1
             self._ground.hold(key)
-        moved = self._do(lambda: self.session.move(key, position_m, f"drag {self._gesture}"), "The new place")
+        self._change(lambda view: view.moved(key, position_m), f"drag {self._gesture}", "The new place")
         if phase == "end":
-            self._ground.let_go()
-            if not moved:
-                self._ground.restore(self.session.view)
-            self._refresh()
+            self._ground.hold(None)
+            self._refresh()  # which puts a point back whose new place was refused
 
     def _load(self, file: Any) -> None:
-        if self._do(lambda: self.session.load(file.content, file.name), file.name):
+        taken = self._change(
+            lambda view: view.with_scenario(scenario_from_text(file.content, file.name)), name=file.name
+        )
+        if taken:
             self._aim()
 
-    def _scenario_toml(self) -> bytes:
-        return self.session.view.scenario.to_toml().encode()
-
-    def _html(self) -> bytes:
-        return scene_html(self.session, self.panel.map.value, self._link_range_db, camera_m)
-
-    def _send(self, name: str, make: Any) -> None:
+    def _send(self, name: str, make: Callable[[], bytes]) -> None:
         try:
             self._client.send_file_download(name, make(), save_immediately=True)
         except NullposeError as error:
             self._client.add_notification("Not exported", str(error), color="red", auto_close_seconds=8.0)
 
     def _aim(self) -> None:
-        position, look_at = camera_m(self.session.view.scenario)
         with self._client.atomic():
-            self._client.camera.position = position
-            self._client.camera.look_at = look_at
-            self._client.camera.near = near_m(self.session.view.scenario)
+            aim(self._client.camera, self.session.view.scenario)
 
     def _view_changed(self) -> None:
-        if self._ground.dragged is None:
-            self._refresh()
-            return
-        with self._lock:  # one picture for each step of a drag, that with its answer
-            if self._late is None and self._open:
-                self._late = threading.Timer(_LATE_S, self._draw_late)
+        with self._lock:
+            if self._ground.dragged is None:
+                self._refresh()
+            elif self._late is None and self._open:  # each step of a drag has one picture: with its answer
+                self._late = threading.Timer(_LATE_S, self._refresh)
                 self._late.daemon = True
                 self._late.start()
 
-    def _draw_late(self) -> None:
+    def _refresh(self, *_: object) -> None:
         with self._lock:
-            self._late = None
-            self._refresh()
-
-    def _not_late(self) -> None:
-        with self._lock:
-            if self._late is not None:
-                self._late.cancel()
-                self._late = None
-
-    def _found(self, event: Event) -> None:
-        if event.version == self.session.version:
             self._not_late()
-        if isinstance(event, FieldMap) and event.version == self.session.version:
-            self._map_shown = (None, NO_MAP)
-        self._refresh()
-
-    def _refresh(self) -> None:
-        with self._lock:
             if not self._open:
                 return
             try:
@@ -191,27 +174,28 @@ class Page:
             except Exception:
                 _log.exception("the page could not be refreshed")
 
+    def _not_late(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
+
     def _refresh_scene(self) -> None:
-        session, view = self.session, self.session.view
-        size_m = scene_size_m(view.scenario) if not self._drones else self._size_m
-        self._ground.show(view, freed=self.panel.freed.value)
-        if not self._drones or not 0.6 < scene_size_m(view.scenario) / self._size_m < 1.7:
-            size_m = scene_size_m(view.scenario)
+        session, view, scene = self.session, self.session.view, self._client.scene
+        size_m = scene_size_m(view.scenario)
+        if not _OTHER_SIZE[0] < size_m / self._size_m < _OTHER_SIZE[1]:
             for drone in self._drones:
                 drone.remove()
             self._size_m = size_m
-            self._drones = [Drone(self._client.scene, slot, size_m) for slot in (0, 1)]
-            self._ground.draw(view, freed=self.panel.freed.value)
+            self._drones = [Drone(scene, slot, size_m) for slot in (0, 1)]
+        self._ground.show(view, self._size_m, freed=self.panel.freed.value)
         self._show_map()
         for slot, drone in enumerate(self._drones):
-            case = view.cases[slot] if slot < len(view.cases) else None
-            answer = session.answer(case) if case is not None else None
-            if case is None or answer is None or len(answer.links) != len(view.scenario.nodes):
+            answer = session.answer(view.cases[slot]) if slot < len(view.cases) else None
+            if answer is None or len(answer.result.links) != len(view.scenario.nodes):
                 drone.hide()
                 continue
-            drone.show(
-                answer, drone_text(self.session, slot), self._link_range_db, pattern=self.panel.pattern.value
-            )
+            text, pattern = drone_text(session, slot), self.panel.pattern.value
+            drone.show(answer, text, self._link_range_db, pattern=pattern)
 
     def _show_map(self) -> None:
         fields, wanted = self.session.field_map, self.panel.map.value
@@ -222,36 +206,39 @@ class Page:
             self._carpet.hide()
             self.panel.scale.content = ""
             return
-        field = fields.best if wanted == BEST_MAP else fields.footprint
-        low, high = self._carpet.show(field, lift_m=0.0 if wanted == BEST_MAP else 0.05)
-        title = {
-            BEST_MAP: f"best value at each place, {field.altitude_m:.1f} m up; lines to nodes",
-            FOOTPRINT: "gain over path loss on the ground, 0 straight below at full gain",
-        }[wanted]
-        self.panel.scale.content = scale_svg(low, high, title, field.unit)
+        if wanted == BEST_MAP:
+            field, lift_m = fields.best, 0.0
+            title = f"best value at each place, {field.altitude_m:.1f} m up; lines to nodes"
+        else:
+            field, lift_m = fields.footprint, 0.05
+            title = "gain over path loss on the ground, 0 straight below at full gain"
+        ends = self._carpet.show(field, lift_m=lift_m)
+        self.panel.scale.content = scale_svg(*ends, title, field.unit)
         if wanted == BEST_MAP and field.unit == "dB":
-            self._link_range_db = (low, high)
+            self._link_range_db = ends
 
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel
-        panel.show_cases(view)
-        answer = session.answer(view.case)
-        current = session.is_current(answer)
+        panel.show(view)
+        answer = session.current(view.case)
         panel.readout.content = readout_html(session)
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
         panel.plot.content = power_plot_svg(
             session.curve,
             version=session.version,
             power_db=view.power_db,
-            value=answer.shown_value if answer is not None and current and at_rest else None,
-            unit="dB" if answer is None else answer.quantity.unit,
+            value=answer.shown_value if answer and at_rest else None,
+            unit=Quantity.of(view.scenario).unit,
         )
-        panel.show_power(view.power_db, POWER_DB)
-        panel.undo.disabled = not session.can_undo
-        panel.redo.disabled = not session.can_redo
+        panel.undo.disabled = not session.history.past
+        panel.redo.disabled = not session.history.future
 
 
-def _by_hand(action: Any) -> Any:
+def _case(label: str) -> Case | None:
+    return None if label == NO_CASE else case_named(label)
+
+
+def _by_hand(action: Callable[[Any], object]) -> Any:
     """Return a callback for what a user does, and not the program; in order, since it runs in the loop."""
 
     async def callback(event: Any) -> None:

@@ -11,7 +11,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 from nullpose.scenario import Scenario
-from nullpose.studio.camera import camera_m, near_m
+from nullpose.studio.camera import aim
 from nullpose.studio.map_kernel import MapKernel
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
@@ -30,6 +30,8 @@ _RELOAD_S = 2.0  # a page that is loaded again comes before its old self is gone
 
 _FULL = f"{MOST_PAGES} pages are open, and a studio serves no more. Close one, and load this one again."
 
+_FAULT = "The page could not be made; the terminal says why."
+
 _log = logging.getLogger("nullpose.studio")
 
 
@@ -45,14 +47,13 @@ class Studio:
     def __init__(self, server: ViserServer, address: str, scenario: Scenario) -> None:
         self.address = address
         self._server, self._scenario = server, scenario
-        self._lock, self._room = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)
+        self._lock, self._places = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)
         self._map_kernel = MapKernel()
         # a page may be closed at any moment, also while it is sent what was found
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
         self.pages: dict[int, Any] = {}
-        server.initial_camera.position, server.initial_camera.look_at = camera_m(scenario)
-        server.initial_camera.near = near_m(scenario)
+        aim(server.initial_camera, scenario)
         server.on_client_connect(self._connect)
         server.on_client_disconnect(self._disconnect)
 
@@ -70,17 +71,15 @@ class Studio:
     def _connect(self, client: ClientHandle) -> None:
         from nullpose.studio.page import Page
 
-        if not self._room.acquire(timeout=_RELOAD_S):
+        if not self._places.acquire(timeout=_RELOAD_S):
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
             page = Page(client, self._scenario, self._map_kernel)
         except Exception:
-            self._room.release()
+            self._places.release()
             _log.exception("a page could not be made")
-            client.add_notification(
-                "Not opened", "The page could not be made; the terminal says why.", color="red"
-            )
+            client.add_notification("Not opened", _FAULT, color="red")
             return
         with self._lock:
             gone = self._closed or client.client_id not in self._server.get_clients()
@@ -97,7 +96,7 @@ class Studio:
 
     def _end(self, page: Page) -> None:
         page.close()
-        self._room.release()
+        self._places.release()
 
 
 @contextmanager

@@ -5,20 +5,21 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import replace
-
-from numpy.typing import ArrayLike
+from typing import TypeVar
 
 from nullpose.scenario import Scenario
-from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.answer import Answer, status_words
 from nullpose.studio.case import Case, cases_of
-from nullpose.studio.events import Compiling, Event, Failure, FieldMap, PowerCurve
+from nullpose.studio.events import Compiling, Event, Failure, PowerCurve
+from nullpose.studio.field_map import FieldMap
 from nullpose.studio.history import History
 from nullpose.studio.map_kernel import MapKernel
-from nullpose.studio.view import PointKey, View
+from nullpose.studio.view import View
 from nullpose.studio.worker import REST_S, Worker
 
-__all__ = ["Session", "scenario_from_text"]
+__all__ = ["Session"]
+
+_E = TypeVar("_E", Answer, Failure, FieldMap, PowerCurve, Compiling)
 
 
 class Session:
@@ -33,6 +34,10 @@ class Session:
         on_event: called with everything that the worker finds.
         map_kernel: shared by the sessions of one server; without it, one of its own.
         rest_s: how long nothing must have changed before a proof begins, seconds.
+
+    Attributes:
+        version: of the scene now.
+        history: the view now, those before it and those undone.
     """
 
     def __init__(
@@ -46,18 +51,14 @@ class Session:
     ) -> None:
         self._lock = threading.RLock()
         self._on_view, self._on_event = on_view, on_event
-        self._history = History(View(scenario=scenario, case=cases_of(scenario)[0]))
-        self._version = 0
-        self._answers: dict[Case, Answer] = {}
-        self._failures: dict[Case, Failure] = {}
-        self._map: FieldMap | None = None
-        self._curve: PowerCurve | None = None
-        self._compiling = False
+        self.version = 0
+        self.history = History(View(scenario=scenario, case=cases_of(scenario)[0]))
+        self._found: dict[tuple[type, Case | None], Event] = {}
         self._worker = Worker(self._take, map_kernel or MapKernel(), rest_s=rest_s)
 
     def start(self) -> None:
         """Ask for the first answers."""
-        self._renew()
+        self._go(replace)
 
     def close(self, timeout_s: float = 5.0) -> bool:
         """Return whether the worker has ended within a time.
@@ -70,49 +71,33 @@ class Session:
     @property
     def view(self) -> View:
         """The view now."""
-        return self._history.present
-
-    @property
-    def version(self) -> int:
-        """The version of the scene now."""
-        return self._version
-
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is a step back."""
-        return bool(self._history.past)
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is a step forward."""
-        return bool(self._history.future)
+        return self.history.present
 
     @property
     def field_map(self) -> FieldMap | None:
         """The maps of the present version, or None."""
-        found = self._map
-        return found if found is not None and found.version == self._version else None
+        return self._last(FieldMap, current=True)
 
     @property
     def curve(self) -> PowerCurve | None:
         """The latest power curve, whatever version it is of, or None."""
-        return self._curve
+        return self._last(PowerCurve)
 
     def answer(self, case: Case) -> Answer | None:
-        """Return the latest answer for a case, whatever version it is of; see :meth:`is_current`.
+        """Return the latest answer for a case, whatever version it is of; see :meth:`current`.
 
         Args:
             case: which.
         """
-        return self._answers.get(case)
+        return self._last(Answer, case)
 
-    def is_current(self, answer: Answer | None) -> bool:
-        """Return whether an answer is one to the present version of the scene.
+    def current(self, case: Case) -> Answer | None:
+        """Return the answer for a case to the present version of the scene, or None.
 
         Args:
-            answer: or None, which is not.
+            case: which.
         """
-        return answer is not None and answer.version == self._version
+        return self._last(Answer, case, current=True)
 
     def status(self, case: Case) -> str:
         """Return how far the solve of a case has come, in words.
@@ -121,109 +106,53 @@ class Session:
             case: which.
         """
         with self._lock:
-            failure = self._failures.get(case)
-            if failure is not None and failure.version == self._version:
+            failure, answer = self._last(Failure, case, current=True), self.current(case)
+            if failure is not None:
                 return f"no pose: {failure.message}"
-            words = status_words(self._version, self._answers.get(case))
-            compiling = words == "solving" and self._compiling
-            return "compiling the solver, once, which takes a minute" if compiling else words
+            if answer is None and self._last(Compiling) is not None:
+                return "compiling the solver, once, which takes a minute"
+            return status_words(answer)
 
-    def move(self, key: PointKey, position_m: ArrayLike, gesture: str = "") -> None:
-        """Put a ground point elsewhere.
+    def change(self, change: Callable[[View], View], gesture: str = "") -> None:
+        """Change the view.
 
         Args:
-            key: which point.
-            position_m: (3,) metres.
-            gesture: a name that all steps of one drag share.
+            change: returns the new view for the one now.
+            gesture: a name that all steps of one drag share, which are undone together.
 
         Raises:
             ScenarioError: the scenario would be faulty; nothing changes.
         """
-        self._change(lambda view: view.moved(key, position_m), gesture)
-
-    def set_power_db(self, power_db: float, gesture: str = "power") -> None:
-        """Set the jammers' power.
-
-        Args:
-            power_db: of the strongest jammer over the strongest transmitter to be heard, dB.
-            gesture: a name that all steps of one gesture share.
-
-        Raises:
-            ScenarioError: the scenario would be faulty; nothing changes.
-        """
-        self._change(lambda view: view.with_power_db(power_db), gesture)
-
-    def choose(self, case: Case) -> None:
-        """Choose the case that is solved.
-
-        Args:
-            case: one that has a meaning for the scenario.
-        """
-        self._change(lambda view: view.with_case(case))
-
-    def compare(self, case: Case | None) -> None:
-        """Choose the case to set beside the first.
-
-        Args:
-            case: one that has a meaning for the scenario, or None.
-        """
-        self._change(lambda view: view.with_compared(case))
-
-    def load(self, content: bytes, name: str) -> None:
-        """Take the scenario of a file's content.
-
-        Args:
-            content: the file's bytes.
-            name: what to call the file in messages.
-
-        Raises:
-            ScenarioError: with every fault of the content; nothing changes.
-        """
-        scenario = scenario_from_text(content, name)
-        self._change(lambda view: view.with_scenario(scenario))
+        self._go(lambda history: history.changed(change(history.present), gesture))
 
     def undo(self) -> None:
         """Go one step back, if there is one."""
-        with self._lock:
-            self._history = self._history.undone()
-        self._renew()
+        self._go(History.undone)
 
     def redo(self) -> None:
         """Go one step forward again, if there is one."""
-        with self._lock:
-            self._history = self._history.redone()
-        self._renew()
+        self._go(History.redone)
 
-    def end_gesture(self) -> None:
-        """Let the next change be one of its own, whatever its gesture."""
+    def _go(self, change: Callable[[History], History]) -> None:
         with self._lock:
-            self._history = replace(self._history, gesture="")
-
-    def _change(self, change: Callable[[View], View], gesture: str = "") -> None:
-        with self._lock:
-            view = change(self._history.present)
-            if view == self._history.present:
+            history = change(self.history)
+            if history is self.history:
                 return
-            self._history = self._history.changed(view, gesture)
-        self._renew()
-
-    def _renew(self) -> None:
-        with self._lock:
-            self._version += 1
-            self._worker.request(self._version, self._history.present)
+            self.history = history
+            self.version += 1
+            self._worker.request(self.version, history.present)
         self._on_view()
+
+    def _last(self, kind: type[_E], case: Case | None = None, *, current: bool = False) -> _E | None:
+        """Return the latest event of a kind, if there is one, or only one of the present version."""
+        found = self._found.get((kind, case))
+        if not isinstance(found, kind) or (current and found.version != self.version):
+            return None
+        return found
 
     def _take(self, event: Event) -> None:
         with self._lock:
+            self._found[type(event), getattr(event, "case", None)] = event
             if isinstance(event, Answer):
-                self._answers[event.case] = event
-                self._compiling = False
-            elif isinstance(event, Failure):
-                self._failures[event.case] = event
-            elif isinstance(event, FieldMap):
-                self._map = event
-            elif isinstance(event, PowerCurve):
-                self._curve = event
-            elif isinstance(event, Compiling):
-                self._compiling = True
+                self._found.pop((Compiling, None), None)
         self._on_event(event)

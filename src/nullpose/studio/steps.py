@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, Status, solve
+from nullpose.solve import PAPER_SCHEMES, Result, Rigour, Scheme, Status, solve
 from nullpose.solve.robust import solve_robust
-from nullpose.studio.answer import Answer, Stage, answer_of, robust_answer_of
-from nullpose.studio.case import Case
+from nullpose.studio.answer import Answer, answer_of
+from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB, View
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["POWER_LABEL", "power_curves", "proved_answers", "quick_answer"]
+__all__ = ["POWER_LABEL", "power_curves", "proved_answers", "quick_answers"]
 
 POWER_LABEL = "jamming power over node power (dB)"
 """What the power curve is drawn over."""
@@ -29,10 +29,11 @@ _QUICK_BOXES = 1000
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
 
-def quick_answer(version: int, view: View, case: Case) -> Answer:
-    """Return the best pose that is found in a moment, for as long as the hand moves.
+def quick_answers(version: int, view: View, case: Case) -> Iterator[Answer]:
+    """Yield the best pose that is found in a moment, for as long as the hand moves.
 
-    For the robust case it is the pose that is best without errors.
+    For the robust case it is the pose that is best without errors. How far any is proved is for the proof to
+    say, a moment later.
 
     Args:
         version: the version of the scene.
@@ -42,13 +43,14 @@ def quick_answer(version: int, view: View, case: Case) -> Answer:
     Raises:
         NullposeError: there is no pose, or the case has no meaning here.
     """
-    found = answer_of(version, case, _quick_solution(case.on(view.scenario), case.scheme))
-    if found.stage is not Stage.BEST_SO_FAR:  # how far it is proved is for the proof to say, a moment later
-        found = replace(found, stage=Stage.BEST_SO_FAR, bound=None, gap=None)
-    return replace(found, note=_QUICK_ROBUST) if case.robust else found
+    found = _quick_result(case.on(view.scenario), case.scheme)
+    unproved = replace(found.objective, upper_bound=None, relative_gap=None, rigour=Rigour.NONE)
+    result = replace(found, status=Status.BEST_FOUND, objective=unproved, proofs=(), reason="")
+    answer = answer_of(version, case, result)
+    yield replace(answer, note=_QUICK_ROBUST) if case.robust else answer
 
 
-def _quick_solution(scenario: Scenario, scheme: Scheme) -> Solution:
+def _quick_result(scenario: Scenario, scheme: Scheme) -> Result:
     """Return a rough proof's pose where that is quick, else that of a search which needs none."""
     if len(scenario.nodes) <= _QUICKLY_PROVED:
         proved = solve(scenario, scheme, gap=_QUICK_GAP, node_limit=_QUICK_BOXES, threads=1)
@@ -72,21 +74,15 @@ def proved_answers(
         NullposeError: there is no pose, or the case has no meaning here.
     """
     scenario = case.on(view.scenario)
-    if case.robust:
-        for certify in (False, True):
-            yield robust_answer_of(
-                version,
-                case,
-                solve_robust(
-                    scenario, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
-                ),
-            )
+    if not case.robust:
+        proved = solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress)
+        yield answer_of(version, case, proved)
         return
-    yield answer_of(
-        version,
-        case,
-        solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress),
-    )
+    for certify in (False, True):
+        guarded = solve_robust(
+            scenario, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
+        )
+        yield answer_of(version, case, guarded)
 
 
 def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: None) -> Iterator[PowerCurve]:
@@ -104,23 +100,20 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
     """
     if view.power_db is None:
         return
-    schemes = [one for one in PAPER_SCHEMES if one.not_applicable(view.scenario) is None]
     low_db, high_db = POWER_DB
-    rows: dict[tuple[float, str], SweepRow] = {}
-    for every in (7, 1):
-        for i in range(0, _CURVE_POINTS, every):
-            power_db = low_db + (high_db - low_db) * i / (_CURVE_POINTS - 1)
-            at_power = view.with_power_db(power_db)
-            for scheme in schemes:
-                if (power_db, scheme.value) not in rows:
-                    go_on()
-                    solution = solve(Case(label="").on(at_power.scenario), scheme, certify=False)
-                    rows[power_db, scheme.value] = SweepRow.of(power_db, solution)
-            if every == 1 and i % _CURVE_SHOWN == _CURVE_SHOWN - 1:
-                yield _curve(version, rows, complete=False)
-        yield _curve(version, rows, complete=every == 1)
-
-
-def _curve(version: int, rows: dict[tuple[float, str], SweepRow], *, complete: bool) -> PowerCurve:
-    table = SweepTable(path=POWER_LABEL, rows=tuple(rows[key] for key in sorted(rows)))
-    return PowerCurve(version=version, table=table, complete=complete)
+    schemes = [one for one in PAPER_SCHEMES if one.not_applicable(view.scenario) is None]
+    coarse = range(0, _CURVE_POINTS, 7)
+    order = [*coarse, *(i for i in range(_CURVE_POINTS) if i not in coarse)]
+    rows: list[SweepRow] = []
+    for done, i in enumerate(order, start=1):
+        power_db = low_db + (high_db - low_db) * i / (_CURVE_POINTS - 1)
+        scenario = OPTIMUM.on(view.with_power_db(power_db).scenario)
+        for scheme in schemes:
+            go_on()
+            rows.append(SweepRow.of(power_db, solve(scenario, scheme, certify=False)))
+        complete = done == len(order)
+        if complete or (done - len(coarse)) % _CURVE_SHOWN == 0:
+            table = SweepTable(
+                path=POWER_LABEL, rows=tuple(sorted(rows, key=lambda row: (row.value, row.scheme)))
+            )
+            yield PowerCurve(version=version, table=table, complete=complete)

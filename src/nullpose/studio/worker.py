@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from functools import partial
+from typing import TypeVar
 
 from nullpose.errors import NullposeError
 from nullpose.solve import announce_compiling
@@ -16,7 +15,7 @@ from nullpose.studio.case import Case
 from nullpose.studio.events import Compiling, Event, Failure
 from nullpose.studio.field_map import field_map
 from nullpose.studio.map_kernel import MapKernel
-from nullpose.studio.steps import power_curves, proved_answers, quick_answer
+from nullpose.studio.steps import power_curves, proved_answers, quick_answers
 from nullpose.studio.view import View
 
 __all__ = ["REST_S", "Worker"]
@@ -24,13 +23,9 @@ __all__ = ["REST_S", "Worker"]
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
+_E = TypeVar("_E", bound=Event)
+
 _log = logging.getLogger("nullpose.studio")
-
-
-@dataclass(frozen=True, slots=True)
-class _Request:
-    version: int
-    view: View
 
 
 class _SupersededError(BaseException):
@@ -54,8 +49,8 @@ class Worker:
     ) -> None:
         self._publish, self._map_kernel, self._rest_s = publish, map_kernel, rest_s
         self._changed = threading.Condition()
-        self._request: _Request | None = None
-        self._pending = self._closed = False
+        self._pending: tuple[int, View] | None = None
+        self._closed = False
         self._thread = threading.Thread(target=self._run, name="nullpose-studio-worker", daemon=True)
         self._thread.start()
 
@@ -67,7 +62,7 @@ class Worker:
             view: the scene.
         """
         with self._changed:
-            self._request, self._pending = _Request(version, view), True
+            self._pending = version, view
             self._changed.notify()
 
     def close(self, timeout_s: float = 5.0) -> bool:
@@ -86,70 +81,57 @@ class Worker:
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._pending or self._closed)
-                if self._closed:
+                self._changed.wait_for(self._is_superseded)
+                if self._closed or self._pending is None:
                     return
-                request, self._pending = self._request, False
-            assert request is not None, "something is pending"
+                (version, view), self._pending = self._pending, None
             try:
-                with announce_compiling(partial(self._publish, Compiling(version=request.version))):
-                    self._serve(request)
+                with announce_compiling(partial(self._publish, Compiling(version=version))):
+                    self._serve(version, view)
             except _SupersededError:
                 continue
             except Exception:
                 _log.exception("the studio's worker met an unexpected fault")
 
-    def _serve(self, request: _Request) -> None:
-        view = request.view
+    def _serve(self, version: int, view: View) -> None:
         for case in view.cases:
             # told even if the hand has moved on since: else nothing would move while it does
-            self._try(request, case, partial(self._answer_quickly, request, case))
+            self._tell_all(version, case, quick_answers(version, view, case), late=True)
         self._rest()
         best: Answer | None = None
         for case in view.cases:
-            last = self._try(request, case, partial(self._prove, request, case))
+            last = self._tell_all(version, case, proved_answers(version, view, case, self._go_on))
             best = best or last
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
-        self._try(request, view.case, lambda: self._draw_curve(request))
+        self._tell_all(version, view.case, power_curves(version, view, self._go_on))
         if best is not None:
             while not self._map_kernel.is_ready():
                 self._rest()
-            self._tell(request, field_map(best, self._go_on))
+            self._tell_all(version, best.case, [field_map(best, self._go_on)])
 
-    def _answer_quickly(self, request: _Request, case: Case) -> None:
-        self._publish(quick_answer(request.version, request.view, case))
-
-    def _prove(self, request: _Request, case: Case) -> Answer | None:
+    def _tell_all(self, version: int, case: Case, events: Iterable[_E], *, late: bool = False) -> _E | None:
+        """Return the last of some events, all told, or the failure in their place; none if there was one."""
         last = None
-        for last in proved_answers(request.version, request.view, case, lambda _gap, _boxes: self._go_on()):
-            self._tell(request, last)
+        try:
+            for last in events:
+                if not late:
+                    self._go_on()
+                self._publish(last)
+        except NullposeError as error:
+            self._go_on()
+            self._publish(Failure(version=version, case=case, message=str(error)))
+            return None
         return last
 
-    def _draw_curve(self, request: _Request) -> None:
-        for curve in power_curves(request.version, request.view, self._go_on):
-            self._tell(request, curve)
+    def _is_superseded(self) -> bool:
+        return self._closed or self._pending is not None
 
-    def _try(
-        self, request: _Request, case: Case, step: Callable[[], Answer | None] | Callable[[], None]
-    ) -> Answer | None:
-        try:
-            return step()
-        except NullposeError as error:
-            self._tell(request, Failure(version=request.version, case=case, message=str(error)))
-            return None
-
-    def _tell(self, request: _Request, event: Event) -> None:
-        self._go_on()
-        self._publish(event)
-
-    def _go_on(self) -> None:
-        if self._pending or self._closed:
+    def _go_on(self, *_: object) -> None:
+        """End the step if its scene is no longer the newest; takes whatever a solver says of its progress."""
+        if self._is_superseded():
             raise _SupersededError
 
     def _rest(self) -> None:
-        until = time.monotonic() + self._rest_s
         with self._changed:
-            self._changed.wait_for(
-                lambda: self._pending or self._closed, timeout=max(0.0, until - time.monotonic())
-            )
+            self._changed.wait_for(self._is_superseded, timeout=self._rest_s)
         self._go_on()

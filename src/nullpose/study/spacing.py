@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from nullpose.errors import UsageError
 
 __all__ = ["spaced"]
@@ -25,12 +27,12 @@ def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tupl
     Raises:
         UsageError: any of these does not hold; the message lists all that do not.
     """
-    faults = []
-    for name, value in (("from", start), ("to", stop)):
-        if not math.isfinite(value):
-            faults.append(f"{name}: {value} given; a finite number is needed")
-        elif log and value <= 0.0:
-            faults.append(f"{name}: {value:g} given; a logarithmic sweep needs a number above 0")
+    needed = "a finite number above 0" if log else "a finite number"
+    faults = [
+        f"{name}: {value:g} given; {'a logarithmic' if log else 'a'} sweep needs {needed}"
+        for name, value in (("from", start), ("to", stop))
+        if not math.isfinite(value) or (log and value <= 0.0)
+    ]
     if start == stop:
         faults.append(f"to: {stop:g} given, the same as from; a sweep needs two different ends")
     if points < 2:
@@ -38,10 +40,5 @@ def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tupl
     if faults:
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
         raise UsageError("\n  ".join([f"range of the sweep: {count}", *faults]))
-    steps = [i / (points - 1) for i in range(points)]
-    if log:
-        values = [start ** (1.0 - s) * stop**s for s in steps]
-    else:
-        values = [start * (1.0 - s) + stop * s for s in steps]
-    inner = [float(f"{value:.{_DIGITS}g}") for value in values[1:-1]]
-    return (start, *inner, stop)
+    values = (np.geomspace if log else np.linspace)(start, stop, points)
+    return (start, *(float(f"{value:.{_DIGITS}g}") for value in values[1:-1]), stop)

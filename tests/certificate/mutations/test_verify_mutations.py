@@ -52,7 +52,7 @@ def sound(
 ) -> dict[str, Certificate]:
     """Returns small certificates of all kinds."""
     three = scene([(0, 0, 0), (40, 5, 2), (10, 40, 1)], [(17, 15, 4), (30, 30, 0)])
-    room = {"x_m": (-20.0, 30.0), "y_m": (5.0, 60.0)}
+    square = {"x_m": (-20.0, 30.0), "y_m": (5.0, 60.0)}
     zones = Airspace(
         altitude_m=(8.0, 30.0),
         geofence_m=[(-20.0, -5.0), (40.0, -5.0), (10.0, 25.0), (40.0, 60.0), (-20.0, 60.0)],
@@ -77,13 +77,13 @@ def sound(
         "cells": cut_into_cells(certified(paper(0.1), gap=0.2)),
         "ball": certified(paper(keep_out_m=26.5), gap=0.02),
         "vertical": certified(paper(), "vertical", gap=0.4),
-        "broadside": certified(paper(**room), "maximum-gain", gap=0.4),
+        "broadside": certified(paper(**square), "maximum-gain", gap=0.4),
         "null": certified(three, "zero-interference", gap=0.4),
         "belt": certified(renewed(paper(10.0), airframe=belt), gap=0.1),
         "level": without_top(cut_into_cells(certified(renewed(paper(0.1), airframe=level), gap=0.2))),
         "zones": certified(renewed(paper(), airspace=zones), gap=0.02),
         "secret": certified(renewed(paper(), **heard), gap=0.05),
-        "weights": certified(renewed(paper(**room), nodes=weights), gap=0.1),
+        "weights": certified(renewed(paper(**square), nodes=weights), gap=0.1),
     }
 
 

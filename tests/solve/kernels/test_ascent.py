@@ -7,11 +7,12 @@ import pytest
 
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve.kernels.ascent import ascend
-from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
+from nullpose.solve.kernels.ascent import POOL, Pool, ascend
+from nullpose.solve.kernels.dual import dual_multipliers
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
+from nullpose.solve.kernels.symmetric import top_eigenvector
 
 TOLERANCE = 1e-6
 
@@ -19,10 +20,13 @@ TOLERANCE = 1e-6
 @heap_kernel
 def ascended(family, row, mean, back, weights, v):
     """Returns what the kernel does, which has no Python name, for a free axis in the world's frame."""
-    basis, nothing = np.eye(3), np.zeros((1, 6))
-    whitening = (nothing, mean, back)
-    every = np.empty(family.numerator_isotropic.shape[0])
-    return ascend(family, False, basis, row, whitening, nothing, 0, np.zeros(1), TOLERANCE, every, weights, v)
+    whitening, every = (np.zeros((1, 6)), mean, back), np.empty(family.numerator_isotropic.shape[0])
+    pool = Pool(
+        np.empty((POOL, 6)), np.empty(POOL, np.int64), np.empty(POOL), np.empty(POOL), np.empty((POOL, 2)),
+        np.empty(3), np.empty(3, np.int64),
+    )  # fmt: skip
+    top, followed, _ = ascend(family, False, np.eye(3), row, whitening, pool, 0, TOLERANCE, every, weights, v)
+    return top, followed
 
 
 def family_of(rng: np.random.Generator, nodes: int, jammers: int) -> Family:
@@ -81,7 +85,7 @@ def test_it_agrees_with_the_interior_point(start: str) -> None:
         found, followed = ascended(family.arrays, row, mean, back, weights, v)
         best, matrix = np.empty(ratios), np.empty(6)
         third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
-        wanted = dual_multipliers(forms, ratios, 0, level, math.inf, 1e-9, third, best, matrix)
+        wanted = dual_multipliers(forms, 0, ratios, level, math.inf, 1e-9, third, best, matrix)
         if math.isfinite(found):  # multipliers, good or not, bound the dual from above
             mix, top_axis = weights[:ratios] @ forms, np.empty(3)
             assert math.isclose(weights[:ratios].sum(), 1.0, rel_tol=1e-9)

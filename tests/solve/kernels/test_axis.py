@@ -1,6 +1,5 @@
 """The exact best axis at a position, against grids, local solvers and duality."""
 
-import dataclasses
 import math
 from collections.abc import Callable
 
@@ -121,7 +120,7 @@ def test_two_nodes_meet_their_dual(
     """For two nodes the dual, a convex problem in one multiplier, is exact (Brickman) and gives the value."""
     rng = np.random.default_rng(seed)
     family = build_family(random_scene(rng, 2, jammers, 10.0 ** rng.uniform(-1.0, 4.0)))
-    family = dataclasses.replace(family, numerator_weight=family.numerator_weight * [1.0, 10.0**decades])
+    family = family.changed(numerator_weight=family.numerator_weight * [1.0, 10.0**decades])
     p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
     value, _ = found(family, p)
     assert brickman(*whitened(family, p, dense_forms)) == pytest.approx(value, rel=2e-12)
@@ -135,7 +134,7 @@ def test_no_multiplier_is_below_the_value(
     rng = np.random.default_rng(seed)
     family = build_family(random_scene(rng, nodes, 2, 10.0 ** rng.uniform(-1.0, 4.0)))
     powers = 10.0 ** rng.uniform(0.0, decades, nodes)
-    family = dataclasses.replace(family, numerator_weight=family.numerator_weight * powers)
+    family = family.changed(numerator_weight=family.numerator_weight * powers)
     p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
     value, _ = found(family, p)
     forms = whitened(family, p, dense_forms)
@@ -176,9 +175,8 @@ def test_powers_over_six_decades(seed: int, random_scene: Callable) -> None:
     scene = random_scene(rng, 8, 1, 10.0)
     boost = np.array([1.0, 1.0, 1.0, 1.0, 1e6, 1e6, 1e6, 1e6])
     family = build_family(scene)
-    family = dataclasses.replace(family, numerator_weight=family.numerator_weight * boost)
-    weak = dataclasses.replace(
-        family,
+    family = family.changed(numerator_weight=family.numerator_weight * boost)
+    weak = family.changed(
         numerator_isotropic=np.zeros(4),
         numerator_weight=family.numerator_weight[:4],
         numerator_point=np.arange(4),
@@ -269,7 +267,7 @@ def test_turning_the_scene_turns_the_axis(seed: int, nodes: int, random_scene: C
     family = build_family(random_scene(rng, nodes, 2, 10.0))
     p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
     turn = Rotation.from_quat(rng.normal(size=4)).as_matrix()
-    turned = dataclasses.replace(family, points_m=family.points_m @ turn.T)
+    turned = family.changed(points_m=family.points_m @ turn.T)
     before, after = np.empty(3), np.empty(3)
     value = best_axis(family.arrays, p, before)
     assert best_axis(turned.arrays, turn @ p, after) == pytest.approx(value, abs=1e-11)
@@ -280,8 +278,7 @@ def test_denominators_that_are_equal_are_one(random_scene: Callable) -> None:
     rng = np.random.default_rng(2)
     for _ in range(20):
         family = build_family(random_scene(rng, 4, 2, 10.0))
-        apart = dataclasses.replace(
-            family,
+        apart = family.changed(
             denominator_of=np.arange(4),
             denominator_isotropic=np.ones(4),
             denominator_start=2 * np.arange(5),

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from nullpose.solve.kernels.axis import best_axis_of_forms
-from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
+from nullpose.solve.kernels.dual import dual_multipliers
+from nullpose.solve.kernels.symmetric import top_eigenvector
 
 ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
 
@@ -37,7 +38,7 @@ def test_multipliers_bound_the_best_axis(count: int) -> None:
         forms = random_forms(rng, count)
         best = best_axis_of_forms(forms, np.empty(3))
         multipliers, matrix = np.empty(count), np.empty(6)
-        primal = dual_multipliers(forms, count, 0, best, math.inf, 1e-7, ISOTROPIC, multipliers, matrix)
+        primal = dual_multipliers(forms, 0, count, best, math.inf, 1e-7, ISOTROPIC, multipliers, matrix)
         assert np.all(multipliers >= 0.0)
         assert np.sum(multipliers) == pytest.approx(1.0, abs=1e-12)
         bound = dual_value(forms, multipliers)
@@ -54,7 +55,7 @@ def test_two_forms_have_no_gap() -> None:
         forms = random_forms(rng, 2)
         best = best_axis_of_forms(forms, np.empty(3))
         multipliers, matrix = np.empty(2), np.empty(6)
-        dual_multipliers(forms, 2, 0, best, math.inf, 1e-8, ISOTROPIC, multipliers, matrix)
+        dual_multipliers(forms, 0, 2, best, math.inf, 1e-8, ISOTROPIC, multipliers, matrix)
         assert dual_value(forms, multipliers) == pytest.approx(best, rel=1e-6)
 
 
@@ -68,9 +69,9 @@ def test_a_side_only_lowers_the_bound() -> None:
         free, confined = np.empty(4), np.empty(5)
         level = best_axis_of_forms(forms, np.empty(3))
         arguments = (level, math.inf, 1e-7)
-        unbound = dual_multipliers(forms, 4, 0, *arguments, ISOTROPIC, free, np.empty(6))
-        both = np.vstack([forms, side])
-        bound = dual_multipliers(both, 4, 1, *arguments, start, confined, np.empty(6))
+        unbound = dual_multipliers(forms, 0, 4, *arguments, ISOTROPIC, free, np.empty(6))
+        both = np.vstack([side, forms])
+        bound = dual_multipliers(both, 1, 5, *arguments, start, confined, np.empty(6))
         assert bound <= unbound * (1.0 + 1e-5)
         assert dual_value(both, confined) == pytest.approx(bound, rel=1e-5)
 

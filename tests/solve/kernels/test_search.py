@@ -13,6 +13,7 @@ from nullpose.family import AxisField, Family, build_family
 from nullpose.solve.kernels.axis import best_axis
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.search import cut_box, push_out, search
+from nullpose.solve.multistart import SearchSettings
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -27,8 +28,9 @@ def box_of(family: Family, level: float) -> tuple[np.ndarray, np.ndarray]:
 def run(family: Family, landmarks: np.ndarray, shift: np.ndarray) -> tuple:
     """Returns value, starts, evaluations, position, axis and multipliers of a short search, the axis free."""
     p, u, z = np.zeros(3), np.zeros(3), np.zeros(len(family.numerator_point))
+    settings = SearchSettings(coarse=32, polished=8, rounds=4, patience=2)
     counts = search(
-        family.arrays, family.domain, AxisField.free().arrays, landmarks, shift, 32, 8, 4, 2, p, u, z
+        family.arrays, family.domain, AxisField.free().arrays, landmarks, shift, settings, p, u, z
     )
     return *counts, p, u, z
 

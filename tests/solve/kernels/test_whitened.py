@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nullpose.family.records import Ratios
+from nullpose.objectives import Ratios
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.node import CENTRE, COLUMNS, HALF, LEVEL

@@ -13,6 +13,7 @@ from nullpose import load
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.server import Studio, studio
 from nullpose.studio.session import Session
+from nullpose.studio.view import View
 
 PAPER = load(Path(__file__).parents[3] / "examples" / "paper.toml")
 PATIENCE_MS = 90_000
@@ -70,9 +71,7 @@ def first_page(open_page: Open, running: Studio) -> tuple[Page, Session]:
 def session(first_page: tuple[Page, Session]) -> Session:
     """The server's side of the shared page, back at the paper's scene."""
     page, session = first_page
-    session.choose(OPTIMUM)
-    session.compare(None)
-    session.load(PAPER.to_toml().encode(), "paper.toml")
+    session.change(lambda view: View(scenario=PAPER, case=OPTIMUM))
     page.bring_to_front()  # one behind another draws nothing, and waits of it never end
     page.wait_for_function(
         f"+document.querySelector('[data-np=readout]').dataset.version == {session.version}"

@@ -81,8 +81,14 @@ def report_text(summary: Summary, figures: Collection[str]) -> str:
     blocks += map(escaped, (answer_of(summary), outage_words(summary), certainty_of(summary)))
     if summary.values.scenes:
         blocks.append(_definitions(summary))
-        for part in (_reached, _gained, _swept, _best, _outage, _robustness, _proofs):
-            blocks += part(summary).blocks(figures)
+        along = f"Median and worst tenth of the {summary.quantity.smallest} along the sweep."
+        parts = [
+            _reached(summary),
+            _gained(summary),
+            _Part("Along the sweep", "", "sweep", along),
+            *(part(summary) for part in (_best, _outage, _robustness, _proofs)),
+        ]
+        blocks += [block for part in parts for block in part.blocks(figures)]
     return "\n\n".join(filter(None, [*blocks, *_data(summary)])) + "\n"
 
 
@@ -156,11 +162,6 @@ def gain_tables(summary: Summary) -> dict[str, Rows]:
         "Share of the omnidirectional vehicle's median gain, %": _shares(summary, partial, "share_of_median"),
         "Share of its gain in the worst tenth, %": _shares(summary, partial, "share_of_worst_tenth"),
     }
-
-
-def _swept(summary: Summary) -> _Part:
-    caption = f"Median and worst tenth of the {summary.quantity.smallest} along the sweep."
-    return _Part("Along the sweep", "", "sweep", caption)
 
 
 def _best(summary: Summary) -> _Part:

@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.array_response import array_value, respond
-from nullpose.solve.kernels.chart import choose_sides, side_slack
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solve.kernels.local_coordinates import choose_sides, side_slack
 from nullpose.solve.kernels.vectors import minus, norm, over, store
 
 __all__ = ["climb", "walls"]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.dual import top_eigenvector
 from nullpose.solve.kernels.expansion import TOWARDS_POINT, expand_point, min_distance
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.symmetric import top_eigenvector
 
 __all__ = ["ROUNDING", "add_mixed_denominators", "add_scaled", "expand_denominator", "sharpen"]
 

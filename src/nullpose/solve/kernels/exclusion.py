@@ -18,7 +18,6 @@ from nullpose.solve.kernels.denominators import (
     add_scaled,
     sharpen,
 )
-from nullpose.solve.kernels.dual import top_eigenvector
 from nullpose.solve.kernels.expansion import WORLD, expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
@@ -41,7 +40,7 @@ from nullpose.solve.kernels.node import (
     cell_side,
 )
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solve.kernels.symmetric import copy_into, copy_table
+from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["excludes", "is_level", "out_of_reach"]

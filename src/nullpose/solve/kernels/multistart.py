@@ -36,9 +36,8 @@ def search_and_climb(
         best_z: output, (ratios,): the ratios' multipliers at that pose.
     """
     value, starts, evaluations = search(
-        family, domain, axis_field, landmarks, shift,
-        settings.coarse, settings.polished, settings.rounds, settings.patience, best_p, best_u, best_z,
-    )  # fmt: skip
+        family, domain, axis_field, landmarks, shift, settings, best_p, best_u, best_z
+    )
     if settings.rounds >= 0 and not math.isfinite(value):
         return value, starts, evaluations
     for mu in climbs:

@@ -1,18 +1,20 @@
 """Local maximum of the smallest ratio, by the epigraph form ``maximise t: f_k(p, u) >= t, p in P``.
 
-A primal-dual interior-point method with exact second derivatives walks to the neighbourhood of a
-Karush-Kuhn-Tucker
-point; Newton's method on the equations of its active set then lands on it to the last digits. ``f_k`` is the
-logarithm of ratio k. Nothing is smoothed: at the end the active ratios are equal, each with its multiplier.
+A primal-dual interior-point method with exact second derivatives walks to a Karush-Kuhn-Tucker point. ``f_k``
+is the logarithm of ratio k. Nothing is smoothed: at the end the active ratios are equal but for the last
+barrier weight, each with its multiplier.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nullpose.family.records import Axes
+from nullpose.family.records import Axes, Domain
+from nullpose.objectives.ratios import Ratios
 from nullpose.solve.kernels.barrier import (
     barrier_value,
     bent_step,
@@ -21,23 +23,24 @@ from nullpose.solve.kernels.barrier import (
     residual,
     update_duals,
 )
-from nullpose.solve.kernels.chart import (
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solve.kernels.links import derivatives, log_ratios
+from nullpose.solve.kernels.local_coordinates import (
+    BAND,
+    CONE,
+    add_slack_slopes,
     axis_at,
-    chart,
     choose_sides,
     clamp_axis,
+    clamp_elevation,
     domain_slacks,
+    local_coordinates,
     move,
-    nearest_node,
     reduce_hessian,
     slack_count,
-    turning,
 )
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
-from nullpose.solve.kernels.land import land
-from nullpose.solve.kernels.links import derivatives, log_ratios, min_log_ratio
-from nullpose.solve.kernels.scratch import scratch
-from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.scratch import scratch, zeroed
+from nullpose.solve.kernels.symmetric import copy_into, inner, smallest_of
 
 __all__ = ["polish"]
 
@@ -46,170 +49,196 @@ _LONGEST = 0.7
 _INSIDE = 0.995
 _ATTEMPTS = 31
 _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
+_ACTIVE = 1e-5  # the least multiplier of a face on which a pose is put
+_HAIR = 1e-12  # what that may cost
+
+FloatArray = NDArray[np.float64]
 
 
-@inner_heap_kernel
-def enter(domain, axis_field, p, u, free, used):
-    """Move a pose strictly inside its faces and its band; fill which coordinates and slacks are in play."""
-    low, high = domain.low_m, domain.high_m
-    for i in range(3):
-        width = high[i] - low[i]
-        free[i] = width > 1e-9
-        if free[i]:
-            margin = min(1e-2, 1e-3 * width)
-            p[i] = min(max(p[i], low[i] + margin), high[i] - margin)
-        else:
-            p[i] = low[i]
-        used[i] = free[i] and low[i] > -math.inf
-        used[3 + i] = free[i] and high[i] < math.inf
-    band = used.shape[0] - 2
-    for c in range(6, band):
-        used[c] = True
-    least, greatest = axis_field.offset[0], axis_field.offset[1]
-    is_band = axis_field.kind == 2
-    used[band] = is_band and least > 0.0
-    used[band + 1] = is_band and greatest < 1.0
-    if is_band:
-        margin = min(1e-3, 1e-2 * (greatest - least))
-        inside = Axes(axis_field.kind, axis_field.offset.copy(), axis_field.matrix)
-        inside.offset[0] += margin if used[band] else 0.0
-        inside.offset[1] -= margin if used[band + 1] else 0.0
-        clamp_axis(inside, u)
+class Problem(NamedTuple):
+    """What is polished: the chosen sides of forbidden pieces, and which coordinates are free."""
+
+    family: Ratios
+    domain: Domain
+    axis_field: Axes
+    chosen: NDArray[np.int64]
+    free: NDArray[np.bool_]
+
+
+class Point(NamedTuple):
+    """A pose (6,), its log ratios and after them its slacks, and its gaps: the ratios' above the level."""
+
+    pose: FloatArray
+    values: FloatArray
+    gaps: FloatArray
+
+
+class Model(NamedTuple):
+    """The problem around a point: change of the pose by each variable, gaps' rates and multipliers."""
+
+    directions: FloatArray
+    rates: FloatArray
+    duals: FloatArray
+    factor: FloatArray
 
 
 @inner_kernel
-def value_in_domain(family, domain, axis_field, chosen, p, u, slacks, logs, f):
-    """Return the smallest log ratio, minus infinity outside the domain; fill the slacks."""
-    domain_slacks(p, u, domain, axis_field, chosen, slacks)
-    band = slacks.shape[0] - 2
-    for c in range(band):
-        if slacks[c] < 0.0 or (c >= 6 and slacks[c] == 0.0):
-            return -math.inf
-    if not min(slacks[band], slacks[band + 1]) >= -_BAND_EDGE:
-        return -math.inf
-    return min_log_ratio(family, p, u, logs, f)
+def enter(problem, pose):
+    """Move a pose strictly inside its faces and its band; fill which coordinates are free."""
+    domain, ends = problem.domain, problem.axis_field.offset
+    for i in range(3):
+        low, high = domain.low_m[i], domain.high_m[i]
+        problem.free[i] = high - low > 1e-9
+        margin = min(1e-2, 1e-3 * (high - low)) if problem.free[i] else 0.0
+        pose[i] = min(max(pose[i], low + margin), high - margin)
+    if problem.axis_field.kind == BAND:
+        margin = min(1e-3, 1e-2 * (ends[1] - ends[0]))
+        least = ends[0] + margin if ends[0] > 0.0 else 0.0
+        greatest = ends[1] - margin if ends[1] < 1.0 else 1.0
+        clamp_elevation(least, greatest, pose[3:])
 
 
-@kernel
-def begin(family, domain, axis_field, p, u, work, best_p, best_u):
-    """Move a pose strictly inside; fill the better of it and the start, return both values."""
-    free, used, chosen, slacks, logs, f = work
+@inner_kernel
+def fill_values(problem, pose, logs, values):
+    """Fill the log ratios of a pose and after them its slacks, infinite for a coordinate not free."""
+    p, u, ratios = pose[:3], pose[3:], ratio_count(problem)
+    log_ratios(problem.family, p, u, logs, values[:ratios])
+    domain_slacks(p, u, problem.domain, problem.axis_field, problem.chosen, values[ratios:])
+    for i in range(3):
+        if not problem.free[i]:
+            values[ratios + i] = values[ratios + 3 + i] = math.inf
+
+
+@inner_kernel
+def ratio_count(problem):
+    """Return how many of the values are log ratios."""
+    return problem.family.numerator_point.shape[0]
+
+
+@inner_kernel
+def reached(problem, values):
+    """Return the smallest log ratio, minus infinity outside the domain."""
+    ratios, band = ratio_count(problem), values.shape[0] - 2
+    if smallest_of(values[ratios:band]) >= 0.0 and smallest_of(values[band:]) >= -_BAND_EDGE:
+        return smallest_of(values[:ratios])
+    return -math.inf
+
+
+@inner_kernel
+def begin(problem, point, logs, best_pose):
+    """Move a pose strictly inside; fill the better of it and the start; return both values."""
+    pose = point.pose
     best = value = -math.inf
-    clamp_axis(axis_field, u)
-    choose_sides(domain, p, chosen)
-    for turn in range(2):  # the start itself is the first incumbent
-        if turn == 1:
-            enter(domain, axis_field, p, u, free, used)
-            choose_sides(domain, p, chosen)
-        axis_at(axis_field.kind, axis_field.offset, axis_field.matrix, p, u)
-        value = value_in_domain(family, domain, axis_field, chosen, p, u, slacks, logs, f)
-        if turn == 0 or value > best:
+    problem.free[:] = True
+    clamp_axis(problem.axis_field, pose[3:])
+    for attempt in range(2):  # the start itself is the first incumbent
+        if attempt == 1:
+            enter(problem, pose)
+        choose_sides(problem.domain, pose[:3], problem.chosen)
+        axis_at(problem.axis_field, pose[:3], pose[3:])
+        fill_values(problem, pose, logs, point.values)
+        value = reached(problem, point.values)
+        if attempt == 0 or value > best:
             best = value
-            copy_into(p, best_p)
-            copy_into(u, best_u)
+            copy_into(pose, best_pose)
     return best, value
 
 
 @inner_kernel
-def linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h):
-    """Fill the slopes of ratios and constraints in the search variables; add the constraints' curvature."""
-    keep_points = domain.keep_out_points_m
-    after = 6 + keep_points.shape[0]
-    for k in range(grads.shape[0]):
-        for m in range(n):
-            s = 0.0
-            for i in range(6):
-                s += grads[k, i] * jacobian[i, m]
-            slopes[k, m] = s
-    for m in range(n):
-        for i in range(3):
-            rows[i, m], rows[3 + i, m] = jacobian[i, m], -jacobian[i, m]
-        for q in range(keep_points.shape[0]):
-            s = 0.0
-            for i in range(3):
-                s += 2.0 * (p[i] - keep_points[q, i]) * jacobian[i, m]
-                for j in range(n):
-                    h[m, j] += 2.0 * zs[6 + q] * jacobian[i, m] * jacobian[i, j]
-            rows[6 + q, m] = s
-        for c in range(chosen.shape[0]):
-            side = domain.piece_sides[chosen[c]]
-            s = 0.0
-            for i in range(3 if side[0] == 0.0 else 2):
-                s += (side[1 + i] if side[0] == 0.0 else 2.0 * (p[i] - side[1 + i])) * jacobian[i, m]
-                if side[0] == 1.0:
-                    for j in range(n):
-                        h[m, j] += 2.0 * zs[after + c] * jacobian[i, m] * jacobian[i, j]
-            rows[after + c, m] = s
-    if axis_field.kind == 2:
-        bend_band(axis_field.offset, u, jacobian, n, zs, rows, h)
-    elif axis_field.kind == 3:  # the cone bends away from the step by u_z e3, in units of the axis's variable
-        for k in range(grads.shape[0]):
-            h[n - 1, n - 1] += z[k] * grads[k, 5] * u[2]
+def fill_gaps(point, ratios, t):
+    """Fill the gaps of a point at a level."""
+    for c in range(point.values.shape[0]):
+        point.gaps[c] = point.values[c] - (t if c < ratios else 0.0)
 
 
 @inner_kernel
-def bend_band(ends, u, jacobian, n, zs, rows, h):
-    """Fill the slopes of a band's ends, ``u_z^2 - c |u|^2`` and its like, and add their curvature."""
-    for end in range(2):
-        c = rows.shape[0] - 2 + end
-        sign = 1.0 if end == 0 else -1.0
-        for m in range(n):
-            s = u[2] * jacobian[5, m]
-            for i in range(3):
-                s -= ends[end] * u[i] * jacobian[3 + i, m]
-            rows[c, m] = 2.0 * sign * s
-            for j in range(n):
-                s = jacobian[5, m] * jacobian[5, j]
-                for i in range(3):
-                    s -= ends[end] * jacobian[3 + i, m] * jacobian[3 + i, j]
-                h[m, j] += 2.0 * sign * zs[c] * s
+def linearise(problem, point, grads, parts, n, model, h):
+    """Fill the rates of all gaps in the n search variables and the level, and the Lagrangian's Hessian."""
+    ratios = ratio_count(problem)
+    pose, duals, hess = point.pose, model.duals, scratch(6, 6)
+    f = point.values[:ratios]
+    derivatives(problem.family, pose[:3], pose[3:], duals[:ratios], f, grads[:ratios], hess, parts)
+    add_slack_slopes(
+        problem.domain, problem.axis_field, problem.chosen, pose, duals[ratios:], grads[ratios:], hess
+    )
+    reduce_hessian(hess, model.directions, n, h)
+    for c in range(duals.shape[0]):
+        if point.gaps[c] < math.inf:
+            for m in range(n):
+                model.rates[c, m] = inner(grads[c], model.directions[m], 6)
+        model.rates[c, n] = -1.0 if c < ratios else 0.0
+    if problem.axis_field.kind == CONE:  # it bends away from the step by u_z e3, in units of its variable
+        h[n - 1, n - 1] += pose[5] * inner(duals, grads[:, 5], ratios)
 
 
 @inner_kernel
-def longest_scale(rows, slacks, used, step, n, balls):
-    """Return the largest share of a step that stays inside the faces, and the step's size."""
+def longest_scale(problem, gaps, rates, step, n):
+    """Return the largest share of a step that stays inside all but the balls, and the step's size."""
+    ratios, balls = ratio_count(problem), problem.domain.keep_out_points_m.shape[0]
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
-    scale = min(1.0, _LONGEST / largest) if largest > 0.0 else 1.0
-    for c in range(used.shape[0]):  # not the balls and cylinders, whose slack is not linear
-        if used[c] and (c < 6 or c >= balls):
-            s = 0.0
-            for m in range(n):
-                s += rows[c, m] * step[m]
-            if s < 0.0:
-                scale = min(scale, -_INSIDE * slacks[c] / s)
+    scale = min(1.0, _LONGEST / largest)
+    for c in range(ratios, gaps.shape[0]):
+        change = inner(rates[c], step, n)
+        if change < 0.0 and not ratios + 6 <= c < ratios + 6 + balls:
+            scale = min(scale, -_INSIDE * gaps[c] / change)
     return scale, largest
 
 
 @inner_kernel
-def line_search(family, domain, axis_field, here, there, model, way):
-    """Return the share of a step that climbs the barrier enough, and the level there; fill the pose reached.
+def line_search(problem, here, t, there, model, n, mu, step, slope, scale, logs):
+    """Return the share of a step that climbs the barrier enough, and the level there; fill the point reached.
 
     Before the step is shortened it is bent once, to follow a curved ridge. A share of zero: none climbs.
     """
-    p, u, f, t, slacks = here
-    new_p, new_u, new_f, new_slacks, logs = there
-    jacobian, slopes, rows, used, chosen, z, factor, n, mu = model
-    balls = 6 + domain.keep_out_points_m.shape[0]
-    step, slope, scale = way
-    floor = barrier_value(f, t, slacks, used, mu)
-    bent = scratch(6)
+    ratios = ratio_count(problem)
+    f, new_f, bent = here.values[:ratios], there.values[:ratios], scratch(6)
+    floor = barrier_value(here.gaps, t, mu)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
-            bent_step(f, t, new_f, slopes, z, factor, n, scale, step, bent)
-            share = longest_scale(rows, slacks, used, bent, n, balls)[0]
-            move(axis_field, p, u, jacobian, n, bent, share, new_p, new_u)
+            bent_step(f, new_f, here.gaps, model.duals, model.rates, model.factor, n, scale, step, bent)
+            share, _ = longest_scale(problem, here.gaps, model.rates, bent, n)
+            move(problem.axis_field, here.pose, model.directions, n, bent, share, there.pose)
         else:
             scale *= 0.5 if attempt > 1 else 1.0
-            move(axis_field, p, u, jacobian, n, step, scale, new_p, new_u)
-        log_ratios(family, new_p, new_u, logs, new_f)
-        domain_slacks(new_p, new_u, domain, axis_field, chosen, new_slacks)
+            move(problem.axis_field, here.pose, model.directions, n, step, scale, there.pose)
+        fill_values(problem, there.pose, logs, there.values)
         new_t = best_level(new_f, mu)
-        value = barrier_value(new_f, new_t, new_slacks, used, mu)
+        fill_gaps(there, ratios, new_t)
+        value = barrier_value(there.gaps, new_t, mu)
         if value >= floor + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(floor)):
             return scale, new_t
     return 0.0, t
+
+
+@inner_kernel
+def put_on_faces(problem, here, there, model, logs, best, best_pose):
+    """Put the last pose on the faces that hold it, as the best unless that loses anything; return its value.
+
+    A step in the search variables does so, since the axis must follow.
+    """
+    ratios, m = ratio_count(problem), 0
+    step, goal = zeroed(6), scratch(3)
+    copy_into(here.pose[:3], goal)
+    for i in range(3):
+        if problem.free[i]:
+            length = model.directions[m, i]
+            if model.duals[ratios + i] * length > _ACTIVE:
+                goal[i] = problem.domain.low_m[i]
+            if model.duals[ratios + 3 + i] * length > _ACTIVE:
+                goal[i] = problem.domain.high_m[i]
+            step[m] = (goal[i] - here.pose[i]) / length
+            m += 1
+    move(problem.axis_field, here.pose, model.directions, m, step, 1.0, there.pose)
+    copy_into(goal, there.pose)  # exactly
+    axis_at(problem.axis_field, goal, there.pose[3:])
+    fill_values(problem, there.pose, logs, there.values)
+    value = reached(problem, there.values)
+    if value >= best - _HAIR:
+        copy_into(there.pose, best_pose)
+        return value
+    return best
 
 
 @heap_kernel
@@ -226,80 +255,60 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         max_steps: limit on interior-point steps.
         multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
     """
-    ratios, groups, sides = (
-        family.numerator_isotropic.shape[0],
-        family.denominator_isotropic.shape[0],
-        slack_count(domain),
-    )
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
-    free, used = np.empty(3, np.bool_), np.empty(sides, np.bool_)
-    f, logs, slacks = np.empty(ratios), np.empty(groups), np.empty(sides)
-    best_p, best_u = scratch(3), scratch(3)
-    work = (free, used, chosen, slacks, logs, f)
-    best, value = begin(family, domain, axis_field, p, u, work, best_p, best_u)
-    for k in range(ratios):
-        multipliers[k] = 1.0 / ratios
-    if not value > -math.inf:
-        copy_into(best_p, p)
-        return best, 0
-    grads, hess, parts = np.empty((ratios, 6)), scratch(6, 6), np.empty((groups, 50))
-    jacobian, h = scratch(6, 5), scratch(5, 5)
-    slopes, rows = np.empty((ratios, 6)), np.zeros((sides, 6))
-    system, factor, step = scratch(6, 6), scratch(6, 6), scratch(6)
-    gaps, new_gaps, every = np.empty(ratios), np.empty(ratios), np.empty(ratios, np.bool_)
-    new_p, new_u, new_f, new_slacks = scratch(3), scratch(3), np.empty(ratios), np.empty(sides)
-    there = (new_p, new_u, new_f, new_slacks, logs)
-    mu = mu_start
-    t = best_level(f, mu)
-    z, zs = np.empty(ratios), np.zeros(sides)
-    for k in range(ratios):
-        every[k], z[k] = True, mu / (f[k] - t)
-    for c in range(sides):
-        if used[c]:
-            zs[c] = mu / slacks[c]
+    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_))
+    count = ratios + slack_count(domain)
+    here = Point(np.empty(6), np.empty(count), np.empty(count))
+    there = Point(np.empty(6), np.empty(count), np.empty(count))
+    model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
+    best_pose, logs, duals = scratch(6), np.empty(groups), model.duals
+    copy_into(p, here.pose)
+    copy_into(u, here.pose[3:])
+    best, value = begin(problem, here, logs, best_pose)
+    f, mu = here.values[:ratios], mu_start
     steps = stalled = 0
-    length = 1.0
-    while steps < max_steps:
-        steps += 1
-        length = nearest_node(family, p)
-        n = chart(axis_field.kind, axis_field.matrix, turning(family, p, u), u, free, length, jacobian)
-        derivatives(family, p, u, z, f, grads, hess, parts)
-        reduce_hessian(hess, jacobian, n, h)
-        linearise(domain, axis_field, chosen, p, u, grads, jacobian, n, z, zs, slopes, rows, h)
-        if stalled >= 2 or residual(f, t, slacks, used, z, zs, slopes, rows, n, mu) <= 10.0 * mu:
-            if mu <= _MU_END or stalled >= 6:
+    if value > -math.inf and smallest_of(here.values[ratios:]) > 0.0:
+        t = best_level(f, mu)
+        fill_gaps(here, ratios, t)
+        for c in range(count):
+            duals[c] = mu / here.gaps[c]
+        grads, parts, h, step = np.empty((count, 6)), np.empty((groups, 50)), scratch(5, 5), scratch(6)
+        while steps < max_steps:
+            steps += 1
+            n = local_coordinates(family, axis_field, here.pose, problem.free, model.directions)
+            linearise(problem, here, grads, parts, n, model, h)
+            if stalled >= 2 or residual(here.gaps, duals, model.rates, n, mu) <= 10.0 * mu:
+                if mu <= _MU_END or stalled >= 6:
+                    break
+                mu = max(_MU_END, min(0.1 * mu, mu**1.5))
+                t = best_level(f, mu)
+                fill_gaps(here, ratios, t)
+            slope = newton_step(here.gaps, duals, model.rates, h, n, mu, model.factor, step)
+            if math.isnan(slope):
                 break
-            mu = max(_MU_END, min(0.1 * mu, mu**1.5))
-            t = best_level(f, mu)
-        slope = newton_step(f, t, slacks, used, z, zs, slopes, rows, h, n, mu, system, factor, step)
-        dual_scale, largest = longest_scale(
-            rows, slacks, used, step, n, 6 + domain.keep_out_points_m.shape[0]
-        )
-        if math.isnan(slope):
-            break
-        here, way = (p, u, f, t, slacks), (step, slope, dual_scale)
-        model = (jacobian, slopes, rows, used, chosen, z, factor, n, mu)
-        scale, new_t = line_search(family, domain, axis_field, here, there, model, way)
-        if not scale > 0.0:
-            stalled += 3
-            continue
-        stalled = stalled + 1 if scale * largest < 1e-13 else 0
-        smallest = new_f[0]
-        for k in range(ratios):
-            slopes[k, n] = -1.0  # the level is the last variable
-            gaps[k], new_gaps[k] = f[k] - t, new_f[k] - new_t
-            smallest = min(smallest, new_f[k])
-        update_duals(gaps, new_gaps, slopes, every, step, n + 1, dual_scale, mu, z)
-        update_duals(slacks, new_slacks, rows, used, step, n, dual_scale, mu, zs)
-        t = new_t
-        for source, target in ((new_f, f), (new_slacks, slacks), (new_p, p), (new_u, u)):
-            copy_into(source, target)
-        if smallest > best:
-            best = smallest
-            copy_into(p, best_p)
-            copy_into(u, best_u)
-    place, limits = (p, u, z, zs, length), (chosen, used, free)
-    best = land(family, domain, axis_field, place, limits, best, (best_p, best_u), multipliers)
-    copy_into(best_p, p)
-    copy_into(best_u, u)
+            dual_scale, largest = longest_scale(problem, here.gaps, model.rates, step, n)
+            scale, t = line_search(problem, here, t, there, model, n, mu, step, slope, dual_scale, logs)
+            if not scale > 0.0:
+                stalled += 3
+                continue
+            stalled = stalled + 1 if scale * largest < 1e-13 else 0
+            update_duals(here.gaps, there.gaps, model.rates, step, n + 1, dual_scale, mu, duals)
+            copy_into(there.pose, here.pose)
+            copy_into(there.values, here.values)
+            copy_into(there.gaps, here.gaps)
+            value = smallest_of(f)
+            if value > best:
+                best = value
+                copy_into(here.pose, best_pose)
+        best = put_on_faces(problem, here, there, model, logs, best, best_pose)
+    else:
+        duals[:] = 1.0
+    total = 0.0
+    for k in range(ratios):
+        total += duals[k]
+    for k in range(ratios):
+        multipliers[k] = duals[k] / total
+    copy_into(best_pose[:3], p)
+    copy_into(best_pose[3:], u)
     return best, steps

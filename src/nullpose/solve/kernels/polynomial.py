@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 
@@ -14,35 +12,31 @@ _EDGE = 1.0 + 1e-9
 
 @inner_kernel
 def horner(coefficients, degree, x):
-    """Return the polynomial's value; coefficients run from the constant up."""
-    value = coefficients[degree]
+    """Return the polynomial's value and its slope; coefficients run from the constant up."""
+    value, slope = coefficients[degree], 0.0
     for i in range(degree - 1, -1, -1):
+        slope = slope * x + value
         value = value * x + coefficients[i]
-    return value
+    return value, slope
 
 
 @inner_kernel
-def bracketed_root(coefficients, degree, low, high, f_low):
+def bracketed_root(coefficients, degree, low, high, rises):
     """Return the root in a bracket by Newton's method kept inside it by bisection."""
     x = 0.5 * (low + high)
     for _ in range(80):
-        value = horner(coefficients, degree, x)
+        value, slope = horner(coefficients, degree, x)
         if value == 0.0:
             return x
-        if (value > 0.0) == (f_low > 0.0):
+        if (value < 0.0) == rises:
             low = x
         else:
             high = x
-        slope = degree * coefficients[degree]
-        for i in range(degree - 1, 0, -1):
-            slope = slope * x + i * coefficients[i]
-        step = value / slope if slope != 0.0 else np.inf
-        new = x - step
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        if new == x or abs(new - x) <= 2e-16 * abs(x) or high - low <= 1e-300:
-            return new
-        x = new
+        before, x = x, x - value / slope
+        if not low < x < high:
+            x = 0.5 * (low + high)
+        if abs(x - before) <= 2e-16 * abs(before):
+            return x
     return x
 
 
@@ -58,34 +52,25 @@ def real_roots(coefficients, degree, roots):
         degree: nominal degree, at most 8; leading zeros are allowed.
         roots: scratch and output, at least 10 long.
     """
+    derivative, knots = scratch(9), scratch(12)
     count = 0
-    derivative = scratch(9)
-    knots = scratch(12)
     for order in range(degree - 1, -1, -1):
-        d = degree - order
-        for i in range(d + 1):
-            factor = 1.0
+        for i in range(degree - order + 1):
+            derivative[i] = coefficients[i + order]
             for m in range(order):
-                factor *= i + order - m
-            derivative[i] = coefficients[i + order] * factor
-        knots[0] = -_EDGE
+                derivative[i] *= i + order - m
+        knots[0], knots[count + 1] = -_EDGE, _EDGE
         for i in range(count):
-            knots[1 + i] = roots[i]
-        knots[1 + count] = _EDGE
-        segments = count + 1
-        count = 0
-        left = horner(derivative, d, knots[0])
-        if left == 0.0:
-            roots[count] = knots[0]
-            count += 1
-        for i in range(segments):
-            right = horner(derivative, d, knots[i + 1])
-            if right == 0.0:
-                if knots[i + 1] > knots[i]:
-                    roots[count] = knots[i + 1]
+            knots[i + 1] = roots[i]
+        last, count, before, d = count + 1, 0, 0.0, degree - order
+        for i in range(last + 1):
+            value, _ = horner(derivative, d, knots[i])
+            if value == 0.0:
+                if count == 0 or knots[i] > roots[count - 1]:
+                    roots[count] = knots[i]
                     count += 1
-            elif left != 0.0 and (left > 0.0) != (right > 0.0):
-                roots[count] = bracketed_root(derivative, d, knots[i], knots[i + 1], left)
+            elif before != 0.0 and (before < 0.0) != (value < 0.0):
+                roots[count] = bracketed_root(derivative, d, knots[i - 1], knots[i], before < 0.0)
                 count += 1
-            left = right
+            before = value
     return count

@@ -11,14 +11,21 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.chart import axis_at, choose_sides, clamp_axis, side_slack
-from nullpose.solve.kernels.dual import dual_multipliers, top_eigenvector
+from nullpose.solve.kernels.dual import dual_multipliers
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.local_coordinates import AFFINE, axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.scratch import scratch, zeroed
-from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.symmetric import (
+    add_scaled,
+    copy_into,
+    normalise,
+    squared_distance,
+    top_eigenvector,
+)
+from nullpose.solve.kernels.vectors import dot
 
 __all__ = ["search"]
 
@@ -28,8 +35,8 @@ _SAME = 1e-9
 _ROUGH = 1e-2
 _STEP = 1e-3  # m beyond a forbidden piece's side
 _SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
-_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most turns: where what is allowed is a sliver
-_TURNS = (8, 32, 32, 32)
+_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most laps: where what is allowed is a sliver
+_LAPS = (8, 32, 32, 32)
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -38,8 +45,8 @@ def cut_box(family, low, high, level, box_low, box_high):
     """Fill the smallest box that holds every position whose smallest log ratio can reach ``level``."""
     points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
     npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
-    for i in range(3):
-        box_low[i], box_high[i] = low[i], high[i]
+    copy_into(low, box_low)
+    copy_into(high, box_high)
     for k in range(nw.shape[0]):
         least = d0[den[k]] * math.exp(level) - n0[k]
         if least > 0.0:
@@ -49,42 +56,42 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)
 
 
-@inner_heap_kernel
+@inner_kernel
+def push_away(centre, n, reach, fallback, p):
+    """Move a position to a distance from a centre in its first n coordinates; from the centre along one."""
+    away = 0.0
+    for i in range(n):
+        away += (p[i] - centre[i]) ** 2
+    away = math.sqrt(away)
+    for i in range(n):
+        way = (p[i] - centre[i]) / away if away > 1e-9 else (1.0 if i == fallback else 0.0)
+        p[i] = centre[i] + reach * way
+
+
+@inner_kernel
 def step_outside(p, domain, step, chosen):
     """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
-    low, high, start, sides = domain.low_m, domain.high_m, domain.piece_start, domain.piece_sides
+    low, high, sides, q, best = domain.low_m, domain.high_m, domain.piece_sides, scratch(3), scratch(3)
     clear = True
     choose_sides(domain, p, chosen)
-    for c in range(start.shape[0] - 1):
+    for c in range(chosen.shape[0]):
         if side_slack(sides[chosen[c]], p) > 0.0:
             continue
-        clear = False
-        least = math.inf
-        best = p.copy()
-        q = scratch(3)
-        for s in range(start[c], start[c + 1]):  # the side that is nearest and in the box
-            side = sides[s]
-            for i in range(3):
-                q[i] = p[i]
-            if side[0] == 0.0:
-                away = side_slack(side, p)
-                for i in range(3):
-                    q[i] += (step - away) * side[1 + i]
+        clear, least = False, math.inf
+        copy_into(p, best)
+        for s in range(domain.piece_start[c], domain.piece_start[c + 1]):  # beyond the nearest
+            copy_into(p, q)
+            if sides[s, 0] == 0.0:
+                add_scaled(step - side_slack(sides[s], p), sides[s, 1:4], q)
             else:
-                d = math.hypot(p[0] - side[1], p[1] - side[2])
-                x, y = ((p[0] - side[1]) / d, (p[1] - side[2]) / d) if d > 1e-9 else (1.0, 0.0)
-                q[0], q[1] = side[1] + x * (side[4] + step), side[2] + y * (side[4] + step)
-            inside = True
-            moved = 0.0
+                push_away(sides[s, 1:3], np.int64(2), sides[s, 4] + step, 0, q)
+            moved = squared_distance(q, p)
             for i in range(3):
-                inside = inside and low[i] <= q[i] <= high[i]
-                moved += (q[i] - p[i]) ** 2
-            if inside and moved < least:
+                moved = moved if low[i] <= q[i] <= high[i] else math.inf
+            if moved < least:
                 least = moved
-                for i in range(3):
-                    best[i] = q[i]
-        for i in range(3):
-            p[i] = best[i]
+                copy_into(q, best)
+        copy_into(best, p)
     return clear
 
 
@@ -95,35 +102,24 @@ def push_out(p, domain):
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     for attempt in range(len(_FINER)):
         copy_into(start, p)
-        if push_by(p, domain, _FINER[attempt], _TURNS[attempt], chosen):
+        if push_by(p, domain, _FINER[attempt], _LAPS[attempt], chosen):
             return True
     return False
 
 
 @inner_kernel
-def push_by(p, domain, share, turns, chosen):
+def push_by(p, domain, share, laps, chosen):
     """Do what ``push_out`` does, by a share of the usual steps; return whether it came to an end."""
-    low, high, keep_points = domain.low_m, domain.high_m, domain.keep_out_points_m
-    keep_radius = domain.keep_out_m
-    for i in range(3):
-        p[i] = min(max(p[i], low[i]), high[i])
-    margin = (1.0 + share * _SPARE) * keep_radius
-    for _ in range(turns):
+    margin = (1.0 + share * _SPARE) * domain.keep_out_m
+    for _ in range(laps):
+        for i in range(3):
+            p[i] = min(max(p[i], domain.low_m[i]), domain.high_m[i])
         clear = step_outside(p, domain, share * _STEP, chosen)
-        for q in range(keep_points.shape[0]):
-            d = 0.0
-            for i in range(3):
-                d += (p[i] - keep_points[q, i]) ** 2
-            d = math.sqrt(d)
-            if d < margin:
+        for point in domain.keep_out_points_m:
+            if squared_distance(p, point) < margin * margin:
                 clear = False
-                rises = high[2] - keep_points[q, 2] > margin
-                for i in range(3):
-                    way = (p[i] - keep_points[q, i]) / d if d > 1e-9 else 0.0
-                    if d <= 1e-9 and i == (2 if rises else 0):
-                        way = 1.0
-                    pushed = keep_points[q, i] + way * (1.0 + 2.0 * share * _SPARE) * margin
-                    p[i] = min(max(pushed, low[i]), high[i])
+                upwards = 2 if domain.high_m[2] - point[2] > margin else 0
+                push_away(point, np.int64(3), (1.0 + 2.0 * share * _SPARE) * margin, upwards, p)
         if clear:
             return True
     return False
@@ -131,65 +127,55 @@ def push_by(p, domain, share, turns, chosen):
 
 @heap_kernel
 def likely_axis(family, p, axis):
-    """Fill the axis that the relaxation of the best axis suggests at a position.
+    """Fill the axis that the relaxation of the best axis suggests at a position; return its log value.
 
     The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
-    start. With several denominators, that of the ratios' excess over a level, taken three times.
+    start. With several denominators, that of the ratios' excess over a level, taken three times more.
     """
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
-    numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
+    numerators, denominators, forms = np.empty((ratios, 6)), np.empty((groups, 6)), np.empty((ratios, 6))
     fill_forms(family, p, numerators, denominators)
-    back, forms, mean, plain = scratch(3, 3), np.empty((ratios, 6)), zeroed(6), scratch(6)
-    for g in range(groups):
-        for m in range(6):
-            mean[m] += denominators[g, m] / groups
-    inverse_factor(mean, back)
-    level = math.inf
-    for k in range(ratios):
-        congruence(numerators[k], back, forms[k])
-        level = min(level, (forms[k, 0] + forms[k, 1] + forms[k, 2]) / 3.0)
-    axis_of_forms(forms, back, level, axis)
-    if groups == 1:
-        return
     logs, f = np.empty(groups), np.empty(ratios)
-    best, trial = min_log_ratio(family, p, axis, logs, f), scratch(3)
-    for _ in range(3):
-        level = math.exp(best) if best > -20.0 else level
+    back, mean, plain, trial = scratch(3, 3), zeroed(6), scratch(6), scratch(3)
+    for g in range(groups):
+        add_scaled(1.0 / groups, denominators[g], mean)
+    inverse_factor(mean, back)
+    level, size, best = 0.0, math.inf, -math.inf
+    for attempt in range(4 if groups > 1 else 1):
         for k in range(ratios):
+            below = denominators[family.denominator_of[k]]
             for m in range(6):
-                plain[m] = numerators[k, m] + level * (mean[m] - denominators[family.denominator_of[k], m])
+                plain[m] = numerators[k, m] + level * (mean[m] - below[m])
             congruence(plain, back, forms[k])
-        axis_of_forms(forms, back, level, trial)
+            if attempt == 0:
+                size = min(size, (forms[k, 0] + forms[k, 1] + forms[k, 2]) / 3.0)
+        axis_of_forms(forms, back, size, trial)
         value = min_log_ratio(family, p, trial, logs, f)
-        if not value > best + 1e-3:
+        if attempt > 0 and not value > best + 1e-3:
             break
         best = value
-        for i in range(3):
-            axis[i] = trial[i]
+        copy_into(trial, axis)
+        size = level = math.exp(best) if best > -20.0 else size
+    return best
 
 
 @inner_heap_kernel
 def axis_of_forms(forms, back, level, axis):
     """Fill the axis that the dual of the smallest of several whitened forms suggests."""
-    ratios = forms.shape[0]
-    start, matrix, v, multipliers = zeroed(6), scratch(6), scratch(3), np.empty(ratios)
-    for i in range(3):
-        start[i] = 1.0 / 3.0
-    dual_multipliers(forms, ratios, np.int64(0), level, math.inf, _ROUGH, start, multipliers, matrix)
+    start, matrix, v, multipliers = zeroed(6), scratch(6), scratch(3), np.empty(forms.shape[0])
+    start[:3] = 1.0 / 3.0
+    dual_multipliers(forms, np.int64(0), forms.shape[0], level, math.inf, _ROUGH, start, multipliers, matrix)
     top_eigenvector(matrix, v)
-    norm = 0.0
     for i in range(3):
-        axis[i] = back[i, 0] * v[0] + back[i, 1] * v[1] + back[i, 2] * v[2]
-        norm += axis[i] ** 2
-    for i in range(3):
-        axis[i] /= math.sqrt(norm)
+        axis[i] = dot(back[i], v)
+    normalise(axis)
 
 
 @inner_kernel
 def start_axis(family, axis_field, p, u, logs, f):
     """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
-    if axis_field.kind == 1:
-        axis_at(axis_field.kind, axis_field.offset, axis_field.matrix, p, u)
+    if axis_field.kind == AFFINE:
+        axis_at(axis_field, p, u)
     else:
         likely_axis(family, p, u)
         clamp_axis(axis_field, u)
@@ -221,9 +207,7 @@ def draw(shift, number, box_low, box_high, p):
 
 
 @heap_kernel
-def search(
-    family, domain, axis_field, landmarks, shift, coarse, polished, rounds, patience, best_p, best_u, best_z
-):
+def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_u, best_z):
     """Fill the best pose found; return its smallest log ratio, the polished starts and the evaluations made.
 
     Args:
@@ -232,66 +216,51 @@ def search(
         axis_field: kind, offset and matrix, as ``AxisField.arrays`` has them.
         landmarks: (m, 3) positions polished first, each after being moved into the domain.
         shift: (3,) offset in [0, 1) of the low-discrepancy sequence: the seed.
-        coarse: positions judged in each round.
-        polished: the best of them polished in each round.
-        rounds: most rounds.
-        patience: rounds without improvement after which to stop.
+        settings: how hard to try, a ``SearchSettings``.
         best_p: output, (3,).
         best_u: output, (3,).
         best_z: output, (ratios,): the ratios' multipliers at that pose.
     """
-    low, high, keep_radius = domain.low_m, domain.high_m, domain.keep_out_m
-    f = np.empty(family.numerator_isotropic.shape[0])
-    logs = np.empty(family.denominator_isotropic.shape[0])
-    z = np.empty(f.shape[0])
-    p, u = scratch(3), scratch(3)
+    f, logs = np.empty(family.numerator_isotropic.shape[0]), np.empty(family.denominator_isotropic.shape[0])
+    z, p, u, box_low, box_high = np.empty(f.shape[0]), scratch(3), scratch(3), scratch(3), scratch(3)
+    size = max(settings.coarse, landmarks.shape[0])
+    poses, values = np.empty((size, 6)), np.empty(size)
     best = -math.inf
-    starts = 0
-    evaluations = 0
-    size = max(coarse, landmarks.shape[0])
-    pool_p, pool_u = np.empty((size, 3)), np.empty((size, 3))
-    pool = np.empty(size)
-    box_low, box_high = scratch(3), scratch(3)
-    drawn = 0
-    idle = 0
-    for turn in range(rounds + 1):  # the first turn is the landmarks'
-        judged = landmarks.shape[0] if turn == 0 else coarse
-        cut_box(family, low, high, best - 1e-12, box_low, box_high)
-        surround(family.points_m, high[2] - low[2] + 10.0 * keep_radius, box_low, box_high)
+    starts = evaluations = idle = 0
+    for lap in range(settings.rounds + 1):  # the first is the landmarks'
+        judged = landmarks.shape[0] if lap == 0 else settings.coarse
+        cut_box(family, domain.low_m, domain.high_m, best - 1e-12, box_low, box_high)
+        margin = domain.high_m[2] - domain.low_m[2] + 10.0 * domain.keep_out_m
+        surround(family.points_m, margin, box_low, box_high)
         for c in range(judged):
-            if turn == 0:
-                for i in range(3):
-                    p[i] = landmarks[c, i]
+            if lap == 0:
+                copy_into(landmarks[c], p)
             else:
-                drawn += 1
-                draw(shift, drawn, box_low, box_high, p)
-            pool[c] = -math.inf
+                draw(shift, (lap - 1) * judged + c + 1, box_low, box_high, p)
+            values[c] = -math.inf
             if push_out(p, domain):
-                pool[c] = start_axis(family, axis_field, p, u, logs, f)
-                for i in range(3):
-                    pool_p[c, i], pool_u[c, i] = p[i], u[i]
+                values[c] = start_axis(family, axis_field, p, u, logs, f)
+                copy_into(p, poses[c])
+                copy_into(u, poses[c, 3:])
                 evaluations += 1
         before = best
-        for _ in range(judged if turn == 0 else min(polished, coarse)):
-            c = 0
-            for i in range(1, judged):
-                if pool[i] > pool[c]:
-                    c = i
-            if not pool[c] > -math.inf:
+        for _ in range(judged if lap == 0 else min(settings.polished, judged)):
+            c = np.argmax(values[:judged])
+            if not values[c] > -math.inf:
                 break
-            pool[c] = -math.inf
-            for i in range(3):
-                p[i], u[i] = pool_p[c, i], pool_u[c, i]
+            values[c] = -math.inf
+            copy_into(poses[c, :3], p)
+            copy_into(poses[c, 3:], u)
             value, steps = polish(family, domain, axis_field, p, u, _MU_START, np.int64(_MAX_STEPS), z)
             if value > best:
                 best = value
-                for i in range(3):
-                    best_p[i], best_u[i] = p[i], u[i]
+                copy_into(p, best_p)
+                copy_into(u, best_u)
                 copy_into(z, best_z)
             starts += 1
             evaluations += steps
-        if turn > 0 and best > -math.inf:
+        if lap > 0 and best > -math.inf:
             idle = 0 if best > before + _SAME else idle + 1
-            if idle >= patience:
+            if idle >= settings.patience:
                 break
     return best, starts, evaluations

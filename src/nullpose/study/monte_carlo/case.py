@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
 from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
 from nullpose.scenario.names import Label
-from nullpose.scenario.rules import Choice, Count, Quantity
+from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import AttitudeDegrees, Position
 from nullpose.scenario.ways import Ways, at_most_one
-from nullpose.scenario.wording import described, listed, nearest
+from nullpose.scenario.wording import described
 from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
 
@@ -42,36 +40,23 @@ _BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_C
 }
 
 
-class _AirframeByName:
-    """An airframe by its name or as a table, as metadata of an annotated Airframe."""
-
-    def read(self, value: object) -> Airframe:
-        if not isinstance(value, str):
-            return Airframe.model_validate(value)
-        if value in _BY_NAME:
-            return _BY_NAME[value]
-        guess = nearest(value, _BY_NAME)
-        hint = f'; did you mean "{guess}"?' if guess else ""
-        names = listed([f'"{name}"' for name in _BY_NAME])
-        raise rejection(
-            f"got {described(value)}, must be {names}, or a table with tilt_max_deg and mount_deg{hint}"
-        )
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+_VEHICLE = Choice("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME))
 
 
-@dataclass(frozen=True, slots=True)
-class _Truth:
-    """True or false, and nothing that merely resembles it; as metadata of an annotated bool."""
+class _Vehicle(Rule):
+    """An airframe by its name or as a table."""
+
+    def read(self, value: object) -> object:
+        return _BY_NAME[_VEHICLE.read(value)] if isinstance(value, str) else value
+
+
+class _Truth(Rule):
+    """True or false, and nothing that merely resembles it."""
 
     def read(self, value: object) -> bool:
         if not isinstance(value, bool):
             raise rejection(f"got {described(value)}, must be true or false, without quotes")
         return value
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
 
 
 _Bool = Annotated[bool, _Truth()]
@@ -95,9 +80,7 @@ class CaseArray(Array):
     @property
     def array(self) -> Array:
         """The array without its combining, as a scenario states it."""
-        values = self.to_dict()
-        del values["combining"]
-        return Array.from_dict(values)
+        return Array.from_dict({key: value for key, value in self.to_dict().items() if key != "combining"})
 
 
 class FixedPose(Section):
@@ -157,9 +140,11 @@ class StudyCase(Section):
         examples=["tilt-10"],
     )
     scheme: _SchemeName | None = Field(
-        default=None, description="How the pose is chosen. Left out: optimum.", examples=["zero-interference"]
+        default=None,
+        description=f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.",
+        examples=[Scheme.VERTICAL.value],
     )
-    airframe: Annotated[Airframe, _AirframeByName()] | None = Field(
+    airframe: Annotated[Airframe, _Vehicle()] | None = Field(
         default=None,
         description="The vehicle in place of the scene's: level-vertical, level-horizontal, tilt-10, "
         "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg.",

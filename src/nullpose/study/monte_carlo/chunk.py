@@ -24,8 +24,8 @@ from nullpose.study.monte_carlo.versions import fingerprint
 
 __all__ = ["KILLED", "Done", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
 
+# The reason of the rows of a scene that no worker survives.
 KILLED = "every worker that took this scene died; it may need more memory than they have"
-"""The reason of the rows of a scene that no worker survives."""
 
 _TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
 _CALIBRATED_S = 0.3  # so much work tells how long a scene takes

@@ -19,10 +19,9 @@ from nullpose.solve.worker_pool import processors
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["CONNECT_S", "connected"]
+__all__ = ["connected"]
 
-CONNECT_S = 5.0
-"""How long a scheduler has to answer, seconds."""
+_CONNECT_S = 5.0  # how long a scheduler has to answer
 
 # Nothing is served over HTTP: no password would guard it.
 _NO_PAGES: dict[str, Any] = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
@@ -94,10 +93,11 @@ def _client_of(scheduler: str) -> Client:
         # since a notebook has a loop running in this one.
         with ThreadPoolExecutor(1) as pool:
             pool.submit(lambda: asyncio.run(_reached(scheduler))).result()
-        return Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+        return Client(scheduler, timeout=_CONNECT_S, set_as_default=False)
     except Exception as error:
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
         raise ClusterError(
-            f"scheduler: no Dask scheduler answers at {scheduler} ({_first_line(error)}); check the address "
+            f"scheduler: no Dask scheduler answers at {scheduler} ({reason}); check the address "
             "(as in tcp://host:8786) and that it runs: dask scheduler on its machine, dask worker "
             f"{scheduler} --nthreads 1 on the others; or leave it out to use this machine"
         ) from error
@@ -108,15 +108,8 @@ async def _reached(scheduler: str) -> None:
     from distributed.comm import connect
 
     # the certificate that Dask's configuration names, which a tls:// address needs
-    comm = await connect(scheduler, timeout=CONNECT_S, **Security().get_connection_args("client"))
+    comm = await connect(scheduler, timeout=_CONNECT_S, **Security().get_connection_args("client"))
     await comm.close()
-
-
-def _first_line(error: Exception) -> str:
-    lines = str(error).strip().splitlines()
-    if not isinstance(error, OSError | ValueError):
-        return "what answers is something else"
-    return lines[0] if lines else type(error).__name__
 
 
 @contextmanager

@@ -4,50 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
-from nullpose.scenario.faults import Place, collected, rejection
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.faults import Place, collected
+from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, exactly_one
-from nullpose.scenario.wording import described, plain
+from nullpose.scenario.wording import plain
 
 __all__ = ["Distribution", "Drawn"]
 
-_NUMBER = Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")
-
-
-@dataclass(frozen=True, slots=True)
-class _Numbers:
-    """A list of numbers, as metadata of an annotated tuple.
-
-    Args:
-        size: how many; None for one or more.
-        allowed: what the list is, in words.
-    """
-
-    size: int | None
-    allowed: str
-
-    def read(self, value: object) -> tuple[float, ...]:
-        value = plain(value)
-        fits = isinstance(value, list | tuple) and len(value) > 0
-        if not isinstance(value, list | tuple) or not fits or (self.size or len(value)) != len(value):
-            raise rejection(f"got {described(value)}, must be {self.allowed}")
-        return tuple(_NUMBER.read(member) for member in value)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
-
-
-_Ends = Annotated[tuple[float, float], _Numbers(2, "a list of two numbers, the lower first")]
-_Normal = Annotated[tuple[float, float], _Numbers(2, "a list of two numbers: mean and standard deviation")]
-_Several = Annotated[tuple[float, ...], _Numbers(None, "a list of at least one number")]
+_Number = Annotated[float, Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")]
+_Two = tuple[_Number, _Number]
+_Ends = Annotated[_Two, ListOf("a list of two numbers, the lower first", 2, 2)]
+_Normal = Annotated[_Two, ListOf("a list of two numbers: mean and standard deviation", 2, 2)]
+_Several = Annotated[tuple[_Number, ...], ListOf("a list of at least one number", 1, MOST_MEMBERS)]
 
 
 class Distribution(Section):
@@ -64,7 +39,7 @@ class Distribution(Section):
     header: ClassVar[str] = "a number, or a table such as { uniform = [0.5, 2.0] }"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("fixed", "uniform", "log_uniform", "normal", "choice"),)
 
-    fixed: Annotated[float, _NUMBER] | None = Field(
+    fixed: _Number | None = Field(
         default=None, description="The same for all; a number in place of the table means this.", examples=[1]
     )
     uniform: _Ends | None = Field(
@@ -124,8 +99,8 @@ class Distribution(Section):
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
-    """A quantity that is fixed or drawn, as metadata of an annotated Distribution.
+class Drawn(Rule):
+    """A quantity that is fixed or drawn, as the metadata of an annotated Distribution.
 
     Args:
         quantity: its unit and limits.
@@ -133,26 +108,27 @@ class Drawn:
 
     quantity: Quantity
 
-    def read(self, value: object) -> Distribution:
-        """Returns the distribution, or raises the faults that say what is wrong with it."""
+    def read(self, value: object) -> object:
+        """Returns the distribution of a number, or the raw table of one."""
         value = plain(value)
-        if not isinstance(value, Mapping | Distribution):
-            return Distribution(fixed=self.quantity.read(value))
-        drawn = Distribution.model_validate(value)
-        if drawn.normal is not None and self.quantity.low >= 0.0:
+        if isinstance(value, Mapping | Distribution):
+            return value
+        return Distribution(fixed=self.quantity.read(value))
+
+    def judge(self, value: Distribution) -> Distribution:
+        """Returns the distribution, or raises the fault that it draws what is not allowed."""
+        key = next(iter(value.to_dict()))
+        wrong = [each for each in value.values if not self.quantity.low <= each <= self.quantity.high]
+        message = ""
+        if wrong:
+            message = f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
+        elif value.normal is not None and self.quantity.low >= 0.0:
             message = (
                 f"a normal distribution falls below what is allowed, {self.quantity.allowed}; use uniform or "
                 "log_uniform, or for a power the key that ends in _dbm"
             )
-            raise collected("", [(("normal",), message)])
-        if drawn.normal is not None and drawn.normal[1] < 0.0:
-            raise collected("", [(("normal",), "the standard deviation is below 0; it must be 0 or more")])
-        key = next(iter(drawn.to_dict()))
-        wrong = [each for each in drawn.values if not self.quantity.low <= each <= self.quantity.high]
-        if wrong:
-            message = f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
+        elif value.normal is not None and value.normal[1] < 0.0:
+            message = "the standard deviation is below 0; it must be 0 or more"
+        if message:
             raise collected("", [((key,), message)])
-        return drawn
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return value

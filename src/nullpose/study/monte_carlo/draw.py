@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -23,8 +22,7 @@ __all__ = ["MOST_DRAWS", "Draws", "draw_scene", "quantity_of", "scene_at"]
 
 FloatArray = NDArray[np.float64]
 
-MOST_DRAWS = 100
-"""How often the points of one kind are drawn before their scene is given up."""
+MOST_DRAWS = 100  # how often the points of one kind are drawn before their scene is given up
 
 _TRIED = 5  # scenes that tell what is maximised: one that cannot be drawn tells nothing
 
@@ -130,9 +128,7 @@ class Draws:
         drawn, settings = self._swept[point]
         scene = self._drawn(index, drawn)
         overrides = [each for path, value in settings for each in _settings(scene, path, value)]
-        if not overrides:
-            return scene
-        return _with_powers(scene, overrides) or apply_overrides(scene, overrides)
+        return apply_overrides(scene, overrides) if overrides else scene
 
     def _drawn(self, index: int, drawn: Mapping[str, Points]) -> Scenario:
         if self._last is None or self._last[0] != index or self._last[1] != drawn:
@@ -143,29 +139,20 @@ class Draws:
         return self._last[2]
 
 
-def generator_key(spec: StudySpec, path: str) -> tuple[str, str] | None:
-    """Return the kind and key that a swept path means if it is one of what draws, as in ``nodes.count``.
-
-    Args:
-        spec: the study.
-        path: the swept path.
-    """
-    kind, _, key = path.partition(".")
-    points = spec.drawn.get(kind)
-    return (kind, key) if points is not None and key in type(points).model_fields else None
-
-
 def _of_point(
     spec: StudySpec, values: Mapping[str, float]
 ) -> tuple[dict[str, Points], list[tuple[str, float]]]:
-    """Return what is drawn at a combination of swept values, and what is set in the scene after that."""
+    """Return what is drawn at a combination of swept values, and what is set in the scene after that.
+
+    A path may mean a key of what draws, as in ``nodes.count``, or one of a scene.
+    """
     drawn, settings = dict(spec.drawn), []
     for path, value in values.items():
-        key = generator_key(spec, path)
-        if key is None:
-            settings.append((path, value))
+        kind, _, key = path.partition(".")
+        if kind in drawn and key in type(drawn[kind]).model_fields:
+            drawn[kind] = drawn[kind].model_copy(update=_replacing(drawn[kind], key, value))
         else:
-            drawn[key[0]] = drawn[key[0]].model_copy(update=_replacing(drawn[key[0]], key[1], value))
+            settings.append((path, value))
     return drawn, settings
 
 
@@ -183,34 +170,6 @@ def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
     return [Override(f"{kind}[{place}].{rest}", value) for place in range(len(getattr(scene, kind)))]
 
 
-_POWER = re.compile(r"(nodes|jammers)(?:\[(\d+)\]|\.(\w+))\.(power_w|power_dbm)")
-
-
-def _with_powers(scene: Scenario, overrides: Sequence[Override]) -> Scenario | None:
-    """Return the scene with other powers, in a tenth of the time, if that is all that is set; else None.
-
-    Nothing else in a scene can contradict a power, so that only the points are validated anew.
-    """
-    points: dict[str, list[Any]] = {"nodes": list(scene.nodes), "jammers": list(scene.jammers)}
-    for override in overrides:
-        found = _POWER.fullmatch(override.path)
-        if found is None:
-            return None
-        kind, number, name, key = found.groups()
-        members = points[kind]
-        names = [member.name for member in members]
-        place = int(number) if number else names.index(name) if name in names else len(names)
-        if place >= len(members):
-            return None
-        other = "power_dbm" if key == "power_w" else "power_w"
-        try:
-            members[place] = members[place].model_copy(update={key: override.value, other: None})
-        except ScenarioError:
-            return None  # told by the usual way, with the whole path
-    values = {key: getattr(scene, key) for key in type(scene).model_fields}
-    return Scenario.model_construct(**values | {kind: tuple(members) for kind, members in points.items()})
-
-
 def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points], kept: Mapping[str, Any]) -> Scenario:
     """Return a scene, drawing those points again that make it invalid."""
     attempts = dict.fromkeys(drawn, 0)
@@ -221,7 +180,11 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points], kept: Mappi
         except ScenarioError as error:
             again = _at_fault(error.faults, attempts)
             if again is None or attempts[again] + 1 >= MOST_DRAWS:
-                raise _given_up(error, attempts) from None
+                if not any(attempts.values()):
+                    raise
+                first = error.faults[0]
+                message = f"{first.message} (after {MOST_DRAWS} draws)"
+                raise ScenarioError([Fault(first.path, message)]) from None
             attempts[again] += 1
             points[again] = _draw(spec.seed, index, again, drawn[again], attempts[again])
 
@@ -230,13 +193,6 @@ def _at_fault(faults: tuple[Fault, ...], attempts: Mapping[str, int]) -> str | N
     """Return the kind to draw again: the last that a fault is about, or else the least often drawn."""
     blamed = [kind for kind in attempts if any(fault.path.startswith(kind) for fault in faults)]
     return blamed[-1] if blamed else min(attempts, key=lambda kind: attempts[kind], default=None)
-
-
-def _given_up(error: ScenarioError, attempts: Mapping[str, int]) -> ScenarioError:
-    if not any(attempts.values()):
-        return error
-    first = error.faults[0]
-    return ScenarioError([Fault(first.path, f"{first.message} (after {MOST_DRAWS} draws)")])
 
 
 def _draw(seed: int, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
 from nullpose.scenario.faults import Place, rejection
 from nullpose.scenario.names import Label
-from nullpose.scenario.rules import Choice, Count, Quantity
+from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
     DecibelMilliwatts,
@@ -30,13 +29,12 @@ from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
 __all__ = ["Eavesdroppers", "Jammers", "Nodes", "Points"]
 
-MOST_POINTS = 10_000
-"""The most points of one kind in a scene."""
+MOST_POINTS = 10_000  # of one kind in a scene
 
 
 @dataclass(frozen=True, slots=True)
-class _Number:
-    """A whole number, or a range of them that one is drawn from evenly; as metadata of an annotated tuple."""
+class _Number(Rule):
+    """A whole number, or a range of them that one is drawn from evenly."""
 
     noun: str
     low: int
@@ -52,9 +50,6 @@ class _Number:
         if ends[0] > ends[1]:
             raise rejection(f"got {list(ends)}, which is reversed; try {[ends[1], ends[0]]}")
         return ends
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
 
 
 def _drawn(kind: Any) -> Drawn:

@@ -11,7 +11,6 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import load
 from nullpose.scenario.loading import inside
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
-from nullpose.scenario.wording import described
 from nullpose.study.monte_carlo.checking import spec_faults
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -55,40 +54,29 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
         return []
     if "scenarios" in scene:
         return [Fault("scene.scenarios", "cannot be stated in a file; name scenario files by file or files")]
-    names, faults = _named_files(scene)
+    file, files = scene.get("file"), scene.get("files")
+    names = [file] if files is None else files if isinstance(files, list) else []
+    faults: list[Fault] = []
     held = []
     for name in names:
+        if not isinstance(name, str):  # the spec says what is wrong with it
+            continue
         try:
             path = inside(folder, name, allow_outside)
             held.append(load(path, allow_outside=allow_outside).to_dict())
         except ScenarioError as error:
-            faults += [Fault(_in_file(name, fault), fault.message) for fault in error.faults]
-    if held and not faults:
-        tables["scene"] = {**scene, "scenarios": held}
-    elif faults:
+            faults += [
+                Fault(f"{name}: {fault.path}" if fault.path else name, fault.message)
+                for fault in error.faults
+            ]
+    if faults:
         # Whatever else is faulty is told too; a stand-in keeps that free of what only follows.
-        tables["scene"] = {**scene, "scenarios": [_STAND_IN]}
-        for key in ("file", "files"):
-            tables["scene"].pop(key, None)
+        tables["scene"] = {key: value for key, value in scene.items() if key not in ("file", "files")}
+        tables["scene"]["scenarios"] = [_STAND_IN]
         tables.setdefault("scenes", 1)
+    elif held:
+        tables["scene"] = {**scene, "scenarios": held}
     return faults
-
-
-def _named_files(scene: Mapping[str, object]) -> tuple[list[str], list[Fault]]:
-    file, files = scene.get("file"), scene.get("files")
-    if file is not None and not isinstance(file, str):
-        return [], [Fault("scene.file", f'got {described(file)}, must be a file name, as in "paper.toml"')]
-    if files is None:
-        return ([] if file is None else [file]), []
-    if not isinstance(files, list) or not files or not all(isinstance(name, str) for name in files):
-        return [], [
-            Fault("scene.files", f"got {described(files)}, must be a list of names of scenario files")
-        ]
-    return files, []
-
-
-def _in_file(name: str, fault: Fault) -> str:
-    return f"{name}: {fault.path}" if fault.path else name
 
 
 _STAND_IN = {

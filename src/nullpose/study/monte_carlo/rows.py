@@ -13,11 +13,10 @@ if TYPE_CHECKING:
 
 __all__ = ["FAILED", "Row", "as_parquet", "failed_rows", "row_of", "schema_of"]
 
+# What one case gives in one scene at one combination of swept values: what is known, by column.
 Row = dict[str, Any]
-"""What one case gives in one scene at one combination of swept values: what is known, by column."""
 
-FAILED = "failed"
-"""The status of a row that has a reason in place of a pose."""
+FAILED = "failed"  # the status of a row that has a reason in place of a pose
 
 # Arrow's types of the columns after scene, combination, swept values and case.
 _COLUMNS = {

@@ -24,12 +24,13 @@ from nullpose.scenario import (
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
 from nullpose.scenario.origin import POINT_LISTS, located
-from nullpose.scenario.rules import Choice, list_of_tables
+from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, at_most_one
 
 __all__ = ["SceneBase"]
 
+_Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]
 _Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 
 
@@ -55,7 +56,7 @@ class SceneBase(Section):
         description="A scenario file, relative to this file's folder; what is drawn replaces its own.",
         examples=["paper.toml"],
     )
-    files: tuple[Label, ...] | None = Field(
+    files: _Files | None = Field(
         default=None,
         description="Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
         examples=[["north.toml", "south.toml"]],

@@ -20,8 +20,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["GIVEN_POSE", "found", "options_of", "reason_of", "solved_row"]
 
-GIVEN_POSE = "a pose that was given: nothing is searched or proved"
-"""The reason of a row whose case states a pose."""
+GIVEN_POSE = "a pose that was given: nothing is searched or proved"  # a reason
 
 
 def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: StudyCase) -> Row:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 from collections.abc import Iterable, Mapping
 from functools import cached_property
@@ -20,12 +21,11 @@ from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
 from nullpose.study.monte_carlo.scene import SceneBase
-from nullpose.study.monte_carlo.sweep_axes import SweepAxes, points_of
+from nullpose.study.monte_carlo.sweep_axes import SweepAxes
 
 __all__ = ["MOST_SCENES", "StudySpec"]
 
-MOST_SCENES = 999_999_999
-"""The most scenes of a study: their numbers have nine digits in the names of parts."""
+MOST_SCENES = 999_999_999  # their numbers have nine digits in the names of parts
 
 _Seed = Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")]
 _Scenes = Annotated[int, Count("a number of scenes", 1, MOST_SCENES, "each is solved in every case")]
@@ -90,7 +90,7 @@ class StudySpec(Section):
     cases: Annotated[tuple[StudyCase, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(StudyCase(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
-        "the optimum with the scene's own vehicle.",
+        "the best pose with the scene's own vehicle.",
     )
     sweep: SweepAxes = Field(
         default=(),
@@ -120,7 +120,10 @@ class StudySpec(Section):
     @cached_property
     def points(self) -> tuple[dict[str, float], ...]:
         """The combinations of swept values by path, the last varying fastest; one empty if none is swept."""
-        return points_of(self.sweep)
+        return tuple(
+            dict(zip(self.swept, values, strict=True))
+            for values in itertools.product(*(values for _, values in self.sweep))
+        )
 
     @property
     def swept(self) -> tuple[str, ...]:

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import GetCoreSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import PydanticCustomError
 
 from nullpose.errors import UsageError
 from nullpose.scenario.faults import Place, collected, path_of, rejection
-from nullpose.scenario.rules import Choice, Count, Quantity
+from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.wording import described, listed, plain, unknown
 from nullpose.study.spacing import spaced
 
-__all__ = ["MOST_POINTS", "SweepAxes", "points_of"]
+__all__ = ["MOST_POINTS", "SweepAxes"]
 
-MOST_POINTS = 1_000_000
-"""The most combinations of swept values."""
+MOST_POINTS = 1_000_000  # combinations of swept values
 
 _DEEPEST = 16  # parts of a path: no value of a scene is deeper
 _KEYS = ("from", "to", "points", "spacing")
@@ -30,9 +27,8 @@ _SPACING = Choice("a spacing", ("linear", "log"))
 Axis = tuple[str, tuple[float, ...]]
 
 
-@dataclass(frozen=True, slots=True)
-class _Axes:
-    """Swept values by path, as metadata of an annotated tuple of pairs."""
+class _Axes(Rule):
+    """Swept values by path."""
 
     def read(self, value: object) -> tuple[Axis, ...]:
         if isinstance(value, tuple):
@@ -50,30 +46,13 @@ class _Axes:
                 faults.append(((path,), str(error).replace("\n  ", "; ")))
         if faults:
             raise collected("sweep", faults)
-        if len(axes) and _size(axes) > MOST_POINTS:
-            raise rejection(
-                f"the grid has {_size(axes)} combinations of values, at most {MOST_POINTS} are allowed"
-            )
+        size = math.prod(len(values) for _, values in axes)
+        if size > MOST_POINTS:
+            raise rejection(f"the grid has {size} combinations of values, at most {MOST_POINTS} are allowed")
         return tuple(axes)
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
 
-
-SweepAxes = Annotated[tuple[Axis, ...], _Axes()]
-"""Pairs of a path and the values that it is set to."""
-
-
-def points_of(axes: tuple[Axis, ...]) -> tuple[dict[str, float], ...]:
-    """Return every combination of the swept values, the last varying fastest; one empty if none is swept.
-
-    Args:
-        axes: paths and values.
-    """
-    paths = [path for path, _ in axes]
-    return tuple(
-        dict(zip(paths, values, strict=True)) for values in itertools.product(*(values for _, values in axes))
-    )
+SweepAxes = Annotated[tuple[Axis, ...], _Axes()]  # paths, each with the values that it is set to
 
 
 def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str, object]]:
@@ -83,13 +62,6 @@ def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str
             yield from _paths(given, (*at, str(key)))
         else:
             yield (path_of((*at, str(key))) if at else str(key)), given
-
-
-def _size(axes: list[Axis]) -> int:
-    size = 1
-    for _, values in axes:
-        size *= len(values)
-    return size
 
 
 def _values(given: object) -> tuple[float, ...]:

@@ -17,8 +17,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["At", "solved_together"]
 
-At = tuple[int, int]
-"""A scene's number and that of a combination of swept values."""
+At = tuple[int, int]  # a scene's number and that of a combination of swept values
 
 
 def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:

@@ -10,10 +10,8 @@ import numpy as np
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import INK
 from nullpose.report.numbers import percent
-from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import (
     QUARTERS,
-    Labels,
     draw_curve,
     handles_of,
     looks_of,
@@ -54,7 +52,7 @@ def draw_distributions(summary: Summary) -> Figure | None:
     quantity = summary.quantity
     note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
     across = f"{quantity.smallest} over the nodes  ({quantity.unit})"
-    return _distributions(summary, dress, Labels(across, "scenes with no more", note), banded=True)
+    return _distributions(summary, dress, across, "scenes with no more", note, banded=True)
 
 
 def draw_outage(summary: Summary) -> Figure | None:
@@ -73,11 +71,11 @@ def draw_outage(summary: Summary) -> Figure | None:
 
     note = "" if required is None else "Dashed upright: the requirement."
     across = f"required {summary.quantity.noun}  ({summary.quantity.unit})"
-    return _distributions(summary, dress, Labels(across, "outage probability", note), banded=False)
+    return _distributions(summary, dress, across, "outage probability", note, banded=False)
 
 
 def _distributions(
-    summary: Summary, dress: Callable[[Axes], None], labels: Labels, *, banded: bool
+    summary: Summary, dress: Callable[[Axes], None], across: str, up: str, note: str, *, banded: bool
 ) -> Figure | None:
     """Return panels with a curve for each case, or None if no case has a value."""
     points, looks = points_with(summary, summary.cases), looks_of(summary.cases)
@@ -92,18 +90,18 @@ def _distributions(
             column = summary.values.value[:, points[place], case.place]
             column = column[~np.isnan(column)]
             if len(column):
-                across, shares = step_curve(column, (low, high))
-                band = _band(column, across, shares) if banded else None
-                every = max(1, len(across) // 7)
+                places, shares = step_curve(column, (low, high))
+                band = _band(column, places, shares) if banded else None
+                every = max(1, len(places) // 7)
                 start = 1 + int(every * case.place / len(summary.cases))  # markers of two curves stand apart
                 look = looks[case.name]
-                draw_curve(axes, look, across, shares, band, steps=True, every=(start, every))
+                draw_curve(axes, look, places, shares, band, steps=True, every=(start, every))
         axes.set_xlim(low, high)
         dress(axes)
 
     height = 2.9 if len(points) == 1 else 2.2
-    titles = panel_titles(summary, points)
-    return side_by_side(titles, draw, handles_of(summary.cases), labels, height=height)
+    titles, handles = panel_titles(summary, points), handles_of(summary.cases)
+    return side_by_side(titles, draw, handles, across=across, up=up, note=note, height=height)
 
 
 def _range(summary: Summary, points: tuple[int, ...]) -> Ends:
@@ -176,8 +174,15 @@ def draw_along(summary: Summary) -> Figure | None:
     fixed = [f"{each} = {last[each]:g}" for each in summary.spec.swept if each != path]
     note = f"Bands: {percent(CONFIDENCE)} confidence for each point (order statistics)."
     note += f" At {', '.join(fixed)}." if fixed else ""
-    labels = Labels(summary.points.axis_label(path), f"{quantity.smallest}  ({quantity.unit})", note)
-    return side_by_side(list(titles.values()), draw, handles_of(summary.cases), labels, height=2.3)
+    return side_by_side(
+        list(titles.values()),
+        draw,
+        handles_of(summary.cases),
+        across=summary.points.axis_label(path),
+        up=f"{quantity.smallest}  ({quantity.unit})",
+        note=note,
+        height=2.3,
+    )
 
 
 def draw_effort(summary: Summary) -> Figure | None:
@@ -192,18 +197,14 @@ def draw_effort(summary: Summary) -> Figure | None:
     columns = {"time of a solve  (s)": values.seconds, "relative gap of the proof": values.gap}
     drawn = [label for label, numbers in columns.items() if not np.all(np.isnan(numbers))]
 
-    def solves(label: str, case: ReportCase) -> FloatArray:
-        numbers = columns[label][:, :, case.place].astype(float)
-        return np.asarray(np.maximum(numbers[~np.isnan(numbers)], _LEAST))
-
     def draw(axes: Axes, place: int) -> None:
         for case in summary.cases:
-            numbers = solves(drawn[place], case)
+            numbers = columns[drawn[place]][:, :, case.place].astype(float)
+            numbers = np.maximum(numbers[~np.isnan(numbers)], _LEAST)
             if len(numbers):
                 draw_curve(axes, looks[case.name], *step_curve(numbers), steps=True, every=0.2)
         axes.set(xscale="log", xlabel=drawn[place], ylim=(0.0, 1.02))
         axes.set_yticks(*QUARTERS)
 
-    labels = Labels(up="solves with no more")
-    titles = [""] * len(drawn)
-    return side_by_side(titles, draw, handles_of(summary.cases), labels, height=1.9, share_x=False)
+    titles, handles, up = [""] * len(drawn), handles_of(summary.cases), "solves with no more"
+    return side_by_side(titles, draw, handles, up=up, height=1.9, share_x=False)

@@ -11,7 +11,6 @@ from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import (
     QUARTERS,
-    Labels,
     looks_of,
     panel_titles,
     points_with,
@@ -131,7 +130,7 @@ def _rows(
         for label, mark in marks.items()
     ]
     height = 0.35 + _ROW * (len(cases) + 1)
-    return side_by_side(panel_titles(summary, points), draw_rows, handles, Labels(xlabel), height=height)
+    return side_by_side(panel_titles(summary, points), draw_rows, handles, across=xlabel, height=height)
 
 
 def _bar(axes: Axes, place: float, row: Any, names: tuple[str, str], look: Curve) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "QUARTERS",
-    "Labels",
     "draw_curve",
     "handles_of",
     "looks_of",
@@ -36,21 +35,6 @@ _LETTERS = 92  # of a legend's row, a handle being as wide as six
 _FALLBACK = ("#d55e00", "#000000", "#8c564b", "#7f7f00", "#6a3d9a", "#8c8c8c")
 _LINES: tuple[Any, ...] = ("-", (0, (5, 1.6)), (0, (3, 1.2, 1, 1.2)), (0, (1.2, 1.2)))
 _MARKERS = ("X", "P", "h", "<", ">", "d")
-
-
-@dataclass(frozen=True, slots=True)
-class Labels:
-    """What stands around the panels of a figure.
-
-    Args:
-        across: what is across, with its unit.
-        up: what is up, with its unit; empty where rows have names.
-        note: a line below, about what is drawn.
-    """
-
-    across: str = ""
-    up: str = ""
-    note: str = ""
 
 
 def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
@@ -151,8 +135,10 @@ def side_by_side(
     titles: Sequence[str],
     draw: Callable[[Axes, int], None],
     handles: Sequence[Any],
-    labels: Labels,
     *,
+    across: str = "",
+    up: str = "",
+    note: str = "",
     height: float,
     share_x: bool = True,
 ) -> Figure:
@@ -162,29 +148,31 @@ def side_by_side(
         titles: of the panels, at least one.
         draw: draws what is in a panel, given the place of its title.
         handles: of the legend; none for no legend.
-        labels: around the panels.
+        across: what is across, with its unit.
+        up: what is up, with its unit; empty where rows have names.
+        note: a line below, about what is drawn.
         height: of a panel, inches.
         share_x: whether all have the same horizontal axis.
     """
     from matplotlib.figure import Figure
 
-    across = min(2, len(titles))
-    down = -(-len(titles) // across)
+    columns = min(2, len(titles))
+    down = -(-len(titles) // columns)
     with house_style():
         figure = Figure(figsize=(_WIDTH, (1.3 if down == 1 else 0.9) + height * down), layout="constrained")
-        panels = figure.subplots(down, across, sharex=share_x, sharey=True, squeeze=False).flat
+        panels = figure.subplots(down, columns, sharex=share_x, sharey=True, squeeze=False).flat
         for place, axes in enumerate(panels):
             if place < len(titles):
                 axes.set_title(titles[place], loc="left", fontsize=9.0)
                 draw(axes, place)
             else:
                 axes.remove()
-                panels[place - across].tick_params(labelbottom=True)
+                panels[place - columns].tick_params(labelbottom=True)
         if handles:
             _add_legend(figure, handles)
-        figure.supylabel(labels.up, fontsize=9.5)
-        figure.supxlabel(f"{labels.across}\n" if labels.note else labels.across, fontsize=9.5)
-        figure.text(0.012, 0.008, labels.note, fontsize=7.5, color=GREY, va="bottom", ha="left")
+        figure.supylabel(up, fontsize=9.5)
+        figure.supxlabel(f"{across}\n" if note else across, fontsize=9.5)
+        figure.text(0.012, 0.008, note, fontsize=7.5, color=GREY, va="bottom", ha="left")
     return figure
 
 

@@ -1,14 +1,15 @@
 """The family as a value: read-only arrays and a digest of every number."""
 
-import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from nullpose.family import Family, build_family
+from nullpose.family.records import Domain
+from nullpose.objectives import Ratios
 
-FIELDS = [field.name for field in dataclasses.fields(Family)]
+FIELDS = [*Ratios._fields, *Domain._fields]
 ARRAYS = [name for name in FIELDS if name != "keep_out_m"]
 
 
@@ -16,8 +17,7 @@ ARRAYS = [name for name in FIELDS if name != "keep_out_m"]
 def family(random_scene: Callable) -> Family:
     """Returns a family of three nodes and two jammers in which every array has a number."""
     plain = build_family(random_scene(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
-    return dataclasses.replace(
-        plain,
+    return plain.changed(
         turn=np.tile(np.eye(3), (len(plain.points_m), 1, 1)),
         piece_start=np.array([0, 1]),
         piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
@@ -38,14 +38,14 @@ def test_arrays_are_read_only(family: Family, name: str) -> None:
 @pytest.mark.parametrize("name", FIELDS)
 def test_fields_cannot_be_set(family: Family, name: str) -> None:
     """No field of a family can be replaced."""
-    with pytest.raises(dataclasses.FrozenInstanceError):
+    with pytest.raises(AttributeError, match="frozen"):
         setattr(family, name, getattr(family, name))
 
 
 def test_arrays_are_copies(family: Family) -> None:
     """The arrays given stay their owner's: writing to them later changes neither family nor digest."""
     weights = np.array(family.numerator_weight)
-    copy = dataclasses.replace(family, numerator_weight=weights)
+    copy = family.changed(numerator_weight=weights)
     digest = copy.digest
     weights[0] = 99.0
     assert copy.numerator_weight[0] == family.numerator_weight[0]
@@ -54,8 +54,7 @@ def test_arrays_are_copies(family: Family) -> None:
 
 def test_what_kernels_take_is_the_family(family: Family) -> None:
     """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
-    assert len(family.arrays) == 10
-    for name, array in zip([*FIELDS[:9], "turn"], family.arrays, strict=True):
+    for name, array in family.arrays._asdict().items():
         assert array is getattr(family, name)
         assert array.flags.c_contiguous
 
@@ -64,9 +63,9 @@ def test_digest_is_stable(family: Family) -> None:
     """The digest is 64 hexadecimal digits, the same on every call, for a copy and for strided input."""
     assert len(bytes.fromhex(family.digest)) == 32
     assert family.digest == family.digest
-    assert dataclasses.replace(family).digest == family.digest
+    assert family.changed().digest == family.digest
     strided = np.repeat(family.points_m, 2, axis=0)[::2]
-    assert dataclasses.replace(family, points_m=strided).digest == family.digest
+    assert family.changed(points_m=strided).digest == family.digest
 
 
 def test_digest_of_equal_scenes_is_equal(random_scene: Callable) -> None:
@@ -88,14 +87,13 @@ def test_digest_sees_every_number(family: Family, name: str) -> None:
             changed[index] += 1
         else:
             changed[index] = np.nextafter(changed[index], 0.0) if changed[index] != 0.0 else 5e-324
-        digests.add(dataclasses.replace(family, **{name: changed if value.shape else float(changed)}).digest)
+        digests.add(family.changed(**{name: changed if value.shape else float(changed)}).digest)
     assert len(digests) == 1 + value.size
 
 
 def test_digest_sees_the_shape(family: Family) -> None:
     """The same numbers under other bounds of the entries are another problem."""
-    split = dataclasses.replace(
-        family,
+    split = family.changed(
         denominator_isotropic=np.array([1.0, 1.0]),
         denominator_start=np.array([0, 1, 2]),
         denominator_of=np.array([0, 1, 0]),

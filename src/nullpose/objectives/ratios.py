@@ -1,0 +1,46 @@
+"""Ratios ``(u^T N_k(p) u) / (u^T D_k(p) u)`` of which the smallest is maximised, as plain arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["FloatArray", "IntArray", "Ratios"]
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+
+
+class Ratios(NamedTuple):
+    """Ratios over the link forms of points.
+
+    With ``T(r) = (|r|^2 I - r r^T) / |r|^4`` and ``r_j = points[j] - p``, ratio k is
+    ``N_k = n_k I + w_k T(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e T(r_j(e))``, the sum being over the
+    entries e from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a denominator.
+    Everything is dimensionless but the positions.
+
+    Args:
+        points_m: (m, 3) ground points, metres.
+        numerator_isotropic: (r,) ``n_k``.
+        numerator_weight: (r,) ``w_k``, m^2.
+        numerator_point: (r,) index ``a(k)`` into the points.
+        denominator_of: (r,) index ``g(k)`` of each ratio's denominator.
+        denominator_isotropic: (g,) ``d_g``, positive.
+        denominator_start: (g + 1,) bounds of each denominator's entries.
+        denominator_point: (e,) index of each entry's point.
+        denominator_weight: (e,) ``b_e``, m^2.
+        turn: (m, 3, 3) rotations: point j sees the axis ``turn[j] u``; or (0, 3, 3), where all see u itself.
+    """
+
+    points_m: FloatArray
+    numerator_isotropic: FloatArray
+    numerator_weight: FloatArray
+    numerator_point: IntArray
+    denominator_of: IntArray
+    denominator_isotropic: FloatArray
+    denominator_start: IntArray
+    denominator_point: IntArray
+    denominator_weight: FloatArray
+    turn: FloatArray = np.zeros((0, 3, 3))

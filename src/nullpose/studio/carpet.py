@@ -1,0 +1,103 @@
+"""A map in the scene: a coloured plane with contours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.report.numbers import MINUS
+from nullpose.studio.colours import scale_colours, scale_range
+from nullpose.studio.drawing import FLAT, add_label, add_lines
+from nullpose.studio.field_map import Field
+
+if TYPE_CHECKING:
+    from viser import SceneApi
+
+__all__ = ["Carpet"]
+
+_STEPS = (0.5, 1.0, 2.0, 5.0)
+_FINER = 6  # pixels for each step of the grid
+_ALPHA = 105
+_WHITE = (250, 250, 250)
+_MOST_LABELS = 4
+
+
+class Carpet:
+    """A field drawn as a coloured plane with contours.
+
+    Args:
+        scene: the page's scene.
+    """
+
+    def __init__(self, scene: SceneApi) -> None:
+        self._scene = scene
+        self._parts: list[Any] = []
+
+    def show(self, field: Field, *, lift_m: float = 0.0) -> tuple[float, float]:
+        """Return the ends of the scale after drawing a field in place of the one before.
+
+        Args:
+            field: what to draw.
+            lift_m: how far above its altitude it is drawn, metres.
+        """
+        self.hide()
+        low, high = scale_range(field.values)
+        east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + lift_m
+        width = float(east[-1] + east[1] - 2.0 * east[0])
+        height = float(north[-1] - north[0] + east[1] - east[0])
+        image = self._scene.add_image(
+            "/map/colours",
+            _image(field, low, high),
+            width,
+            height,
+            format="png",
+            wxyz=(0.0, 1.0, 0.0, 0.0),  # the image's rows run towards the south
+            position=(0.5 * (east[0] + east[-1]), 0.5 * (north[0] + north[-1]), altitude_m),
+            **FLAT,
+        )
+        self._parts.append(image)
+        contours = _contours(field, low, high)
+        if contours:
+            segments = [np.stack([line[:-1], line[1:]], axis=1) for _, line in contours]
+            flat = np.concatenate(segments)
+            raised = np.insert(flat, 2, altitude_m + 1e-3 * width, axis=-1)
+            self._parts.append(add_lines(self._scene, "/map/contours", raised, _WHITE, 1.3))
+        levels = sorted({level for level, _ in contours})
+        for level in levels[:: max(1, len(levels) // _MOST_LABELS)]:
+            points = np.concatenate([line for own, line in contours if own == level])
+            x, y = points[np.argmin(points[:, 1])]  # southmost, out of the way of what is in the middle
+            text = f"{level:g} {field.unit}".replace("-", MINUS)
+            name = f"/map/level-{level:g}"
+            label = add_label(self._scene, name, text, (x, y, altitude_m), 0.7, "center-center")
+            self._parts.append(label)
+        return low, high
+
+    def hide(self) -> None:
+        """Take the field out of the scene."""
+        for part in self._parts:
+            part.remove()
+        self._parts = []
+
+
+def _image(field: Field, low: float, high: float) -> NDArray[np.uint8]:
+    """Return the field as an image, north up, see-through where there is no value."""
+    from scipy.ndimage import zoom
+
+    known = np.isfinite(field.values)
+    filled = np.where(known, np.clip(np.nan_to_num(field.values, nan=low), low, high), low)
+    fine = zoom(filled, _FINER, order=1, mode="nearest", grid_mode=True)
+    solid = zoom(known.astype(float), _FINER, order=0, mode="nearest", grid_mode=True) > 0.5
+    alpha = np.where(solid, _ALPHA, 0).astype(np.uint8)
+    return np.dstack([scale_colours(fine, low, high), alpha])[::-1]
+
+
+def _contours(field: Field, low: float, high: float) -> list[tuple[float, NDArray[np.float64]]]:
+    """Return the contours, each with its level, as points, (n, 2)."""
+    from contourpy import contour_generator
+
+    step = next((one for one in _STEPS if (high - low) / one <= 8.0), 10.0)
+    generator = contour_generator(field.east_m, field.north_m, np.ma.masked_invalid(field.values))
+    levels = step * np.arange(np.ceil(low / step), np.floor(high / step) + 1.0)
+    return [(level, np.asarray(line)) for level in levels for line in generator.lines(level) if len(line) > 4]
