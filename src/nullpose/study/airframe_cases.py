@@ -18,11 +18,8 @@ __all__ = [
     "mounted_phrase",
 ]
 
-OMNIDIRECTIONAL = "omnidirectional"
-"""Name of the case that the others are measured against."""
-
-STATED = "stated"
-"""Name of the case that a scenario states itself, if it is none of the others."""
+OMNIDIRECTIONAL = "omnidirectional"  # the case that the others are measured against
+STATED = "stated"  # the case that a scenario states itself, if it is none of the others
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +56,7 @@ def _case(name: str, label: str, phrase: str, tilt_max_deg: float, mount_deg: fl
     return AirframeCase(name=name, label=label, phrase=phrase, airframe=airframe)
 
 
+# The vehicles that every comparison tries, by the tilt that they take. Yaw is free for all of them.
 AIRFRAME_CASES: tuple[AirframeCase, ...] = (
     _case("level-vertical", "level, vertical", "a level vehicle with a vertical dipole", 0.0, 0.0),
     _case("level-horizontal", "level, horizontal", "a level vehicle with a horizontal dipole", 0.0, 90.0),
@@ -66,11 +64,8 @@ AIRFRAME_CASES: tuple[AirframeCase, ...] = (
     _case("tilt-30", "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole", 30.0, 90.0),
     _case(OMNIDIRECTIONAL, "omnidirectional", "an omnidirectional vehicle", 180.0, 0.0),
 )
-"""The vehicles that every comparison tries, by the tilt that they take. Yaw is free for all of them."""
 
-
-ARRAY_SIZES = (2, 4, 8)
-"""Numbers of elements of the arrays that every comparison tries, each digital and analogue."""
+ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries, each digital and analogue
 
 _LEVEL = AIRFRAME_CASES[0].airframe
 _ARRAY = Array(elements=1, layout="linear", spacing_wavelengths=0.5)
@@ -90,7 +85,7 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     if own is not None and all(own.axis_band != case.airframe.axis_band for case in vehicles):
         tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
         vehicles = tuple(tilting)
-    if scenario.objective != "min-sinr":
+    if scenario.objective_record.transmits:
         return vehicles
     array = _ARRAY if scenario.array is None else scenario.array
     sizes = set(ARRAY_SIZES) | ({array.elements} if scenario.array is not None else set())

@@ -140,7 +140,9 @@ class StudyCase(Section):
         examples=["tilt-10"],
     )
     scheme: _SchemeName | None = Field(
-        default=None, description="How the pose is chosen. Left out: optimum.", examples=["zero-interference"]
+        default=None,
+        description=f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.",
+        examples=[Scheme.VERTICAL.value],
     )
     airframe: Annotated[Airframe, _Vehicle()] | None = Field(
         default=None,

@@ -90,7 +90,7 @@ class StudySpec(Section):
     cases: Annotated[tuple[StudyCase, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(StudyCase(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
-        "the optimum with the scene's own vehicle.",
+        "the best pose with the scene's own vehicle.",
     )
     sweep: SweepAxes = Field(
         default=(),
