@@ -229,12 +229,15 @@ def _list_of(read: Reader) -> Reader:
     return lambda value, path: tuple(read(x, f"{path}[{i}]") for i, x in enumerate(_list(value, path)))
 
 
-def _mix(value: Any, path: str) -> dict[int, float]:
-    weights = _numbers(value, path, (-1, 2))[:, 1].tolist()
-    ratios = [ratio for ratio, _ in value]
-    if any(type(ratio) is not int or ratio < 0 for ratio in ratios) or len(set(ratios)) < len(ratios):
-        raise _refusal(value, path, "a list of [ratio, weight] with different ratios")
-    return dict(zip(ratios, weights, strict=True))
+def _mixes(value: Any, path: str) -> tuple[dict[int, float], ...]:
+    """Return mappings from ratio to weight; there may be very many, so that they are looked at together."""
+    pairs = [pair for mix in _list(value, path) for pair in (mix if isinstance(mix, list) else [mix])]
+    _numbers(pairs, path, (-1, 2))
+    mixes = tuple(dict(mix) for mix in value)
+    of_ratios = all(type(ratio) is int and ratio >= 0 for mix in mixes for ratio in mix)
+    if not of_ratios or sum(map(len, mixes)) != len(pairs):
+        raise _refusal(value, path, "lists of [ratio, weight] with different ratios")
+    return mixes
 
 
 def _leaves(value: Any, path: str) -> dict[str, Any]:
@@ -268,7 +271,7 @@ _POSE: dict[str, Reader] = {
 }
 _LEAVES: dict[str, Reader] = {
     name: partial(_numbers, shape=(-1, *shape), kind=kind) for name, (kind, shape) in COLUMNS.items()
-} | {"mixes": _list_of(_mix)}
+} | {"mixes": _mixes}
 _TREE: dict[str, Reader] = {"axis": _text, "root_m": partial(_numbers, shape=(2, 3)), "leaves": _leaves}
 _LAYOUT: dict[str, Reader] = {
     "format": _text,

@@ -110,14 +110,14 @@ class ArraySearch:
         """The best states, each with another value, the best first."""
         return [state for _, state in sorted(self.pool.entries, key=lambda entry: -entry[0])]
 
-    def _climbed(self, state: FloatArray, betas: FloatArray) -> float:
-        """Climb from a state, which is overwritten; return its value."""
+    def _climbed(self, states: FloatArray, betas: FloatArray) -> tuple[float, FloatArray]:
+        """Climb from the best of some states; return the value and the state that this ends at."""
         from nullpose.solve.kernels.array_climb import climb
 
-        value, evaluations = climb(self.task.problem, self.task.family.domain, state, betas, _STEPS)
+        state, value, evaluations = climb(self.task.problem, self.task.family.domain, states, betas, _STEPS)
         self.climbs += 1
         self.evaluations += int(evaluations)
-        return float(value)
+        return float(value), state
 
     def _placed(self, position_m: FloatArray) -> bool:
         """Move a position into the domain; return whether it got there."""
@@ -127,17 +127,11 @@ class ArraySearch:
 
     def _begin(self, positions_m: FloatArray) -> None:
         """Climb from the best of several yaws and phases, each at one of the positions."""
-        from nullpose.solve.kernels.array_climb import judge
-
         angles = self.rng.uniform(-math.pi, math.pi, (len(positions_m), self.task.size - 3))
         states = np.hstack([positions_m, angles])
         kept = states[[self._placed(state[:3]) for state in states]]
         if len(kept):
-            values = np.empty(len(kept))
-            judge(self.task.problem, kept, values)
-            self.evaluations += len(kept)
-            state = kept[np.argmax(values)].copy()
-            self.pool.offer(self._climbed(state, _BETAS), state)
+            self.pool.offer(*self._climbed(kept, _BETAS))
 
     def _spread(self) -> None:
         """Climb from fresh starts all over where an optimum can be, every other one on the floor."""
@@ -164,9 +158,9 @@ class ArraySearch:
         if what == 2 and not self.task.problem.shared:
             state[3] = self.rng.uniform(-math.pi, math.pi)
         if self._placed(state[:3]):
-            reached = self._climbed(state, _HOP_BETAS)
-            if reached > value + _BETTER:
-                self.pool.entries[place] = (reached, state)
+            reached = self._climbed(state[None], _HOP_BETAS)
+            if reached[0] > value + _BETTER:
+                self.pool.entries[place] = reached
 
 
 class ArrayHunt:

@@ -86,9 +86,9 @@ class ArrayTask:
 
     def value(self, state: FloatArray) -> float:
         """Return the smallest log ratio at a state, wherever it is; minus infinity if a node is not heard."""
-        from nullpose.solve.kernels.array_response import array_value
+        from nullpose.solve.kernels.array_response import respond
 
-        return float(array_value(self.problem, state))
+        return float(respond(self.problem, state, np.empty(self.problem.nodes), np.empty((0, len(state)))))
 
     def reach(self, level: float) -> tuple[FloatArray, FloatArray]:
         """Return a finite box around every position whose smallest log ratio can reach a level.

@@ -7,7 +7,7 @@ import pytest
 
 from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_task import ArrayTask
-from nullpose.solve.kernels.array_climb import climb, judge
+from nullpose.solve.kernels.array_climb import climb
 
 BETAS = np.array([4.0, 16.0, 64.0])
 
@@ -17,7 +17,9 @@ def _task(scenario: Scenario, shared: bool) -> ArrayTask:
 
 
 def _climb(task: ArrayTask, state: np.ndarray, steps: int = 60) -> tuple[float, int]:
-    return climb(task.problem, task.family.domain, state, BETAS, steps)
+    """Climbs from a state, which is overwritten."""
+    state[:], value, evaluations = climb(task.problem, task.family.domain, state[None], BETAS, steps)
+    return value, evaluations
 
 
 @pytest.mark.parametrize("shared", [False, True])
@@ -64,11 +66,12 @@ def test_nowhere_to_go(scene: Callable) -> None:
 
 
 @pytest.mark.parametrize("shared", [False, True])
-def test_judging_is_evaluating(shared: bool, random_scene: Callable) -> None:
-    """Each of many states gets its own smallest log ratio."""
+def test_the_best_of_many_states_is_climbed_from(shared: bool, random_scene: Callable) -> None:
+    """Without a step it is the state with the highest smallest log ratio; with steps it ends elsewhere."""
     rng = np.random.default_rng(5)
     task = _task(random_scene(rng, 3, 2), shared)
     states = rng.uniform(9.0, 20.0, (7, task.size))
-    values = np.empty(7)
-    judge(task.problem, states, values)
-    np.testing.assert_array_equal(values, [task.value(state) for state in states])
+    best = max(states, key=task.value)
+    stayed, moved = (climb(task.problem, task.family.domain, states, BETAS, most)[0] for most in (0, 60))
+    np.testing.assert_array_equal(stayed, best)
+    assert task.value(moved) > task.value(best)

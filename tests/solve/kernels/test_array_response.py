@@ -8,7 +8,7 @@ import pytest
 from nullpose.physics.array import analogue_sinr, digital_sinr, element_positions
 from nullpose.scenario import Array
 from nullpose.solve.array_task import ArrayTask
-from nullpose.solve.kernels.array_response import array_value, respond
+from nullpose.solve.kernels.array_response import respond
 
 CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 
@@ -16,7 +16,7 @@ CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 def _response(task: ArrayTask, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     logs, slopes = np.empty(task.problem.nodes), np.empty((task.problem.nodes, task.size))
     worst = respond(task.problem, state, logs, slopes)
-    assert worst == np.min(logs) == array_value(task.problem, state)
+    assert worst == np.min(logs) == task.value(state)
     return logs, slopes
 
 

@@ -11,11 +11,11 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.array_response import array_value, respond
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.local_coordinates import choose_sides, side_slack
 from nullpose.solve.kernels.vectors import minus, norm, over, store
 
-__all__ = ["climb", "judge", "walls"]
+__all__ = ["climb", "walls"]
 
 _LENGTH_M2 = 25.0  # first guess at the inverse curvature of a position
 _ANGLE = 0.05  # and of an angle
@@ -120,20 +120,34 @@ def learn(inverse, step, bend):
                 inverse[i, j] += change / agreement
 
 
+@inner_heap_kernel
+def best_of(problem, states):
+    """Return the state with the highest value, a copy; of one alone, that one."""
+    at, best = 0, -math.inf
+    for s in range(len(states) if len(states) > 1 else 0):
+        value = array_value(problem, states[s])
+        if value > best:
+            at, best = s, value
+    return states[at].copy()
+
+
 @heap_kernel
-def climb(problem, domain, x, betas, most):
-    """Climb from a state, in place; return its smallest log ratio less the walls' penalty, and evaluations.
+def climb(problem, domain, states, betas, most):
+    """Return where a climb from the best of some states ends, its value, and evaluations.
+
+    The value is the smallest log ratio less the walls' penalty.
 
     Args:
         problem: the array and its scene.
         domain: box, keep-out balls and forbidden pieces of a family.
-        x: the state, overwritten.
+        states: (s, n) where to begin.
         betas: sharpness of the soft minimum, and stiffness of the walls, in each round.
         most: steps in each round.
     """
+    x = best_of(problem, states)
     n = len(x)
     slope, new_slope, step, new_x = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    inverse, worst, evaluations = np.empty((n, n)), -math.inf, 0
+    inverse, worst, evaluations = np.empty((n, n)), -math.inf, len(states) - 1
     for beta in betas:
         inverse[:] = 0.0
         for i in range(n):
@@ -165,11 +179,4 @@ def climb(problem, domain, x, betas, most):
             gain, value, worst = new - value, new, new_worst
             if gain < _GAIN:
                 break
-    return worst, evaluations
-
-
-@kernel
-def judge(problem, states, values):
-    """Fill the smallest log ratio at each state, (s, n) into (s,)."""
-    for s in range(len(states)):
-        values[s] = array_value(problem, states[s])
+    return x, worst, evaluations
