@@ -220,7 +220,7 @@ def some_case(rng: np.random.Generator, *, family: str, field: str, border: str,
         high_m=airspace.upper_m,
         keep_out_points_m=balls_m,
         keep_out_m=4.0,
-        **{name: getattr(zones, name) for name in zones.__slots__},
+        **zones,
     )
     axes = some_field(rng, field, whole)
     row = np.zeros(COLUMNS)
