@@ -124,7 +124,7 @@ def domain_of(airspace: Airspace, balls_m: np.ndarray, radius_m: float) -> tuple
         high_m=np.array([99.0, 99.0, 40.0]),
         keep_out_points_m=balls_m,
         keep_out_m=radius_m,
-        **{name: getattr(zones, name) for name in zones.__slots__},
+        **zones,
     ).domain
 
 

@@ -35,7 +35,7 @@ def alternatives_of(domain, z, row, sides, counts):
 def domain_of(airspace: Airspace) -> Domain:
     """Returns the airspace's zones in a box without bounds, as the kernels take them."""
     zones = airspace_zones(airspace)
-    arrays = [getattr(zones, name) for name in zones.__slots__]
+    arrays = list(zones.values())
     for array in arrays:
         array.flags.writeable = False
     box = np.array([-np.inf, -np.inf, 8.0]), np.array([np.inf, np.inf, 40.0]), np.zeros((0, 3))
