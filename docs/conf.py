@@ -27,7 +27,7 @@ math_eqref_format = "({number})"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray")}
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray", "IntArray")}
 python_use_unqualified_type_names = True
 # Types of other packages have no pages here, and the build asks no network for theirs.
 nitpick_ignore_regex = [
@@ -35,7 +35,7 @@ nitpick_ignore_regex = [
         r"py:.*",
         r"(numpy|np|pydantic|typing|collections|matplotlib|rich|pandas|pd|xarray|xr|pyarrow|pa|pathlib|os|enum|abc)(\..*)?",
     ),
-    (r"py:.*", r".*(ArrayLike|NDArray|FloatArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)"),
+    (r"py:.*", r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)"),
 ]
 
 html_theme = "furo"

@@ -12,7 +12,7 @@ from nullpose.solve.kernels.exclusion import is_level
 from nullpose.solve.kernels.forms import form_value
 from nullpose.solve.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.local_coordinates import BAND as ELEVATION_BAND
-from nullpose.solve.kernels.local_coordinates import clamp_axis, clamp_elevation
+from nullpose.solve.kernels.local_coordinates import clamp_axis
 from nullpose.solve.kernels.node import (
     BAND,
     CELL,
@@ -24,7 +24,7 @@ from nullpose.solve.kernels.node import (
     keep_largest,
 )
 from nullpose.solve.kernels.scratch import scratch, scratch_int
-from nullpose.solve.kernels.symmetric import add_square, copy_into, form_product, normalise, top_eigenvector
+from nullpose.solve.kernels.symmetric import add_square, copy_into, form_product, top_eigenvector
 from nullpose.solve.kernels.vectors import dot
 from nullpose.solve.kernels.whitened import (
     axis_of,
@@ -44,49 +44,81 @@ _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
 _LOOSE = 1e-3  # and in units of a box's size
-_GRID = 9  # of axes across a cell, along each side
-_MARGIN = 0.01  # by which they are inside the band, as a share of its width
+_GRID = 9  # of lines across a cell
 
 
 @inner_kernel
-def in_cell(face, row, u):
-    """Return whether an axis lies in a row's cell."""
-    inside = True
-    for side in range(2):
-        share = u[(face + 1 + side) % 3] / u[face]
-        inside = inside and row[CELL + 2 * side] < share < row[CELL + 2 * side + 1]
-    return inside
+def add_axis(basis, back, u, start):
+    """Add the whitened square of an axis to a matrix."""
+    w = scratch(3)
+    whiten_axis(basis, back, u, w)
+    add_square(1.0 / dot(w, w), w, start)
+
+
+@inner_kernel
+def add_band_axes(basis, back, row, least, greatest, along, start):
+    """Add the whitened squares of axes inside both a cell and a band.
+
+    On lines across the cell, of which the band leaves an interval or two of the side ``along``.
+    """
+    face, other = int(row[FACE]), 1 - along
+    u = scratch(3)
+    for line in range(_GRID):
+        low, high = row[CELL + 2 * other], row[CELL + 2 * other + 1]
+        x = low + (high - low) * (0.02 + 0.96 * line / (_GRID - 1))
+        if face == 2:  # u_z = 1: the squares of the others sum to 1 / u_z^2 - 1
+            bottom = 1.0 / greatest - 1.0 - x * x
+            top = (1.0 / least - 1.0 if least > 0.0 else 2.0) - x * x
+        else:
+            bottom = least / (1.0 - least) * (1.0 + x * x)
+            top = (greatest / (1.0 - greatest) if greatest < 0.5 else 2.0) * (1.0 + x * x)
+        far, near = math.sqrt(max(0.0, top)), math.sqrt(max(0.0, bottom))
+        for sign in range(2):
+            a = max(near if sign else -far, row[CELL + 2 * along])
+            b = min(far if sign else -near, row[CELL + 2 * along + 1])
+            for part in range(2 if b > a else 0):
+                u[face] = 1.0
+                u[(face + 1 + other) % 3] = x
+                u[(face + 1 + along) % 3] = a + (0.25 if part else 0.75) * (b - a)
+                add_axis(basis, back, u, start)
 
 
 @inner_kernel
 def cell_start(axis_field, basis, back, row, start):
     """Fill a positive definite matrix of unit trace inside the row's cell and band; return whether there is.
 
-    In whitened coordinates: the mean of the squares of axes inside, brought to the band from a grid over the
-    cell. None may have been met in a thin cell.
+    In whitened coordinates: the mean of the squares of axes inside. None may have been met in a thin cell.
     """
-    face, has_cell = max(0, int(row[FACE])), row[FACE] >= 0.0
-    has_band, level_axes = axis_field.kind >= ELEVATION_BAND, is_level(axis_field)
+    face, has_band, level_axes = int(row[FACE]), axis_field.kind >= ELEVATION_BAND, is_level(axis_field)
     start[:] = 0.0
-    if not has_cell and (level_axes or not has_band):
+    if face < 0 and (level_axes or not has_band):
         start[:3] = 1.0 / 3.0
         return True
     half = half_width(axis_field)
     least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
-    u, w = scratch(3), scratch(3)
-    margin, grid = _MARGIN * (greatest - least), _GRID if has_band else 2
-    for point in range(grid * grid):
-        u[face] = 1.0
-        for side in range(2):
-            low, high = (row[CELL + 2 * side], row[CELL + 2 * side + 1]) if has_cell else (-1.0, 1.0)
-            place = point % grid if side == 0 else point // grid
-            u[(face + 1 + side) % 3] = low + (high - low) * (0.02 + 0.96 * place / (grid - 1))
-        if has_band:
-            normalise(u)
-            clamp_elevation(least + margin, greatest - margin, u)
-        if not has_cell or in_cell(face, row, u):
-            whiten_axis(basis, back, u, w)
-            add_square(1.0 / dot(w, w), w, start)
+    u = scratch(3)
+    if face < 0:
+        for turn in range(12):
+            share = least + (greatest - least) * (0.25 if turn & 1 else 0.75)
+            across, azimuth = math.sqrt(1.0 - share), turn * math.pi / 3.0
+            u[0], u[1] = across * math.cos(azimuth), across * math.sin(azimuth)
+            u[2] = math.sqrt(share) if turn < 6 else -math.sqrt(share)
+            add_axis(basis, back, u, start)
+    elif has_band and not level_axes:
+        if face != 1:
+            add_band_axes(basis, back, row, least, greatest, 1 if face == 0 else 0, start)
+        if face != 0:
+            add_band_axes(basis, back, row, least, greatest, 1 if face == 2 else 0, start)
+    else:
+        for corner in range(5):
+            u[face] = 1.0
+            for side in range(2):
+                low, wide = row[CELL + 2 * side], row[CELL + 2 * side + 1] - row[CELL + 2 * side]
+                fraction = 0.5 if corner == 4 else (0.02 if (corner >> side) & 1 else 0.98)
+                u[(face + 1 + side) % 3] = low + fraction * wide
+            if level_axes:
+                u[2] = 0.0
+            add_axis(basis, back, u, start)
     if level_axes:
         start[2] += 0.1
     trace = start[0] + start[1] + start[2]
