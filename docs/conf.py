@@ -35,7 +35,10 @@ nitpick_ignore_regex = [
         r"py:.*",
         r"(numpy|np|pydantic|typing|collections|matplotlib|rich|pandas|pd|xarray|xr|pyarrow|pa|pathlib|os|enum|abc)(\..*)?",
     ),
-    (r"py:.*", r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)"),
+    (
+        r"py:.*",
+        r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)",
+    ),
 ]
 
 html_theme = "furo"
