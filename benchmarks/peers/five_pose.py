@@ -10,13 +10,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from nullpose.family import Family, build_family
 from nullpose.objectives import Ratios
 from nullpose.physics import Pose, min_sinr
 from nullpose.scenario import Scenario
+from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.links import derivatives, min_log_ratio
 
 __all__ = ["DIMENSIONS", "FivePose"]
@@ -26,7 +26,7 @@ DIMENSIONS = 5
 FloatArray = NDArray[np.float64]
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def unpack(reals, counts):
     """Return the family's arrays, and the room for scratch, out of one array of floats and one of integers.
 
@@ -57,7 +57,7 @@ def unpack(reals, counts):
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def place(x, bounds, p, u):
     """Fill position and axis (paper eq. 1.1, yaw 0) from the five scaled numbers."""
     for i in range(3):
@@ -68,7 +68,7 @@ def place(x, bounds, p, u):
     u[2] = math.cos(roll) * math.cos(pitch)
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def cost(x, reals, counts):
     """Return minus the smallest log ratio of a pose, counting the evaluation."""
     family, bounds, logs, f = unpack(reals, counts)
@@ -78,7 +78,7 @@ def cost(x, reals, counts):
     return -min_log_ratio(family, p, u, logs, f)
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def costs(xs, reals, counts):
     """Return minus the smallest log ratio of many poses, given as rows."""
     family, bounds, logs, f = unpack(reals, counts)
@@ -91,7 +91,7 @@ def costs(xs, reals, counts):
     return out
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def ratios_and_slopes(x, reals, counts):
     """Return every log ratio of a pose, (R,), and its derivatives in the five scaled numbers, (R, 5)."""
     family, bounds, _, f = unpack(reals, counts)

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from benchmarks.markdown import table
@@ -18,6 +17,7 @@ from benchmarks.workloads.fields.scenes import ALTITUDE_M, SIDE_M, Scene
 from nullpose.family import AxisField, build_family
 from nullpose.solve import solve
 from nullpose.solve.kernels.axis import best_axis
+from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.polish import polish
 
@@ -36,7 +36,7 @@ _REPEATS = 7
 FloatArray = NDArray[np.float64]
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def evaluate_all(family, ps, us, rounds):
     """Return the sum of the smallest log ratio over poses, so that no evaluation can be left out."""
     logs, f = np.empty(family.denominator_isotropic.shape[0]), np.empty(family.numerator_isotropic.shape[0])
@@ -47,14 +47,14 @@ def evaluate_all(family, ps, us, rounds):
     return total
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def turn_all(family, ps, us):
     """Fill the best axis of every position."""
     for m in range(ps.shape[0]):
         best_axis(family, ps[m], us[m])
 
 
-@njit(error_model="numpy")
+@heap_kernel
 def polish_all(family, domain, axis_field, ps, us, mu_start, max_steps):
     """Polish every pose, on copies."""
     multipliers = np.empty(family.numerator_isotropic.shape[0])
