@@ -10,6 +10,8 @@ from typing import Any
 
 from numba import config
 
+from nullpose.family import records
+from nullpose.objectives import ratios
 from nullpose.solve.kernels.linked import LinkedDispatcher
 
 __all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
@@ -60,11 +62,11 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
 
 @cache
 def _drop_outdated(cache_path: str) -> None:
-    """Delete cached kernels older than the newest kernel source.
+    """Delete cached kernels older than the newest source of a kernel or of what kernels take.
 
     A cached kernel holds the code of those it calls, but numba compares only the file of the kernel itself.
     """
-    sources = Path(__file__).parent.glob("*.py")
+    sources = [*Path(__file__).parent.glob("*.py"), Path(records.__file__), Path(ratios.__file__)]
     newest = max(source.stat().st_mtime for source in sources)
     for index in Path(cache_path).glob("*.nbi"):
         with contextlib.suppress(OSError):
