@@ -77,7 +77,7 @@ def test_equal_distances_keep_the_value(scene: Callable) -> None:
     """Where several axes serve the nodes alike to rounding, the value reported is still the pose's best."""
     square = scene([(0, 0, 0), (20, 0, 0), (20, 20, 0), (0, 20, 0)], [(40, 10, 1)], jammer_powers_w=0.1)
     solution = solve(square, Scheme.MAXIMUM_GAIN)
-    assert solution.objective.value <= solve(square).objective.value
+    assert solution.objective.value <= solve(square).objective.value * (1.0 + 1e-9)
     assert solution.objective.value > 0.5 * solve(square).objective.value
 
 
