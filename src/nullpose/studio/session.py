@@ -110,7 +110,7 @@ class Session:
             if failure is not None:
                 return f"no pose: {failure.message}"
             if answer is None and self._last(Compiling) is not None:
-                return "compiling the solver, once, which takes a minute"
+                return "compiling the solver, once, which takes half a minute"
             return status_words(answer)
 
     def change(self, change: Callable[[View], View], gesture: str = "") -> None:
