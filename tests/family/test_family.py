@@ -52,6 +52,14 @@ def test_arrays_are_copies(family: Family) -> None:
     assert copy.digest == digest
 
 
+@pytest.mark.parametrize(("name", "given"), [("points_m", np.float32), ("numerator_point", np.int32)])
+def test_kernels_get_one_type_of_number(family: Family, name: str, given: type) -> None:
+    """Whatever the width of the numbers given, arrays have 64 bits: compiled code is entered unchecked."""
+    kept = getattr(family.changed(**{name: np.asfortranarray(getattr(family, name)).astype(given)}), name)
+    assert kept.dtype == getattr(family, name).dtype
+    assert kept.flags.c_contiguous
+
+
 def test_what_kernels_take_is_the_family(family: Family) -> None:
     """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
     for name, array in family.arrays._asdict().items():

@@ -91,9 +91,9 @@ def compiling_announced() -> Iterator[None]:
 
 def _import_compiler() -> None:
     """Import numba without the BLAS that it looks for and no kernel uses: that takes a tenth of a second."""
-    sys.modules.setdefault(_BLAS, None)  # type: ignore[arg-type]
+    sys.modules.setdefault(_BLAS, None)  # type: ignore[arg-type]  # None: not to be imported
     try:
-        import numba.np.arraymath  # noqa: F401
+        import numba.np.arraymath  # noqa: F401 - imported for what it imports
     finally:
         if sys.modules[_BLAS] is None:
             del sys.modules[_BLAS]

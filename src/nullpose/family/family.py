@@ -83,6 +83,7 @@ class Family:
 def _read_only(value: Any) -> Any:
     if not isinstance(value, np.ndarray):
         return value
-    array = np.ascontiguousarray(value).copy()
+    whole = value.dtype.kind in "iu"  # kernels are compiled for these two types
+    array = np.array(value, dtype=np.int64 if whole else np.float64, order="C")
     array.flags.writeable = False
     return array

@@ -33,6 +33,7 @@ def test_gap_and_gain(solved: RobustSolution) -> None:
     """The gap is the bound over the guaranteed value less one; the gain compares both poses' guarantees."""
     assert solved.upper_bound is not None
     assert solved.relative_gap == pytest.approx(solved.upper_bound / solved.robust.guaranteed - 1.0)
+    assert solved.label == solved.scheme == "robust"
     assert solved.gain == pytest.approx(solved.robust.guaranteed / solved.nominal.guaranteed)
     assert replace(solved.details, nominal=solved.robust).gain == 1.0
 

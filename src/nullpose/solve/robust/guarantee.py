@@ -26,8 +26,8 @@ _FINEST = 1e-6
 class Guarantee:
     """What a pose guarantees: the smallest ratio over the nodes and over all errors together.
 
-    A ratio is a node's margin (its SINR where it states no weight and no requirement), or with objective
-    "secrecy-rate" ``(1 + SNR_k) / (1 + SNR_e)``, two to the power of the secrecy rate.
+    A ratio is a node's margin (its SINR where it states no weight and no requirement), or for
+    a secrecy rate ``(1 + SNR_k) / (1 + SNR_e)``, two to the power of the secrecy rate.
 
     Args:
         position_m: (3,) the commanded position.

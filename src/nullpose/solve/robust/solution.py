@@ -95,6 +95,11 @@ class RobustDetails:
     cases: int
 
     @property
+    def label(self) -> str:
+        """The name of the case for tables."""
+        return "robust"
+
+    @property
     def gain(self) -> float:
         """How many times as much the robust pose guarantees as the nominal one; infinite over nothing."""
         guaranteed = self.nominal.guaranteed
