@@ -1,4 +1,4 @@
-"""Read-only arrays of a scenario's numbers."""
+"""Arrays of a scenario's numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["read_only"]
+__all__ = ["Floats", "read_only"]
+
+Floats = NDArray[np.float64]
 
 
 def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nullpose.scenario.arrays import Floats
 
 __all__ = ["distance_m"]
-
-Array = NDArray[np.float64]
 
 _HALVINGS = 100  # of the multiplier's range, which is bounded relative to the answer
 
 
-def distance_m(points_m: Array, centre_m: Array, matrix_m: Array) -> Array:
+def distance_m(points_m: Floats, centre_m: Floats, matrix_m: Floats) -> Floats:
     """Returns how far points are from the set ``{centre + A x : |x| <= 1}`` [m]; 0 inside it.
 
     With y the offset from the centre along the principal axes, of lengths a, the nearest point of the set is
@@ -39,7 +38,7 @@ def distance_m(points_m: Array, centre_m: Array, matrix_m: Array) -> Array:
     return np.asarray(np.linalg.norm(offsets - squares * _share(offsets, squares, high), axis=1))
 
 
-def _share(offsets: Array, squares: Array, multiplier: Array) -> Array:
+def _share(offsets: Floats, squares: Floats, multiplier: Floats) -> Floats:
     """Returns ``y / (a^2 + t)``, and 0 where both are 0."""
     total = squares + multiplier[:, None]
     return np.divide(offsets, total, out=np.zeros_like(offsets), where=total > 0.0)

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.scenario.arrays import read_only
+from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.rules import ListOf
 from nullpose.scenario.units import PlanePoint
 
 __all__ = ["MOST_CORNERS", "Polygon", "area_m2", "counter_clockwise_m", "depth_m"]
 
-Array = NDArray[np.float64]
-
 MOST_CORNERS = 5000
 """Vertices of a polygon, and of all that an airspace has: more take too long to check and to cut."""
 _APART_M = 1e-6
 """Vertices and edges closer than this meet [m]."""
 _MOST_AT_ONCE = 1_000_000  # coordinates of points times vertices, for the memory that it takes
-_BATCH = 64  # edges compared with all others together, likewise
 
 
-def area_m2(vertices_m: Array) -> float:
+def area_m2(vertices_m: Floats) -> float:
     """Returns the area [m²] inside a closed chain of vertices, positive when they run counter-clockwise.
 
     The shoelace formula, about the first vertex so that a distant origin costs no digits.
@@ -38,14 +35,14 @@ def area_m2(vertices_m: Array) -> float:
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def counter_clockwise_m(polygon: Sequence[tuple[float, float]] | None) -> Array:
+def counter_clockwise_m(polygon: Sequence[tuple[float, float]] | None) -> Floats:
     """Returns the vertices of a polygon [m], (n, 2), counter-clockwise and read-only; none without one."""
     vertices_m = np.asarray(polygon or (), dtype=np.float64).reshape(-1, 2)
     clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
     return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
 
 
-def depth_m(points_m: Array, vertices_m: Array) -> Array:
+def depth_m(points_m: Floats, vertices_m: Floats) -> Floats:
     """Returns how deep each point lies in the polygon [m]: its distance from the border, negative outside.
 
     Args:
@@ -70,7 +67,7 @@ def depth_m(points_m: Array, vertices_m: Array) -> Array:
     return np.asarray(np.where(inside, distance, -distance))
 
 
-def _distance_m(points: Array, start: Array, end: Array) -> Array:
+def _distance_m(points: Floats, start: Floats, end: Floats) -> Floats:
     """Returns the distances from points to segments, broadcast [m]."""
     along = end - start
     length_squared = np.sum(along**2, axis=-1)
@@ -82,32 +79,24 @@ def _distance_m(points: Array, start: Array, end: Array) -> Array:
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
 def _first_meeting(corners: tuple[tuple[float, float], ...]) -> tuple[int, int] | None:
     """Returns the first two edges that have more in common than the vertex between neighbours."""
-    vertices = np.asarray(corners)
-    count, ends = len(vertices), np.roll(vertices, -1, axis=0)
-    for one, other in _near(np.minimum(vertices, ends), np.maximum(vertices, ends)):
-        p, q, start, end = vertices[one], ends[one], vertices[other], ends[other]
+    start = np.asarray(corners)
+    end = np.roll(start, -1, axis=0)
+    low, high = np.minimum(start, end) - _APART_M, np.maximum(start, end)
+    for one in range(len(start)):
+        is_near = ((low[one] <= high[one + 1 :]) & (high[one] >= low[one + 1 :])).all(axis=1)
+        others = one + 1 + np.flatnonzero(is_near)
+        first, second = (start[one], end[one]), (start[others], end[others])
         # Neither lies on one side of the other's line: they meet there, or are on one line and overlap.
-        met = ~(_beside(p, q, start, end) | _beside(start, end, p, q))
-        follows, closes = other == one + 1, other - one == count - 1
-        met[follows] = _folds(vertices[one[follows]], ends[one[follows]], ends[other[follows]])
-        met[closes] = _folds(vertices[-1:], vertices[:1], vertices[1:2])
+        met = ~(_beside(*first, *second) | _beside(*second, *first))
+        met[others == one + 1] = _folds(start[one], end[one], end[(one + 1) % len(start)])
+        if one == 0:
+            met[others == len(start) - 1] = _folds(start[-1], start[0], start[1])
         if met.any():
-            return int(one[met.argmax()]), int(other[met.argmax()])
+            return one, int(others[met.argmax()])
     return None
 
 
-def _near(low: Array, high: Array) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp]]]:
-    """Yields the pairs of rectangles that overlap or nearly do, in order, in batches."""
-    (left, bottom), (right, top) = low.T - _APART_M, high.T.copy()
-    for first in range(0, len(low), _BATCH):
-        some, later = np.s_[first : first + _BATCH, None], np.s_[first:]
-        near = (left[some] <= right[later]) & (right[some] >= left[later])
-        near &= (bottom[some] <= top[later]) & (top[some] >= bottom[later])
-        one, other = np.nonzero(np.triu(near, 1))
-        yield one + first, other + first
-
-
-def _beside(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
+def _beside(p: Floats, q: Floats, start: Floats, end: Floats) -> NDArray[np.bool_]:
     """Returns which segments lie on one side of the line pq, and not near it."""
     along, near = q - p, _APART_M * np.linalg.norm(q - p, axis=-1)
     offsets = np.stack([start - p, end - p])
@@ -115,10 +104,9 @@ def _beside(p: Array, q: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     return np.asarray((sides > near).all(axis=0) | (sides < -near).all(axis=0))
 
 
-def _folds(before: Array, corner: Array, after: Array) -> NDArray[np.bool_]:
-    """Returns at which corners the edge after it runs back along the edge before it."""
-    backs = np.minimum(_distance_m(after, before, corner), _distance_m(before, corner, after))
-    return np.asarray(backs < _APART_M)
+def _folds(before: Floats, corner: Floats, after: Floats) -> bool:
+    """Returns whether the edge after a corner runs back along the edge before it."""
+    return bool(min(_distance_m(after, before, corner), _distance_m(before, corner, after)) < _APART_M)
 
 
 class _Outline(ListOf):

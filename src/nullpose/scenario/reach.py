@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.arrays import Floats
 from nullpose.scenario.ellipsoid import distance_m
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
@@ -16,8 +16,6 @@ from nullpose.scenario.subdivision import find_position
 from nullpose.scenario.uncertainty import Uncertain
 
 __all__ = ["airspace_faults", "may_hold_a_position"]
-
-Array = NDArray[np.float64]
 
 _MOST_DISTANCES = 6_000_000  # between parts of the airspace and what bounds it, for the time that they take
 
@@ -51,7 +49,7 @@ def airspace_faults(
         )
 
 
-def may_hold_a_position(airspace: Airspace, centres_m: Array) -> bool:
+def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
     """Returns whether there is a position that the airspace allows outside the keep-out balls.
 
     True to a billionth of the airspace's size, unless it is so intricate that it takes too long to tell,
@@ -77,7 +75,7 @@ def may_hold_a_position(airspace: Airspace, centres_m: Array) -> bool:
 
 
 def _reach_faults(
-    airspace: Airspace, points: Mapping[Place, GroundPoint], centres_m: Array, error_m: float
+    airspace: Airspace, points: Mapping[Place, GroundPoint], centres_m: Floats, error_m: float
 ) -> Iterator[tuple[Place, str]]:
     """Yields a fault for every ground point that the vehicle may meet, given what is uncertain.
 
@@ -93,7 +91,7 @@ def _reach_faults(
         half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
         centre_m = np.asarray(point.position_m)
 
-        def clearance_m(at: Array, centre_m: Array = centre_m, matrix_m: Array = matrix_m) -> Array:
+        def clearance_m(at: Floats, centre_m: Floats = centre_m, matrix_m: Floats = matrix_m) -> Floats:
             inside = error_m - distance_m(at, centre_m, matrix_m)
             return np.asarray(np.minimum(inside, _clearance_m(airspace, centres_m, at)))
 
@@ -110,9 +108,6 @@ def _reach_faults(
             )
 
 
-def _clearance_m(airspace: Airspace, centres_m: Array, at: Array) -> Array:
-    clearance = airspace.clearance_m(at)
-    if not len(centres_m):
-        return clearance
-    nearest = np.linalg.norm(at[:, None] - centres_m, axis=-1).min(axis=1)
-    return np.asarray(np.minimum(clearance, nearest - airspace.keep_out_m))
+def _clearance_m(airspace: Airspace, centres_m: Floats, at: Floats) -> Floats:
+    nearest_m = np.linalg.norm(at[:, None] - centres_m, axis=-1).min(axis=1, initial=np.inf)
+    return np.asarray(np.minimum(airspace.clearance_m(at), nearest_m - airspace.keep_out_m))

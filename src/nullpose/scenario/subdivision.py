@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nullpose.scenario.arrays import Floats
 
 __all__ = ["find_position"]
-
-Array = NDArray[np.float64]
 
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
 _BATCH = 256
 
 
 def find_position(
-    lower_m: Array, upper_m: Array, clearance_m: Callable[[Array], Array], most_parts: int = 60_000
-) -> tuple[Array | None, bool]:
+    lower_m: Floats, upper_m: Floats, clearance_m: Callable[[Floats], Floats], most_parts: int = 60_000
+) -> tuple[Floats | None, bool]:
     """Returns a position [m] in a box at which a clearance is not negative, or None; and whether it is sure.
 
     A clearance may change by no more than the distance gone (distances from sets do, and the least of
@@ -33,35 +32,28 @@ def find_position(
     if (lower_m > upper_m).any():
         return None, True
     smallest_m = _TOUCHING * (1.0 + np.abs([lower_m, upper_m]).max())
-    middles, halves = (0.5 * (lower_m + upper_m))[None], (0.5 * (upper_m - lower_m))[None]
-    clearances = clearance_m(middles)
+    parts = 0.5 * np.array([[lower_m + upper_m, upper_m - lower_m]])  # middles and half sides, (n, 2, 3)
+    clearances = clearance_m(parts[:, 0])
     looked_at = 1
     while True:
-        best = int(clearances.argmax())
-        if clearances[best] >= 0.0:
-            return middles[best], True
-        kept = clearances >= -np.linalg.norm(halves, axis=1)
-        middles, halves, clearances = middles[kept], halves[kept], clearances[kept]
-        if not len(middles):
+        kept = np.flatnonzero(clearances >= -np.linalg.norm(parts[:, 1], axis=1))
+        order = kept[np.argsort(-clearances[kept], kind="stable")]
+        parts, clearances = parts[order], clearances[order]
+        if not len(parts):
             return None, True
-        best = int(clearances.argmax())
-        if halves[best].max() <= smallest_m:
-            return middles[best], True
+        if clearances[0] >= 0.0 or parts[0, 1].max() <= smallest_m:
+            return parts[0, 0], True
         if looked_at > most_parts:
             return None, False
-        order = np.argsort(-clearances)
-        chosen, rest = order[:_BATCH], order[_BATCH:]
-        new_middles, new_halves = _halved(middles[chosen], halves[chosen])
-        looked_at += len(new_middles)
-        middles = np.concatenate([new_middles, middles[rest]])
-        halves = np.concatenate([new_halves, halves[rest]])
-        clearances = np.concatenate([clearance_m(new_middles), clearances[rest]])
+        halved = _halved(parts[:_BATCH])
+        looked_at += len(halved)
+        parts = np.concatenate([halved, parts[_BATCH:]])
+        clearances = np.concatenate([clearance_m(halved[:, 0]), clearances[_BATCH:]])
 
 
-def _halved(middles: Array, halves: Array) -> tuple[Array, Array]:
-    rows, longest = np.arange(len(halves)), halves.argmax(axis=1)
-    smaller = halves.copy()
-    smaller[rows, longest] *= 0.5
-    step = np.zeros_like(halves)
-    step[rows, longest] = smaller[rows, longest]
-    return np.concatenate([middles - step, middles + step]), np.concatenate([smaller, smaller])
+def _halved(parts: Floats) -> Floats:
+    """Returns both halves of each part, cut across its longest side."""
+    middles, halves = parts[:, 0], parts[:, 1]
+    is_longest = np.arange(3) == halves.argmax(axis=1)[:, None]
+    steps = np.where(is_longest, 0.5 * halves, 0.0)
+    return np.concatenate([np.stack([middles + s * steps, halves - steps], axis=1) for s in (-1.0, 1.0)])
