@@ -225,6 +225,7 @@ def test_not_exactly_one_path_to_vary(run: Run, good: Path, tmp_path: Path) -> N
     for settings in (["jammers.M.power_w=1"], ["jammers.M.power_w", "nodes.S1.power_w"]):
         options = [option for setting in settings for option in ("--set", setting)]
         assert_refused(run("sweep", good, *options, *arguments), "--set", "exactly one path")
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("inside", [False, True])

@@ -15,7 +15,7 @@ from nullpose.paper.scene import with_jamming
 from nullpose.paper.study import JammingStudy
 from nullpose.physics import maximum_gain_sinr, min_sinr, to_db
 from nullpose.solve import Objective
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import SweepTable
 
 VERDICTS = {
     "weak-jamming-maximum-gain": "holds",
@@ -136,13 +136,11 @@ def test_rows_are_what_physics_says(reproduction: Reproduction, paper: Scenario)
 def test_a_claim_that_the_data_refute_fails(reproduction: Reproduction, paper: Scenario) -> None:
     """Were maximum gain 0.2 dB worse everywhere, the claim on weak jamming would fail."""
     worse = [
-        SweepRow(
-            row.value,
-            row.scheme,
-            row.status,
-            Objective(name="min_sinr", value=row.min_sinr / 10**0.02, value_db=row.min_sinr_db - 0.2),
-            row.pose,
-            row.links,
+        dataclasses.replace(
+            row,
+            objective=Objective(
+                name="min_sinr", value=row.min_sinr / 10**0.02, value_db=row.min_sinr_db - 0.2
+            ),
         )
         if row.scheme == "maximum-gain"
         else row

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nullpose import Pose
+from nullpose import Pose, Status
 from nullpose.report.certainty import Certainty, certainty_lines
 from nullpose.report.numbers import at_least, at_most, short
 from nullpose.solve import Objective
@@ -14,10 +14,20 @@ from nullpose.study import SweepRow, SweepTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
 VALUE = Objective(name="min_sinr", value=1.0, value_db=0.0)
-SEARCHED = SweepRow(1.0, "optimum", "best-found", VALUE, POSE, ())
+SEARCHED = SweepRow(
+    value=1.0,
+    scenario=None,
+    scheme="optimum",
+    status=Status.BEST_FOUND,
+    objective=VALUE,
+    pose=POSE,
+    links=(),
+    stats=None,
+    provenance={},
+)
 NEAR, FAR = (replace(VALUE, upper_bound=1.0 + gap, relative_gap=gap) for gap in (9e-7, 0.25))
-PROVED = replace(SEARCHED, status="certified", objective=NEAR)
-OPEN = replace(SEARCHED, status="gap-not-reached", objective=FAR, reason="a limit")
+PROVED = replace(SEARCHED, status=Status.CERTIFIED, objective=NEAR)
+OPEN = replace(SEARCHED, status=Status.GAP_NOT_REACHED, objective=FAR, reason="a limit")
 
 
 def test_statuses_are_counted() -> None:

@@ -1,51 +1,46 @@
-"""A sweep as asked for: checked in full, its folder made, before any work."""
-
-from pathlib import Path
+"""A sweep as asked for: checked in full before any work."""
 
 import pytest
 
-from nullpose import OutputError, Scenario, ScenarioError, UsageError
+from nullpose import Scenario, ScenarioError, UsageError
 from nullpose.study import SweepPlan, plan_sweep
 
 POWER = "jammers.M.power_w"
 
 
-def plan(scenario: Scenario, out: Path, settings: list[str] | None = None, **options: object) -> SweepPlan:
+def plan(scenario: Scenario, settings: list[str] | None = None, **options: object) -> SweepPlan:
     """Returns the plan of a short sweep."""
-    return plan_sweep(
-        scenario, settings or [POWER], **({"start": 1.0, "stop": 2.0, "points": 2, "out": out} | options)
-    )
+    return plan_sweep(scenario, settings or [POWER], **({"start": 1.0, "stop": 2.0, "points": 2} | options))
 
 
-def test_fixed_settings_apply_to_every_value(paper: Scenario, tmp_path: Path) -> None:
+def test_fixed_settings_apply_to_every_value(paper: Scenario) -> None:
     """A path with a value is an override, the one without is varied."""
-    made = plan(paper, tmp_path / "out", ["receiver.noise_w=2e-3", POWER])
+    made = plan(paper, ["receiver.noise_w=2e-3", POWER])
     assert (made.path, made.values) == (POWER, (1.0, 2.0))
     assert made.scenario.receiver.noise_power_w == 2e-3
-    assert (tmp_path / "out").is_dir()
 
 
-def test_a_plan_runs(paper: Scenario, tmp_path: Path) -> None:
+def test_a_plan_runs(paper: Scenario) -> None:
     """Running the plan gives the table of its schemes and values."""
-    table = plan(paper, tmp_path, schemes=["vertical"]).run()
+    table = plan(paper, schemes=["vertical"]).run()
     assert [(row.value, row.scheme) for row in table.rows] == [(1.0, "vertical"), (2.0, "vertical")]
 
 
-def test_a_plan_has_limits(paper: Scenario, tmp_path: Path) -> None:
+def test_a_plan_has_limits(paper: Scenario) -> None:
     """The gap goes by the number of nodes unless given; without certifying there are no limits at all."""
-    assert {row.relative_gap <= 1e-6 for row in plan(paper, tmp_path).run().rows} == {True}
-    given = plan(paper, tmp_path, gap=0.5, time_limit_s=7.0, node_limit=9000, schemes=["vertical"])
+    assert {row.relative_gap <= 1e-6 for row in plan(paper).run().rows} == {True}
+    given = plan(paper, gap=0.5, time_limit_s=7.0, node_limit=9000, schemes=["vertical"])
     assert given.options == {"gap": 0.5, "time_limit_s": 7.0, "node_limit": 9000}
     assert [row.relative_gap <= 0.5 for row in given.run().rows] == [True, True]
-    fast = plan(paper, tmp_path, certify=False, schemes=["vertical"])
+    fast = plan(paper, certify=False, schemes=["vertical"])
     assert {row.status for row in fast.run().rows} == {"best-found"}
 
 
 @pytest.mark.parametrize("settings", [["receiver.noise_w=1"], [POWER, "receiver.noise_w"]])
-def test_exactly_one_path_is_varied(paper: Scenario, tmp_path: Path, settings: list[str]) -> None:
+def test_exactly_one_path_is_varied(paper: Scenario, settings: list[str]) -> None:
     """None or two paths without a value are refused."""
     with pytest.raises(UsageError, match="exactly one path"):
-        plan(paper, tmp_path, settings)
+        plan(paper, settings)
 
 
 @pytest.mark.parametrize(
@@ -60,17 +55,9 @@ def test_exactly_one_path_is_varied(paper: Scenario, tmp_path: Path, settings: l
         ({"node_limit": 0}, UsageError),
     ],
 )
-def test_no_folder_is_made_for_a_faulty_plan(
-    paper: Scenario, tmp_path: Path, options: dict[str, object], error: type[Exception]
+def test_a_faulty_plan_is_refused(
+    paper: Scenario, options: dict[str, object], error: type[Exception]
 ) -> None:
-    """Faults show before anything is written."""
+    """Faults show before the first solve."""
     with pytest.raises(error):
-        plan(paper, tmp_path / "out", **options)
-    assert not (tmp_path / "out").exists()
-
-
-def test_folder_that_cannot_be_written(paper: Scenario, tmp_path: Path) -> None:
-    """A file in the way is told before any work."""
-    (tmp_path / "out").touch()
-    with pytest.raises(OutputError, match="in the way"):
-        plan(paper, tmp_path / "out")
+        plan(paper, **options)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import Link, Pose
+from nullpose import Link, Pose, Status
 from nullpose.solve import Objective
 from nullpose.study import SweepRow, SweepTable
 
@@ -18,14 +18,25 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRo
     ratio = 10.0 ** (db / 10.0)
     pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
     objective = Objective(name="min_sinr", value=ratio, value_db=db)
-    return SweepRow(value, scheme, "best-found", objective, pose, (Link(node, ratio, db),), "a, note")
+    return SweepRow(
+        value=value,
+        scenario=None,
+        scheme=scheme,
+        status=Status.BEST_FOUND,
+        objective=objective,
+        pose=pose,
+        links=(Link(node, ratio, db),),
+        stats=None,
+        provenance={},
+        note="a, note",
+    )
 
 
 def proved(row: SweepRow, relative_gap: float) -> SweepRow:
     """Returns the row with a bound."""
     bound = row.min_sinr * (1.0 + relative_gap)
     objective = replace(row.objective, upper_bound=bound, relative_gap=relative_gap)
-    return replace(row, status="certified", objective=objective)
+    return replace(row, status=Status.CERTIFIED, objective=objective)
 
 
 TABLE = SweepTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))

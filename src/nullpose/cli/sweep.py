@@ -72,7 +72,6 @@ def sweep(
         points=points,
         log=log,
         schemes=[name.value for name in scheme] if scheme else None,
-        out=out,
         **solve_options(gap, time_limit, node_limit, fast, seed),
     )
     outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg")}
@@ -83,5 +82,5 @@ def sweep(
         typer.echo("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
-    files = write_sweep(table, plan.folder, log=log)
+    files = write_sweep(table, out, log=log)
     tell(table, partial(sweep_view, files=files), json_output, files=[str(path) for path in files])

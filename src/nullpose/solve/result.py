@@ -180,7 +180,7 @@ class Result:
 
     def __reduce__(self) -> tuple[Callable[[], Result], tuple[()]]:
         state = {one.name: getattr(self, one.name) for one in fields(self)}
-        return partial(Result, **state | {"provenance": dict(self.provenance)}), ()
+        return partial(type(self), **state | {"provenance": dict(self.provenance)}), ()
 
     def __getattr__(self, name: str) -> Any:
         """Return what the details, the objective or the pose have of that name."""

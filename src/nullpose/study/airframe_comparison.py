@@ -9,15 +9,12 @@ from typing import Any, Unpack
 
 from nullpose.errors import SolveError
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose
 from nullpose.scenario import Scenario
 from nullpose.solve import (
     TIME_LIMIT_S,
-    Objective,
     Result,
     SolveKeywords,
     SolveOptions,
-    Status,
     solve,
     solve_array,
 )
@@ -49,42 +46,44 @@ class Guaranteed:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AirframeResult:
-    """What one vehicle gives.
+    """What one vehicle gives. What its result has is read on it too, and is None if no pose was found.
 
     Args:
         case: the vehicle.
-        status: how sure the value is; None if no pose was found.
-        objective: the value and what is proved about it; None if no pose was found.
-        pose: where that is reached; None if no pose was found.
-        guaranteed: what is left of it under errors; None if the scenario states none.
+        result: of its solve; None if no pose was found.
+        guaranteed: what is left of the value under errors; None if the scenario states none.
         reason: what kept the value from being certified, or a pose from being found.
     """
 
     case: AirframeCase
-    status: Status | None = None
-    objective: Objective | None = None
-    pose: Pose | None = None
+    result: Result | None
     guaranteed: Guaranteed | None = None
     reason: str = ""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the result has of that name."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return None if self.result is None else getattr(self.result, name)
 
     @property
     def value(self) -> float:
         """The value: a power ratio, or bits/s/Hz; 0 if no pose was found."""
-        return 0.0 if self.objective is None else self.objective.value
+        return 0.0 if self.result is None else self.result.objective.value
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data, angles in radians."""
-        objective, array = self.objective, self.case.array
+        found, array = self.result, self.case.array
         return {
             "name": self.case.name,
             "label": self.case.label,
             "airframe": self.case.airframe.to_dict(),
             "array": None if array is None else array.to_dict() | {"combining": self.case.combining},
-            "status": None if self.status is None else self.status.value,
+            "status": None if found is None else found.status.value,
             "reason": self.reason,
-            "rigour": None if objective is None else objective.rigour.value,
-            "objective": None if objective is None else objective.to_dict(),
-            "pose": None if self.pose is None else self.pose.to_dict(),
+            "rigour": None if found is None else found.rigour.value,
+            "objective": None if found is None else found.objective.to_dict(),
+            "pose": None if found is None else found.pose.to_dict(),
             "guaranteed": None if self.guaranteed is None else asdict(self.guaranteed),
         }
 
@@ -117,10 +116,10 @@ class AirframeComparison:
         Raises:
             KeyError: there is no such vehicle.
         """
-        for result in self.results:
-            if result.case.name == name:
-                return result
-        raise KeyError(f"no vehicle {name!r}; there are {', '.join(one.case.name for one in self.results)}")
+        named = {result.case.name: result for result in self.results}
+        if name not in named:
+            raise KeyError(f"no vehicle {name!r}; there are {', '.join(named)}")
+        return named[name]
 
     @property
     def omnidirectional(self) -> AirframeResult:
@@ -148,11 +147,9 @@ class AirframeComparison:
             result: one of the results.
             tolerance: relative.
         """
-        objective = self.omnidirectional.objective
-        if objective is None or not objective.value > 0.0:
-            return False
-        whole = objective.value if objective.upper_bound is None else objective.upper_bound
-        return result is self.omnidirectional or result.value >= (1.0 - tolerance) * whole
+        best = self.omnidirectional
+        whole = best.value if best.upper_bound is None else best.upper_bound
+        return best.value > 0.0 and (result is best or result.value >= (1.0 - tolerance) * whole)
 
     @property
     def least_sufficient(self) -> AirframeResult | None:
@@ -228,14 +225,12 @@ def compare_airframes(
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
-            return AirframeResult(case=case, reason=str(error))
+            return AirframeResult(case=case, result=None, reason=str(error))
         interrupted.append(result.interrupted)
         known = case.array is None and own.is_uncertain
         return AirframeResult(
             case=case,
-            status=result.status,
-            objective=result.objective,
-            pose=result.pose,
+            result=result,
             guaranteed=_guaranteed(result, None if any(interrupted) else options) if known else None,
             reason=result.reason,
         )

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar
+from itertools import product
+from typing import Any, TypeVar
 
 __all__ = ["solved_grid"]
 
-Point = TypeVar("Point")
-Case = TypeVar("Case")
 Row = TypeVar("Row")
 
 
 def solved_grid(
-    points: Sequence[Point],
-    cases: Sequence[Case],
-    solved: Callable[[Point, Case], Row],
+    points: Sequence[Any],
+    cases: Sequence[Any],
+    solved: Callable[[Any, Any], Row],
     on_progress: Callable[[int, int], None] | None = None,
 ) -> Iterator[Row]:
     """Yield a row for each case at each point, the cases varying fastest.
@@ -26,9 +25,7 @@ def solved_grid(
         solved: makes a row of a point and a case.
         on_progress: called after each row with how many are done and how many there are.
     """
-    total = len(points) * len(cases)
-    for number, point in enumerate(points):
-        for place, case in enumerate(cases, start=1):
-            yield solved(point, case)
-            if on_progress is not None:
-                on_progress(number * len(cases) + place, total)
+    for done, (point, case) in enumerate(product(points, cases), start=1):
+        yield solved(point, case)
+        if on_progress is not None:
+            on_progress(done, len(points) * len(cases))

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Unpack
 
 from nullpose.errors import UsageError
-from nullpose.files import prepare_folder
 from nullpose.scenario import Scenario, apply_overrides
 from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import SolveKeywords, SolveOptions
@@ -28,7 +26,6 @@ class SweepPlan:
         path: the setting that is varied.
         values: what it is set to.
         schemes: the cases to solve.
-        folder: where the results go; it exists and can be written.
         options: of every solve.
     """
 
@@ -36,7 +33,6 @@ class SweepPlan:
     path: str
     values: tuple[float, ...]
     schemes: tuple[Scheme, ...]
-    folder: Path
     options: SolveKeywords
 
     def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
@@ -62,12 +58,11 @@ def plan_sweep(
     start: float,
     stop: float,
     points: int,
-    out: Path,
     log: bool = False,
     schemes: Sequence[str] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> SweepPlan:
-    """Return the plan of a sweep, its output folder made.
+    """Return the plan of a sweep, in which every value and scheme was looked at.
 
     Args:
         scenario: the scenario to start from.
@@ -75,7 +70,6 @@ def plan_sweep(
         start: the first value.
         stop: the last value.
         points: how many values.
-        out: where the results go.
         log: space the values by a constant ratio.
         schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
         options: as for :func:`nullpose.solve`.
@@ -83,7 +77,6 @@ def plan_sweep(
     Raises:
         UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.
         ScenarioError: a fixed setting is at fault.
-        OutputError: the folder cannot be written.
     """
     varied = [setting.strip() for setting in settings if "=" not in setting]
     if len(varied) != 1:
@@ -93,8 +86,8 @@ def plan_sweep(
     values = spaced(start, stop, points, log=log)
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
     wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
-    scenarios = scenarios_along(base, varied[0], values)  # a fault shows before a folder is made
+    scenarios = scenarios_along(base, varied[0], values)
     for scheme in wanted if schemes is not None else ():
         for _, at_value in scenarios:
             scheme.require_applicable(at_value)
-    return SweepPlan(base, varied[0], values, wanted, prepare_folder(out), options)
+    return SweepPlan(base, varied[0], values, wanted, options)

@@ -44,10 +44,9 @@ def sweep(
         KeyboardInterrupt: Ctrl-C ended a proof.
     """
     scenarios = scenarios_along(scenario, path, values)
-    wanted = [Scheme(scheme) for scheme in schemes]
-    reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in wanted}
+    reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in map(Scheme, schemes)}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
-    applicable = [scheme for scheme in wanted if not reasons[scheme]]
+    applicable = [scheme for scheme, reason in reasons.items() if not reason]
     if not applicable:
         raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
 
@@ -59,7 +58,7 @@ def sweep(
         return SweepRow.of(value, result)
 
     rows = tuple(solved_grid(scenarios, applicable, solved, on_progress))
-    return SweepTable(path=path, rows=rows, left_out=MappingProxyType(left_out))
+    return SweepTable(path, rows, MappingProxyType(left_out))
 
 
 def scenarios_along(

@@ -5,41 +5,27 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from nullpose.files import replacing
 from nullpose.objectives import RECORDS, USUAL, Quantity
-from nullpose.physics import Link, Pose
-from nullpose.solve import Objective, Result
+from nullpose.solve import Result
 
 __all__ = ["SweepRow", "SweepTable"]
 
 
-@dataclass(frozen=True, slots=True)
-class SweepRow:
-    """The pose found for one value and one scheme.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SweepRow(Result):
+    """What was found for one scheme at one value of a setting.
 
     Args:
         value: the swept setting, in the unit of its name.
-        scheme: the scheme's name, as in ``maximum-gain``.
-        status: how sure the solver is, as in ``certified``.
-        objective: what was made as large as it can be, at the pose, and what is proved about it.
-        pose: where the drone is and how it is turned.
-        links: every node's link, in the scenario's order.
-        note: one sentence that the reader needs beside the numbers, or nothing.
-        reason: what kept the row from being certified; empty if nothing did.
     """
 
     value: float
-    scheme: str
-    status: str
-    objective: Objective
-    pose: Pose
-    links: tuple[Link, ...]
-    note: str = ""
-    reason: str = ""
 
     @classmethod
     def of(cls, value: float, result: Result) -> SweepRow:
@@ -49,16 +35,7 @@ class SweepRow:
             value: the swept setting.
             result: of a solve there.
         """
-        return cls(
-            value=value,
-            scheme=str(result.scheme),
-            status=result.status.value,
-            objective=result.objective,
-            pose=result.pose,
-            links=result.links,
-            note=result.note,
-            reason=result.reason,
-        )
+        return cls(value=value, **{one.name: getattr(result, one.name) for one in fields(result)})
 
     @property
     def min_sinr(self) -> float:
@@ -73,28 +50,18 @@ class SweepRow:
         return _SINR.in_unit(self.min_sinr)
 
     @property
-    def upper_bound(self) -> float | None:
-        """No pose exceeds this: a power ratio, or bits/s/Hz for a rate; None if nothing is proved."""
-        return self.objective.upper_bound
-
-    @property
     def upper_bound_db(self) -> float | None:
-        """The same, dB; None for a rate, or if nothing is proved."""
-        quantity, bound = self.objective.quantity, self.upper_bound
+        """No pose exceeds this, dB; None for a rate, or if nothing is proved."""
+        quantity, bound = self.objective.quantity, self.objective.upper_bound
         return None if bound is None or quantity.is_rate else quantity.in_unit(bound)
 
-    @property
-    def relative_gap(self) -> float | None:
-        """How far the bound lies above the value, relative; None if nothing is proved."""
-        return self.objective.relative_gap
-
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, Any]:
         """Return the row as plain data, angles in radians."""
         objective = self.objective
         return {
             "value": self.value,
-            "scheme": self.scheme,
-            "status": self.status,
+            "scheme": str(self.scheme),
+            "status": self.status.value,
             "rigour": objective.rigour.value,
             "reason": self.reason,
             "objective": objective.name,
