@@ -2,8 +2,8 @@
 
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import draw_scene, scene_at
+from nullpose.study.monte_carlo.ledger import StudyProgress
 from nullpose.study.monte_carlo.loading import load_spec
-from nullpose.study.monte_carlo.progress import StudyProgress
 from nullpose.study.monte_carlo.reading import StudyTable, read_study
 from nullpose.study.monte_carlo.run import run_study
 from nullpose.study.monte_carlo.spec import StudySpec

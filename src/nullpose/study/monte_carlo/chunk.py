@@ -6,23 +6,24 @@ import hashlib
 import json
 import time
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field
 
-from nullpose.errors import ScenarioError
+from nullpose.errors import ClusterError, ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.study.grid import solved_grid
+from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
-from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, failed_rows
+from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, row_of
 from nullpose.study.monte_carlo.solving import reason_of, solved_row
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.together import At, solved_together
 from nullpose.study.monte_carlo.versions import fingerprint
 
-__all__ = ["KILLED", "Done", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
+__all__ = ["KILLED", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
 
 # The reason of the rows of a scene that no worker survives.
 KILLED = "every worker that took this scene died; it may need more memory than they have"
@@ -58,12 +59,6 @@ class Part(BaseModel):
     size: Count
     sha256: str
 
-    @model_validator(mode="after")
-    def _is_in_order(self) -> Part:
-        if self.last < self.first:
-            raise ValueError("the last scene comes before the first")
-        return self
-
     @property
     def scenes(self) -> int:
         """How many scenes it has."""
@@ -73,23 +68,6 @@ class Part(BaseModel):
     def name(self) -> str:
         """The file's name."""
         return f"part-{self.first:09d}-{self.last:09d}.parquet"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Done:
-    """What a worker made of some scenes.
-
-    Args:
-        fingerprint: which nullpose did it; none is done by another than the client's.
-        part: what there is; None if there is nothing.
-        content: the rows as a Parquet file.
-        fault: what went wrong beyond a scene of its own; empty if nothing did.
-    """
-
-    fingerprint: str
-    part: Part | None = None
-    content: bytes = b""
-    fault: str = ""
 
 
 def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()) -> Iterator[Row]:
@@ -106,14 +84,20 @@ def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()
     for start in range(first, last + 1, block):
         places = list(product(range(start, min(start + block, last + 1)), points))
         drawn = {at: KILLED if at[0] in deadly else _drawn(draws, at) for at in places}
-        scenes = {at: scene for at, scene in drawn.items() if not isinstance(scene, str)}
-        together = solved_together(spec, scenes)
-        for at in places:
-            if at not in scenes:
-                yield from failed_rows(spec, *at, str(drawn[at]))
-                continue
-            for case in spec.cases:
-                yield together.get((*at, case.name)) or solved_row(spec, scenes[at], *at, case)
+        yield from _block_rows(spec, drawn)
+
+
+def _block_rows(spec: StudySpec, drawn: dict[At, Scenario | str]) -> Iterator[Row]:
+    """Yield the rows of scenes that are in memory together; of one that is none the reason is given."""
+    scenes = {at: scene for at, scene in drawn.items() if not isinstance(scene, str)}
+    together = solved_together(spec, scenes)
+
+    def solved(at: At, case: StudyCase) -> Row:
+        if at not in scenes:
+            return row_of(*at, case.name, FAILED, reason=str(drawn[at]))
+        return together.get((*at, case.name)) or solved_row(spec, scenes[at], *at, case)
+
+    return solved_grid(list(drawn), spec.cases, solved)
 
 
 def _drawn(draws: Draws, at: At) -> Scenario | str:
@@ -124,8 +108,8 @@ def _drawn(draws: Draws, at: At) -> Scenario | str:
         return reason_of(error)
 
 
-def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: float) -> Done:
-    """Return rows as a part.
+def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: float) -> tuple[Part, bytes]:
+    """Return rows as a part, and the content of its file.
 
     Args:
         spec: the study.
@@ -144,13 +128,13 @@ def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: flo
         size=len(content),
         sha256=hashlib.sha256(content).hexdigest(),
     )
-    return Done(fingerprint=fingerprint(), part=part, content=content)
+    return part, content
 
 
-def solve_chunk(spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()) -> Done:
-    """Return the rows of some scenes; this is what is sent to a worker.
-
-    It raises nothing: not every exception finds its way from one process to another.
+def solve_chunk(
+    spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()
+) -> tuple[Part, bytes]:
+    """Return the rows of some scenes as a part; this is what is sent to a worker.
 
     Args:
         spec_json: the study as JSON.
@@ -158,25 +142,31 @@ def solve_chunk(spec_json: str, expected: str, first: int, last: int, deadly: Co
         first: the first scene.
         last: the last scene.
         deadly: scenes among them that no worker survives.
+
+    Raises:
+        ClusterError: another nullpose is here, or what goes wrong is beyond a scene of its own.
     """
-    if fingerprint() != expected:
-        return Done(fingerprint=fingerprint())
     began = time.perf_counter()
+    spec = _spec(spec_json, expected)
     try:
-        spec = _spec(spec_json)
         rows = list(rows_of(spec, first, last, deadly))
         return packed(spec, rows, first, last, time.perf_counter() - began)
-    except Exception as error:
-        return Done(fingerprint=expected, fault=reason_of(error))
+    except Exception as error:  # not every exception finds its way from one process to another
+        reason = reason_of(error)
+    raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {reason}")
 
 
-def seconds_per_scene(spec_json: str) -> float:
+def seconds_per_scene(spec_json: str, expected: str) -> float:
     """Return how long a scene takes here, from the first few, once all is compiled.
 
     Args:
         spec_json: the study as JSON.
+        expected: the fingerprint of the client's nullpose.
+
+    Raises:
+        ClusterError: another nullpose is here.
     """
-    spec, scenes = _spec(spec_json), 1
+    spec, scenes = _spec(spec_json, expected), 1
     list(rows_of(spec, 0, 0))
     while True:
         began = time.perf_counter()
@@ -188,5 +178,10 @@ def seconds_per_scene(spec_json: str) -> float:
 
 
 @lru_cache(maxsize=4)
-def _spec(spec_json: str) -> StudySpec:
+def _spec(spec_json: str, expected: str) -> StudySpec:
+    if fingerprint() != expected:
+        raise ClusterError(
+            f"workers: one has nullpose {fingerprint()}, and here it is {expected}; install the same on both "
+            "and start the workers again"
+        )
     return StudySpec.from_dict(json.loads(spec_json))

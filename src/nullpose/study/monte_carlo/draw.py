@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.errors import Fault, ScenarioError
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
-from nullpose.study.monte_carlo.spec import StudySpec
+from nullpose.study.monte_carlo.spec import StudySpec, known
 
 __all__ = ["MOST_DRAWS", "Draws", "draw_scene", "quantity_of", "scene_at"]
 
@@ -56,7 +56,7 @@ def draw_scene(spec: StudySpec, index: int) -> Scenario:
         UsageError: there is no such scene.
         ScenarioError: no valid scene was drawn.
     """
-    return Draws(spec).base(_known("scene", index, spec.n_scenes))
+    return Draws(spec).base(known("scene", index, 0, spec.n_scenes - 1))
 
 
 def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
@@ -71,8 +71,8 @@ def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
         UsageError: there is no such scene or combination.
         ScenarioError: no valid scene was drawn, or a swept value makes it invalid.
     """
-    known = _known("scene", index, spec.n_scenes), _known("point", point, len(spec.points))
-    return Draws(spec).at(*known)
+    scene = known("scene", index, 0, spec.n_scenes - 1)
+    return Draws(spec).at(scene, known("point", point, 0, len(spec.points) - 1))
 
 
 def quantity_of(spec: StudySpec) -> Quantity:
@@ -87,12 +87,6 @@ def quantity_of(spec: StudySpec) -> Quantity:
             found.add(Quantity.of(draws.at(index, 0)))
     quantities = [one for record in RECORDS.values() for one in record.quantities]
     return max(found or quantities[:1], key=quantities.index)
-
-
-def _known(noun: str, number: int, count: int) -> int:
-    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < count:
-        raise UsageError(f"{noun}: given {number!r}; allowed: 0 to {count - 1}")
-    return number
 
 
 class Draws:

@@ -5,13 +5,41 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
-from nullpose.study.monte_carlo.chunk import Done, Part
-from nullpose.study.monte_carlo.progress import StudyProgress
+from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.store import Store
 
-__all__ = ["Ledger"]
+__all__ = ["Ledger", "StudyProgress"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyProgress:
+    """How far a run is, as its callback gets it.
+
+    Args:
+        scenes: how many there are.
+        done: how many are in parts, those of earlier runs too.
+        rows: how many rows these have.
+        failed: how many of them are failures.
+        workers: threads that work; 0 while none is there.
+        rate: scenes per second of this run so far; 0 before the first part.
+        note: what is going on, or went wrong and was mended; empty while scenes are solved.
+    """
+
+    scenes: int
+    done: int
+    rows: int
+    failed: int
+    workers: int
+    rate: float
+    note: str = ""
+
+    @property
+    def seconds_left(self) -> float | None:
+        """How long the rest will take at this rate; None before the first part."""
+        return (self.scenes - self.done) / self.rate if self.rate > 0.0 else None
 
 
 class Ledger:
@@ -26,16 +54,14 @@ class Ledger:
     def __init__(
         self, spec: StudySpec, store: Store, on_progress: Callable[[StudyProgress], None] | None
     ) -> None:
-        self.spec, self._store, self._on_progress = spec, store, on_progress
+        self._store, self._on_progress = store, on_progress
         self.json = json.dumps(spec.to_dict())
         self.workers = 0
-        self._chunk = 1
-        self._finished = bytearray()  # a byte for each part: there may be millions
-        self._done = self._rows = self._failed = self._before = 0
-        self._began = time.monotonic()
+        self._at = StudyProgress(scenes=spec.n_scenes, done=0, rows=0, failed=0, workers=0, rate=0.0)
+        self._began, self._before = time.monotonic(), 0
 
-    def open(self, chunk: int) -> None:
-        """Take up what earlier runs have done.
+    def open(self, chunk: int) -> Iterator[tuple[int, int]]:
+        """Take up what earlier runs have done; return the first and the last scene of each part to do.
 
         Args:
             chunk: scenes of a part.
@@ -43,38 +69,34 @@ class Ledger:
         Raises:
             OutputError: the folder cannot be written.
         """
-        self._chunk = chunk
-        self._finished = bytearray(-(-self.spec.n_scenes // chunk))
-        kept, redone = self._store.mend()
-        for part in kept:
-            if part.last < self.spec.n_scenes:
-                self._count(part)
-        self._began, self._before = time.monotonic(), self._done
+        parts, redone = self._store.mend()
+        scenes = self._at.scenes
+        kept = {part.first: part for part in parts if part.last < scenes}
+        for part in kept.values():
+            self._count(part)
+        self._began, self._before = time.monotonic(), self._at.done
         if redone:
             self.tell(f"{redone} part{'s' * (redone > 1)} damaged or missing, to be done anew")
+        to_do = (first for first in range(0, scenes, chunk) if first not in kept)
+        return ((first, min(first + chunk, scenes) - 1) for first in to_do)
 
     @property
     def is_complete(self) -> bool:
         """Whether nothing is to do."""
-        return self._done == self.spec.n_scenes
+        return self._at.done == self._at.scenes
 
-    def to_do(self) -> Iterator[tuple[int, int]]:
-        """Yield the first and the last scene of each part that is to do."""
-        for number, finished in enumerate(self._finished):
-            if not finished:
-                first = number * self._chunk
-                yield first, min(first + self._chunk, self.spec.n_scenes) - 1
-
-    def add(self, done: Done) -> None:
+    def add(self, part: Part, content: bytes) -> None:
         """Keep a part, on disk before it counts.
 
         Args:
-            done: from a worker.
+            part: from a worker.
+            content: of its file.
 
         Raises:
             OutputError: it cannot be written.
         """
-        self._count(self._store.add(done))
+        self._store.add(part, content)
+        self._count(part)
         self.tell()
 
     def tell(self, note: str = "") -> None:
@@ -83,23 +105,13 @@ class Ledger:
         Args:
             note: what is going on besides.
         """
-        if self._on_progress is None:
-            return
-        fresh, spent = self._done - self._before, time.monotonic() - self._began
-        self._on_progress(
-            StudyProgress(
-                scenes=self.spec.n_scenes,
-                done=self._done,
-                rows=self._rows,
-                failed=self._failed,
-                workers=self.workers,
-                rate=fresh / spent if fresh and spent > 0.0 else 0.0,
-                note=note,
-            )
-        )
+        fresh, spent = self._at.done - self._before, time.monotonic() - self._began
+        rate = fresh / spent if fresh and spent > 0.0 else 0.0
+        if self._on_progress is not None:
+            self._on_progress(replace(self._at, workers=self.workers, rate=rate, note=note))
 
     def _count(self, part: Part) -> None:
-        self._finished[part.first // self._chunk] = 1
-        self._done += part.scenes
-        self._rows += part.rows
-        self._failed += part.failed
+        done, rows, failed = self._at.done, self._at.rows, self._at.failed
+        self._at = replace(
+            self._at, done=done + part.scenes, rows=rows + part.rows, failed=failed + part.failed
+        )

@@ -88,16 +88,17 @@ class StudyTable:
         )
 
     def _read(self, part: Part) -> pd.DataFrame:
+        import pyarrow as pa
         import pyarrow.parquet as pq
 
+        content, again = self._store.content_of(part), "nullpose study run, given the same spec and folder"
         path = self._store.parts_folder / part.name
-        again = "nullpose study run, given the same spec and folder"
-        if not self._store.is_whole(part):
+        if content is None:
             raise UsageError(
                 f"{path}: damaged or missing (its checksum is not the one listed); {again}, does it anew"
             )
         try:
-            table = pq.read_table(path, partitioning=None)
+            table = pq.read_table(pa.BufferReader(content))
             if not table.schema.equals(schema_of(self.spec)):
                 raise ValueError("it has other columns than this study")
         except (OSError, ValueError) as error:

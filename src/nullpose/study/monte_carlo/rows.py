@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -11,7 +11,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["FAILED", "Row", "as_parquet", "failed_rows", "row_of", "schema_of"]
+__all__ = ["FAILED", "Row", "as_parquet", "row_of", "schema_of"]
 
 # What one case gives in one scene at one combination of swept values: what is known, by column.
 Row = dict[str, Any]
@@ -49,19 +49,6 @@ def row_of(scene: int, point: int, case: str, status: str, **known: Any) -> Row:
     """
     at = {"scene": scene, "point": point, "case": case, "status": status}
     return at | {"boxes": 0, "seconds": 0.0, "reason": ""} | known
-
-
-def failed_rows(spec: StudySpec, scene: int, point: int, reason: str) -> Iterator[Row]:
-    """Yield the rows of a scene at a combination of swept values of which nothing can be solved.
-
-    Args:
-        spec: the study.
-        scene: the scene's number.
-        point: the combination's number.
-        reason: why.
-    """
-    for case in spec.case_names:
-        yield row_of(scene, point, case, FAILED, reason=reason)
 
 
 def schema_of(spec: StudySpec) -> pa.Schema:

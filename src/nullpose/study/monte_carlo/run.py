@@ -9,17 +9,20 @@ from pathlib import Path
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
 from nullpose.study.monte_carlo.checking import require_sound
+from nullpose.study.monte_carlo.engine import solver_of
 from nullpose.study.monte_carlo.extra import require_extra
+from nullpose.study.monte_carlo.ledger import Ledger, StudyProgress
 from nullpose.study.monte_carlo.lock import locked
-from nullpose.study.monte_carlo.progress import StudyProgress
-from nullpose.study.monte_carlo.spec import StudySpec
+from nullpose.study.monte_carlo.spec import StudySpec, known
 from nullpose.study.monte_carlo.status import StudyStatus, study_status
+from nullpose.study.monte_carlo.store import Store
 
 __all__ = ["MOST_IN_A_PART", "run_study"]
 
 MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
 
 _PART_S = 1.0
+_MOST_WORKERS = 1024
 
 
 def run_study(
@@ -55,46 +58,33 @@ def run_study(
         ClusterError: the scheduler is not there, or went away.
     """
     require_extra()
-    from nullpose.study.monte_carlo.engine import solver_of
-    from nullpose.study.monte_carlo.ledger import Ledger
-    from nullpose.study.monte_carlo.store import Store
-
-    _require_options(scheduler, workers, chunk)
-    folder = Path(out)
-    store = Store(folder)
-    if store.is_begun():
-        store.require_same(spec)
-    else:
-        require_sound(spec)
-    with locked(prepare_folder(folder)):
-        ledger = Ledger(spec, store, on_progress)
-        if begun := store.is_begun():
-            ledger.open(int(store.require_same(spec)["chunk"]))
-        if begun and ledger.is_complete:
-            ledger.tell()
-            return study_status(folder)
-        with solver_of(ledger, scheduler, workers) as solver:
-            if not begun:
-                size = _size(spec, solver.seconds_per_scene()) if chunk is None else chunk
-                store.begin(spec, size)
-                ledger.open(size)
-            for done in solver.solved(ledger.to_do()):
-                ledger.add(done)
-    return study_status(folder)
-
-
-def _size(spec: StudySpec, seconds: float) -> int:
-    """Return the scenes of a part that takes about a second, given how long one takes."""
-    return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))
-
-
-def _require_options(scheduler: str | None, workers: int | None, chunk: int | None) -> None:
     if scheduler is not None and workers is not None:
         raise UsageError(
             "workers: given together with a scheduler, whose cluster has workers of its own; leave out "
             "one of the two"
         )
-    if workers is not None and (isinstance(workers, bool) or not 0 <= workers <= 1024):
-        raise UsageError(f"workers: given {workers!r}; allowed: 0 (no cluster) to 1024")
-    if chunk is not None and (isinstance(chunk, bool) or not 1 <= chunk <= MOST_IN_A_PART):
-        raise UsageError(f"chunk: given {chunk!r}; allowed: 1 to {MOST_IN_A_PART} scenes")
+    known("workers", 0 if workers is None else workers, 0, _MOST_WORKERS)
+    known("chunk", 1 if chunk is None else chunk, 1, MOST_IN_A_PART)
+    store = Store(Path(out))
+    if not store.is_begun():
+        require_sound(spec)
+    with locked(prepare_folder(store.folder)):
+        ledger = Ledger(spec, store, on_progress)
+        begun = store.is_begun()
+        to_do = ledger.open(int(store.require_same(spec)["chunk"])) if begun else iter(())
+        if begun and ledger.is_complete:
+            ledger.tell()
+            return study_status(out)
+        with solver_of(ledger, scheduler, workers) as solver:
+            if not begun:
+                size = _size(spec, solver.seconds_per_scene()) if chunk is None else chunk
+                store.begin(spec, size)
+                to_do = ledger.open(size)
+            for part, content in solver.solved(to_do):
+                ledger.add(part, content)
+    return study_status(out)
+
+
+def _size(spec: StudySpec, seconds: float) -> int:
+    """Return the scenes of a part that takes about a second, given how long one takes."""
+    return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from nullpose.errors import UsageError
 from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Title
@@ -23,7 +24,7 @@ from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Poi
 from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes
 
-__all__ = ["MOST_SCENES", "StudySpec"]
+__all__ = ["MOST_SCENES", "StudySpec", "known"]
 
 MOST_SCENES = 999_999_999  # their numbers have nine digits in the names of parts
 
@@ -155,3 +156,20 @@ class StudySpec(Section):
         }
         text = json.dumps(values, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+def known(noun: str, number: int, least: int, most: int) -> int:
+    """Return a number of a scene, of workers and the like, if it is one of those that there are.
+
+    Args:
+        noun: what it is.
+        number: as given.
+        least: the smallest.
+        most: the largest.
+
+    Raises:
+        UsageError: there is no such number.
+    """
+    if isinstance(number, bool) or not isinstance(number, int) or not least <= number <= most:
+        raise UsageError(f"{noun}: given {number!r}; allowed: {least} to {most}")
+    return number

@@ -5,16 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import stat
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from nullpose.errors import OutputError, UsageError
+from nullpose.errors import UsageError
 from nullpose.files import parse_json, read_bytes, refusals, replacing, write_text
 from nullpose.objectives import RECORDS, Quantity
-from nullpose.study.monte_carlo.chunk import Done, Part
+from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import versions
@@ -25,7 +23,7 @@ FORMAT = 1  # version of the folder's layout
 MANIFEST, JOURNAL, PARTS = "manifest.json", "parts.jsonl", "parts"
 
 _MOST_BYTES = 64_000_000  # of a manifest, which holds what all scenario files of the study say
-_LONGEST_LINE = 4096  # characters of the journal's
+_LONGEST_JOURNAL = 10**10  # bytes, of some 200 for each part
 _MOST = 10**15  # above all counts that there are
 _KEYS: dict[str, type] = {
     "name": str,
@@ -141,24 +139,35 @@ class Store:
         return manifest
 
     def parts(self) -> list[Part]:
-        """Return the parts that the journal lists, in order; of lines about one part the last counts."""
-        found = {part.first: part for part in self._listed()}
-        return [found[first] for first in sorted(found)]
+        """Return the parts that the journal lists, in order; of lines about one part the last counts.
 
-    def is_whole(self, part: Part) -> bool:
-        """Return whether a part's file has the size and the checksum that the journal says.
+        Raises:
+            UsageError: the journal cannot be read.
+        """
+        try:
+            text = read_bytes(self._journal, _LONGEST_JOURNAL).decode(errors="replace")
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise UsageError(f"{self._journal}: cannot be read: {error.strerror or error}") from None
+        found: dict[int, Part] = {}
+        for line in text.splitlines():
+            with suppress(ValueError):  # a line that a killed client did not finish
+                part = Part.model_validate_json(line)
+                found[part.first] = part
+        return [part for _, part in sorted(found.items()) if part.scenes > 0]
+
+    def content_of(self, part: Part) -> bytes | None:
+        """Return what a part's file holds; None if it has not the size and checksum that the journal says.
 
         Args:
             part: as listed.
         """
-        path = self.parts_folder / part.name
         try:
-            if not path.is_file() or path.stat().st_size != part.size:
-                return False
-            with path.open("rb") as file:
-                return hashlib.file_digest(file, "sha256").hexdigest() == part.sha256
+            content = read_bytes(self.parts_folder / part.name, part.size)
         except OSError:
-            return False
+            return None
+        return content if hashlib.sha256(content).hexdigest() == part.sha256 else None
 
     def mend(self) -> tuple[list[Part], int]:
         """Return the parts that are whole, and how many are to be redone; take away what is not listed.
@@ -170,7 +179,7 @@ class Store:
             OutputError: the folder cannot be written.
         """
         listed = self.parts()
-        kept = [part for part in listed if self.is_whole(part)]
+        kept = [part for part in listed if self.content_of(part) is not None]
         lines = "".join(_line_of(part) for part in kept)
         names = {part.name for part in kept}
         with refusals(f"cannot write {self._journal}"):
@@ -182,56 +191,31 @@ class Store:
                 path.unlink()
         return kept, len(listed) - len(kept)
 
-    def add(self, done: Done) -> Part:
-        """Write a part whole, then list it; return what was listed.
+    def add(self, part: Part, content: bytes) -> None:
+        """Write a part whole, then list it.
+
+        What is left of a line that cannot be written is no part, and the next run takes it away.
 
         Args:
-            done: from a worker, with a part.
+            part: from a worker.
+            content: of its file.
 
         Raises:
-            OutputError: it cannot be written; nothing of it is left then.
+            OutputError: it cannot be written.
         """
-        assert done.part is not None, "a worker's fault is told before"
-        path = self.parts_folder / done.part.name
-        with replacing(path) as temporary, temporary.open("wb") as file:
-            file.write(done.content)
-            file.flush()
-            os.fsync(file.fileno())
-        try:
-            with refusals(f"cannot write {self._journal}"):
-                _append(self._journal, _line_of(done.part).encode())
-        except OutputError:
-            with suppress(OSError):
-                path.unlink()
-            raise
-        return done.part
-
-    def _listed(self) -> Iterator[Part]:
-        try:
-            if not stat.S_ISREG(self._journal.stat().st_mode):
-                raise UsageError(f"{self._journal}: is no regular file; restore it")
-            with self._journal.open(encoding="utf-8", errors="replace") as file:
-                for line in iter(lambda: file.readline(_LONGEST_LINE), ""):
-                    with suppress(ValueError):  # a line that a killed client did not finish
-                        yield Part.model_validate_json(line)
-        except FileNotFoundError:
-            return
-        except OSError as error:
-            raise UsageError(f"{self._journal}: cannot be read: {error.strerror or error}") from None
+        with replacing(self.parts_folder / part.name) as temporary:
+            _write(temporary, "wb", content)
+        with refusals(f"cannot write {self._journal}"):
+            _write(self._journal, "ab", _line_of(part).encode())
 
 
 def _line_of(part: Part) -> str:
     return part.model_dump_json() + "\n"
 
 
-def _append(path: Path, line: bytes) -> None:
-    """Add a line to a file, or leave the file as it was."""
-    with path.open("ab", buffering=0) as file:
-        before = file.seek(0, os.SEEK_END)
-        try:
-            if file.write(line) != len(line):
-                raise OSError("No space left on device")
-            os.fsync(file.fileno())
-        except OSError:
-            file.truncate(before)
-            raise
+def _write(path: Path, mode: str, content: bytes) -> None:
+    """Write to a file, and wait until it is on disk."""
+    with path.open(mode) as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
