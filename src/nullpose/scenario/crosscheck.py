@@ -40,21 +40,23 @@ def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterato
         if point is not None
     }
     if scenario.nodes_from is not None:
-        message = "only a scenario file may name another, in place of its own nodes; remove it or them"
-        yield ("nodes_from",), message
-    airspace, array, airframe = scenario.airspace, scenario.array, scenario.airframe
+        yield (
+            ("nodes_from",),
+            "only a scenario file may name another, in place of its own nodes; remove it or them",
+        )
     misplaced = list(origin_faults(scenario.origin, points, stated))
     yield from misplaced
     yield from _objective_faults(scenario, points)
     yield from shared_names(points)
     placed = {} if misplaced else {place: point for place, point in points.items() if is_placed(point)}
     yield from _shared_places(placed)
-    if array is not None and airframe is not None and airframe.axis_band != (1.0, 1.0):
-        message = (
+    if scenario.array is not None and scenario.airframe is not None and scenario.axis_band != (1.0, 1.0):
+        yield (
+            ("array",),
             "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
-            "dipole at an angle; remove either table"
+            "dipole at an angle; remove either table",
         )
-        yield ("array",), message
+    airspace = scenario.airspace
     if airspace is not None:
         zones: dict[Place, Any] = {
             ("airspace", "no_fly", index): zone for index, zone in enumerate(airspace.no_fly)
@@ -73,11 +75,13 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
         others = [f'"{other.name}"' for other in RECORDS.values() if what not in other.unused]
         for place, keys, given in _stated(what, scenario, points):
             if what in record.needs and not given:
-                message = f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
-                yield place, message
+                yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
             for where in given if what in record.unused else ():
-                remedy = f"remove it, or write objective = {' or '.join(others)}"
-                yield where, f'has no meaning with objective = "{record.name}"; {remedy}'
+                yield (
+                    where,
+                    f'has no meaning with objective = "{record.name}"; remove it, or write objective = '
+                    f"{' or '.join(others)}",
+                )
 
 
 def _stated(
@@ -95,7 +99,7 @@ def _stated(
             if place[0] == kind:
                 yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
     else:
-        table = inner_section(type(scenario).model_fields[kind])
+        table = inner_section(type(scenario).model_fields[kind].annotation)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
 
 
@@ -125,9 +129,9 @@ def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place,
         earlier_m[kinds[:index] == may_be.get(str(place[0]), "")] = np.inf
         if earlier_m.min(initial=np.inf) < SAME_PLACE_M:
             owner = placed[int(earlier_m.argmin())]
-            message = (
+            yield (
+                (*place, "position_m"),
                 f"got {positions_m[index].tolist()}, the place of {path_of(owner)} already; "
                 f"{' and '.join(dict.fromkeys(str(each[0]) for each in (owner, place)))} must be at "
-                "different places; move or remove one"
+                "different places; move or remove one",
             )
-            yield (*place, "position_m"), message

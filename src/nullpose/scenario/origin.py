@@ -129,11 +129,11 @@ def origin_faults(
     earthly = {place: point for place, point in points.items() if None not in _geodetic(point)}
     if origin is None:
         for place in [place for place, point in points.items() if _geodetic(point) != (None,) * 3][:1]:
-            message = (
+            yield (
+                ("origin",),
                 f"missing, but {path_of(place)} is stated by {_WORDS}; add a table headed [origin] with "
-                f"{_WORDS} of the place where position_m is to be [0, 0, 0]"
+                f"{_WORDS} of the place where position_m is to be [0, 0, 0]",
             )
-            yield ("origin",), message
     yield from _mixed(earthly, points, stated)
     if not earthly or origin is None:
         return
@@ -146,8 +146,10 @@ def origin_faults(
                 f"{FARTHEST_M / 1e3:.0f} km; are latitude and longitude exchanged, or a sign lost?",
             )
         elif (apart_m := np.linalg.norm(np.subtract(point.position_m or place_m, place_m))) > _SAME_M:
-            message = f"position_m and {_WORDS} are {apart_m:.3g} m apart, must be one place; remove either"
-            yield place, message
+            yield (
+                place,
+                f"position_m and {_WORDS} are {apart_m:.3g} m apart, must be one place; remove either",
+            )
 
 
 def _mixed(
@@ -165,8 +167,7 @@ def _mixed(
             ways.setdefault("position_m" if in_metres else _WORDS, place)
     if len(ways) == 2:
         (first_way, first), (way, place) = ways.items()
-        message = f"stated by {way}, but {path_of(first)} by {first_way}; state all in one way"
-        yield place, message
+        yield place, f"stated by {way}, but {path_of(first)} by {first_way}; state all in one way"
 
 
 def is_placed(point: GroundPoint) -> bool:

@@ -140,7 +140,7 @@ def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object
         raise ScenarioError([Fault(path, f"got {path_of((step,))}, {have}")])
     here, inner = members[step], kind
     if kind is not None and isinstance(holder, dict):
-        inner = inner_section(kind.model_fields[str(here)])
+        inner = inner_section(kind.model_fields[str(here)].annotation)
     if rest:
         is_table = inner is not None and inner.letter is None
         below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Annotated
 
@@ -21,6 +21,7 @@ MOST_CORNERS = 5000
 _APART_M = 1e-6
 """Vertices and edges closer than this meet [m]."""
 _MOST_AT_ONCE = 1_000_000  # coordinates of points times vertices, for the memory that it takes
+_BATCH = 64  # edges compared with all others together, likewise
 
 
 def area_m2(vertices_m: Floats) -> float:
@@ -79,21 +80,27 @@ def _distance_m(points: Floats, start: Floats, end: Floats) -> Floats:
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
 def _first_meeting(corners: tuple[tuple[float, float], ...]) -> tuple[int, int] | None:
     """Returns the first two edges that have more in common than the vertex between neighbours."""
-    start = np.asarray(corners)
-    end = np.roll(start, -1, axis=0)
-    low, high = np.minimum(start, end) - _APART_M, np.maximum(start, end)
-    for one in range(len(start)):
-        is_near = ((low[one] <= high[one + 1 :]) & (high[one] >= low[one + 1 :])).all(axis=1)
-        others = one + 1 + np.flatnonzero(is_near)
-        first, second = (start[one], end[one]), (start[others], end[others])
+    vertices = np.asarray(corners)
+    count, ends = len(vertices), np.roll(vertices, -1, axis=0)
+    for one, other in _near(np.minimum(vertices, ends), np.maximum(vertices, ends)):
+        first, second = (vertices[one], ends[one]), (vertices[other], ends[other])
         # Neither lies on one side of the other's line: they meet there, or are on one line and overlap.
         met = ~(_beside(*first, *second) | _beside(*second, *first))
-        met[others == one + 1] = _folds(start[one], end[one], end[(one + 1) % len(start)])
-        if one == 0:
-            met[others == len(start) - 1] = _folds(start[-1], start[0], start[1])
+        follows, closes = other == one + 1, other - one == count - 1
+        met[follows] = _folds(vertices[one[follows]], ends[one[follows]], ends[other[follows]])
+        met[closes] = _folds(vertices[-1:], vertices[:1], vertices[1:2])
         if met.any():
-            return one, int(others[met.argmax()])
+            return int(one[met.argmax()]), int(other[met.argmax()])
     return None
+
+
+def _near(low: Floats, high: Floats) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """Yields the pairs of rectangles that overlap or nearly do, in order, in batches."""
+    for first in range(0, len(low), _BATCH):
+        some, later = np.s_[first : first + _BATCH, None], np.s_[first:]
+        near = (low[some] - _APART_M <= high[later]) & (high[some] >= low[later] - _APART_M)
+        one, other = np.nonzero(np.triu(near.all(axis=-1), 1))
+        yield one + first, other + first
 
 
 def _beside(p: Floats, q: Floats, start: Floats, end: Floats) -> NDArray[np.bool_]:
@@ -104,9 +111,10 @@ def _beside(p: Floats, q: Floats, start: Floats, end: Floats) -> NDArray[np.bool
     return np.asarray((sides > near).all(axis=0) | (sides < -near).all(axis=0))
 
 
-def _folds(before: Floats, corner: Floats, after: Floats) -> bool:
-    """Returns whether the edge after a corner runs back along the edge before it."""
-    return bool(min(_distance_m(after, before, corner), _distance_m(before, corner, after)) < _APART_M)
+def _folds(before: Floats, corner: Floats, after: Floats) -> NDArray[np.bool_]:
+    """Returns at which corners the edge after it runs back along the edge before it."""
+    backs = np.minimum(_distance_m(after, before, corner), _distance_m(before, corner, after))
+    return np.asarray(backs < _APART_M)
 
 
 class _Outline(ListOf):

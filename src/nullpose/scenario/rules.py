@@ -180,5 +180,5 @@ class Members(ListOf):
 
 def list_of_tables(key: str, fewest: int = 0) -> Members:
     """Returns the rule of a list of so many tables that are headed by a key."""
-    least = "at least one table" if fewest else "tables"
-    return Members(f"a list of {least}, each headed [[{key}]]", fewest, MOST_MEMBERS)
+    noun = f"a list of {'at least one table' if fewest else 'tables'}, each headed [[{key}]]"
+    return Members(noun, fewest, MOST_MEMBERS)

@@ -8,8 +8,15 @@ from functools import cache
 from itertools import chain
 from typing import Any, ClassVar, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError, model_validator
-from pydantic.fields import FieldInfo
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    ValidationError,
+    model_serializer,
+    model_validator,
+)
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
@@ -64,12 +71,13 @@ class Section(BaseModel):
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
-        stated = {}
-        for key, field in type(self).model_fields.items():
-            value = getattr(self, key)
-            if value is not None and not (key in self.unstated and value == field.default):
-                stated[key] = _plain(value)
-        return stated
+        return self.model_dump(mode="json")
+
+    @model_serializer(mode="wrap")
+    def _stated(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields = type(self).model_fields
+        untold = {key for key in self.unstated if getattr(self, key) == fields[key].default}
+        return {key: value for key, value in handler(self).items() if value is not None and key not in untold}
 
     @classmethod
     def heading(cls) -> str:
@@ -99,8 +107,8 @@ class Section(BaseModel):
             raise rejection(f"got {described(data)}, must be {cls.heading()}")
         for key, value in data.items():
             if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
-                message = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
-                raise collected(cls.__name__, [((key,), message)])
+                too_long = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
+                raise collected(cls.__name__, [((key,), too_long)])
         stated = {key: value for key, value in data.items() if key in cls.model_fields}
         given = {key for key, value in stated.items() if value is not None}
         strange = [str(key) for key in data if key not in stated]
@@ -141,7 +149,7 @@ class Section(BaseModel):
             return data if isinstance(data, cls) else None
         sound: dict[str, Any] = {}
         for key, field in cls.model_fields.items():
-            value, inner = data.get(key), inner_section(field)
+            value, inner = data.get(key), inner_section(field.annotation)
             sound[key] = None if key in data or field.is_required() else field.get_default()
             if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
                 sound[key] = tuple(inner._sound_part(member) for member in value)
@@ -166,8 +174,7 @@ class Section(BaseModel):
     def __getstate__(self) -> dict[Any, Any]:
         # Cached arrays stay behind: they would come back writeable.
         state = super().__getstate__()
-        fields = type(self).model_fields
-        return state | {"__dict__": {key: value for key, value in state["__dict__"].items() if key in fields}}
+        return state | {"__dict__": {key: state["__dict__"][key] for key in type(self).model_fields}}
 
     def __eq__(self, other: object) -> bool:
         # Not pydantic's own comparison, which would meet the cached arrays too.
@@ -176,24 +183,14 @@ class Section(BaseModel):
         )
 
 
-def inner_section(field: FieldInfo) -> type[Section] | None:
-    """Returns the kind of table that a field holds, or a list of; None if it holds no table."""
-    pending = [field.annotation]
-    while pending:
-        annotation = pending.pop()
-        if isinstance(annotation, type) and issubclass(annotation, Section):
-            return annotation
-        pending += get_args(annotation)
-    return None
+def inner_section(annotation: object) -> type[Section] | None:
+    """Returns the kind of table that the type of a field holds, or a list of; None if it holds no table."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return annotation
+    return next(filter(None, map(inner_section, get_args(annotation))), None)
 
 
 @cache
 def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
     """Returns what reads the value of one key of a table."""
     return TypeAdapter(kind.model_fields[key].rebuild_annotation())
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, Section):
-        return value.to_dict()
-    return [_plain(member) for member in value] if isinstance(value, tuple) else value

@@ -86,8 +86,8 @@ class Uncertain(Section):
         """Returns the fault that an attitude is given of what is no ellipsoid."""
         is_sound = self.uncertainty_m is not None or stated.get("uncertainty_m") is None
         if is_sound and self.uncertainty_attitude_deg and not isinstance(self.uncertainty_m, tuple):
-            message = (
+            yield (
+                ("uncertainty_attitude_deg",),
                 "given without three semi-axes to rotate; write uncertainty_m = [a, b, c], or remove "
-                "uncertainty_attitude_deg"
+                "uncertainty_attitude_deg",
             )
-            yield ("uncertainty_attitude_deg",), message

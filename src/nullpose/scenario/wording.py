@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
 from datetime import date, time
 from difflib import SequenceMatcher
@@ -28,8 +27,12 @@ def described(value: object) -> str:
             return "nothing"
         case bool(truth):
             return f"the truth value {str(truth).lower()}"
-        case int() | float() as number:
-            return _number(number)
+        case float(number):
+            words = {"nan": "NaN", "inf": "infinity", "-inf": "minus infinity"}
+            return words.get(repr(number), repr(number))
+        case int(number):
+            # Very long integers cannot be printed in decimal by default, and nobody would read them.
+            return str(number) if abs(number) < 10**15 else f"an integer beyond {'-' * (number < 0)}1e+15"
         case str(text):
             shown = text if len(text) <= _LONGEST_QUOTE else text[: _LONGEST_QUOTE - 3] + "..."
             return f'the text "{printable(shown)}"' if text else "an empty text"
@@ -41,14 +44,6 @@ def described(value: object) -> str:
         case date() | time():
             return "a date or time"
     return f"an object of type {type(value).__name__}"
-
-
-def _number(value: float) -> str:
-    if isinstance(value, float):
-        special = {math.inf: "infinity", -math.inf: "minus infinity"}
-        return "NaN" if math.isnan(value) else special.get(value, repr(value))
-    # Very long integers cannot be printed in decimal by default, and nobody would read them.
-    return str(value) if abs(value) < 10**15 else f"an integer beyond {'-' if value < 0 else ''}1e+15"
 
 
 def printable(text: str) -> str:
