@@ -72,9 +72,9 @@ class Airframe(Section):
         ``cos^2`` of the greatest and of the least angle from the vertical; exactly 0.0 at 90 degrees and 1.0
         at 0, and two equal numbers where only one angle is reached.
         """
-        greatest_deg = min(90.0, self.mount_deg + self._tilt_deg)
-        least_deg = max(0.0, self.mount_deg - self._tilt_deg)
-        return _cosine_squared(greatest_deg), _cosine_squared(least_deg)
+        ends_deg = min(90.0, self.mount_deg + self._tilt_deg), max(0.0, self.mount_deg - self._tilt_deg)
+        low, high = (0.0 if end == 90.0 else math.cos(math.radians(end)) ** 2 for end in ends_deg)
+        return low, high
 
     @property
     def is_omnidirectional(self) -> bool:
@@ -84,7 +84,3 @@ class Airframe(Section):
     @property
     def _tilt_deg(self) -> float:
         return PRESET_TILTS_DEG[self.preset] if self.preset else self.tilt_max_deg or 0.0
-
-
-def _cosine_squared(angle_deg: float) -> float:
-    return 0.0 if angle_deg == 90.0 else math.cos(math.radians(angle_deg)) ** 2

@@ -10,6 +10,7 @@ from pydantic import Field
 from nullpose.scenario.names import Label
 from nullpose.scenario.origin import GEODETIC_KEYS, Altitude, Latitude, Longitude
 from nullpose.scenario.section import Section
+from nullpose.scenario.transmitter import POWER, Powered
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     DecibelMilliwatts,
@@ -17,15 +18,11 @@ from nullpose.scenario.units import (
     RatioDecibels,
     Watts,
     Weight,
-    power_w,
     ratio_from_db,
 )
-from nullpose.scenario.ways import Ways, at_most_one, exactly_one
+from nullpose.scenario.ways import Ways, at_most_one
 
-__all__ = ["POWER", "Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
-
-POWER = exactly_one("power_w", "power_dbm")
-"""The keys of a transmit power."""
+__all__ = ["Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
 
 _PLACE = Ways((("position_m",), GEODETIC_KEYS), fewest=0, most=2)
 
@@ -83,7 +80,7 @@ class GroundPoint(Section):
         return super().model_copy(update=stale | dict(update or {}), deep=deep)
 
 
-class Emitter(GroundPoint):
+class Emitter(Powered, GroundPoint):
     """A transmitter on the ground.
 
     Args:
@@ -96,22 +93,6 @@ class Emitter(GroundPoint):
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (_PLACE, POWER)
-
-    power_w: Watts | None = Field(
-        default=None,
-        description="Transmit power in watts. Either this or power_dbm.",
-        examples=[1.0],
-    )
-    power_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Transmit power in dBm. Either this or power_w.",
-        examples=[20.0],
-    )
-
-    @property
-    def transmit_power_w(self) -> float:
-        """Transmit power, however it was stated [W]; 0 where none is."""
-        return power_w(self.power_w, self.power_dbm)
 
 
 class Node(Emitter):

@@ -8,9 +8,9 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from nullpose.objectives import RECORDS
-from nullpose.scenario.ground_points import POWER
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
+from nullpose.scenario.transmitter import POWER
 
 __all__ = ["json_schema"]
 

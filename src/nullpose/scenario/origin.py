@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -95,9 +96,10 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
 
 def _located(point: object, origin: Origin | None) -> object:
     """Returns a raw point with its position_m, if it is stated by latitude and longitude."""
-    if not isinstance(point, Mapping) or point.get("position_m") is not None:
+    if not isinstance(point, Mapping):
         return point
-    if all(point.get(key) is None for key in GEODETIC_KEYS):
+    stated = {key for key in ("position_m", *GEODETIC_KEYS) if point.get(key) is not None}
+    if not stated or "position_m" in stated:
         return point
     place, position_m = _place(point), np.zeros(3)
     if place is not None and origin is not None:
@@ -110,10 +112,9 @@ def _place(stated: object) -> Origin | None:
     """Returns the place that a raw table states by latitude and longitude, or None."""
     if isinstance(stated, Mapping):
         stated = {key: stated.get(key) for key in GEODETIC_KEYS}
-    try:
+    with suppress(ValidationError):
         return Origin.model_validate(stated)
-    except ValidationError:
-        return None
+    return None
 
 
 def origin_faults(

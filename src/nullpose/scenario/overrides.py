@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
-from itertools import chain
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.faults import Place, path_of
+from nullpose.scenario.faults import path_of
 from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
@@ -53,10 +52,10 @@ def parse_override(text: str) -> Override:
         ScenarioError: when the text has another form.
     """
     parts = _ASSIGNMENT.fullmatch(text)
-    if not parts or not parts[1].strip() or not parts[2].strip():
+    path, value = (part.strip() for part in parts.groups()) if parts else ("", "")
+    if not path or not value:
         message = "must be a path, an equals sign and a value, as in jammers.M.power_w=10"
         raise ScenarioError([Fault(text, message)], "override")
-    path, value = parts[1].strip(), parts[2].strip()
     return Override(path, _value(path, value))
 
 
@@ -80,21 +79,31 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     given = list(overrides)
     for override in given:
         try:
-            parsed = parse_override(override) if isinstance(override, str) else override
-            steps = _steps(parsed.path)
-            _assign(Scenario, data, steps, deepcopy(plain(parsed.value)), parsed.path)
-            if steps[0] == "origin":
-                _unlocate(data)
+            _apply(parse_override(override) if isinstance(override, str) else override, data)
         except ScenarioError as error:
             faults += error.faults
-    source = f"override {listed([str(override) for override in given])}"
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
         faults += error.faults
     if faults:
-        raise ScenarioError(faults, source)
+        raise ScenarioError(faults, f"override {listed([str(override) for override in given])}")
     return changed
+
+
+def _apply(override: Override, data: dict[str, Any]) -> None:
+    """Sets one value of a raw scenario, and drops what it replaces."""
+    path = override.path
+    if not _PATH.fullmatch(path):
+        raise ScenarioError([Fault(path, "this is not a path")])
+    found = (step.groups(default="") for step in _STEP.finditer(path))
+    steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
+    _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
+    if steps[0] == "origin":  # the points stay where they are on the Earth
+        for points in map(data.get, POINT_LISTS):
+            for point in points if isinstance(points, list) else ():
+                if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
+                    point.pop("position_m", None)
 
 
 def _value(path: str, text: str) -> object:
@@ -110,17 +119,9 @@ def _value(path: str, text: str) -> object:
     return text
 
 
-def _steps(path: str) -> Place:
-    """Returns the path as keys, names and indices."""
-    if not _PATH.fullmatch(path):
-        raise ScenarioError([Fault(path, "this is not a path")])
-    found = (step.groups() for step in _STEP.finditer(path))
-    return tuple(
-        int(index) if index else double or single or bare or "" for double, single, bare, index in found
-    )
-
-
-def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object, path: str) -> None:
+def _assign(
+    kind: type[Section] | None, holder: Any, steps: Sequence[str | int], value: object, path: str
+) -> None:
     """Sets the value at the place in a raw table or list that the steps lead to; drops what it replaces.
 
     Args:
@@ -132,22 +133,17 @@ def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object
     """
     members, (step, *rest) = _members(kind, holder), steps
     if step not in members:
-        known = [member for member in members if isinstance(member, str)]
-        guess = nearest(str(step), known) or (known[0] if len(known) == 1 else "")
-        meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
-        have = f"must be one of {listed([path_of((member,)) for member in members])}{meant}"
-        have = have if members else "but it has no members, so set it whole"
-        raise ScenarioError([Fault(path, f"got {path_of((step,))}, {have}")])
-    here, inner = members[step], kind
-    if kind is not None and isinstance(holder, dict):
-        inner = inner_section(kind.model_fields[str(here)].annotation)
+        raise ScenarioError([Fault(path, f"got {path_of((step,))}, {_instead(step, members, path)}")])
+    here = members[step]
+    table = kind if isinstance(holder, dict) else None
+    inner = kind if table is None else inner_section(table.model_fields[str(here)].annotation)
     if rest:
         is_table = inner is not None and inner.letter is None
         below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]
-        _assign(inner, below, tuple(rest), value, path)
+        _assign(inner, below, rest, value, path)
         value = below
     holder[here] = value
-    for ways in kind.ways if kind is not None and isinstance(holder, dict) else ():
+    for ways in table.ways if table else ():
         for other in ways.others(str(here)):
             holder.pop(other, None)
 
@@ -155,17 +151,21 @@ def _assign(kind: type[Section] | None, holder: Any, steps: Place, value: object
 def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str | int]:
     """Returns the steps that lead on from a raw table or list, with the key or index that each means."""
     if isinstance(holder, dict):
-        return {} if kind is None else {key: key for key in kind.model_fields}
+        return {key: key for key in kind.model_fields} if kind else {}
     members = holder if isinstance(holder, list) else []
-    indices: dict[str | int, str | int] = {index: index for index in range(len(members))}
-    for index, member in enumerate(members):
-        if kind is not None and isinstance(member, dict):
-            indices[member.get("name") or f"{kind.letter}{index + 1}"] = index
-    return indices
+    names = {
+        member.get("name") or f"{kind.letter}{index}": index - 1
+        for index, member in enumerate(members, 1)
+        if kind is not None and isinstance(member, dict)
+    }
+    return {index: index for index in range(len(members))} | names
 
 
-def _unlocate(data: Mapping[str, Any]) -> None:
-    """Takes position_m from the points of a raw scenario that are stated by latitude and longitude too."""
-    for point in chain(*(members for key in POINT_LISTS if isinstance(members := data.get(key), list))):
-        if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
-            point.pop("position_m", None)
+def _instead(step: str | int, members: Collection[str | int], path: str) -> str:
+    """Returns what to say of a step that leads nowhere."""
+    known = [member for member in members if isinstance(member, str)]
+    guess = nearest(str(step), known) or (known[0] if len(known) == 1 else "")
+    meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
+    if not members:
+        return "but it has no members, so set it whole"
+    return f"must be one of {listed([path_of((member,)) for member in members])}{meant}"

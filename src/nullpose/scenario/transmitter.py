@@ -1,4 +1,4 @@
-"""What the vehicle sends when the drone transmits."""
+"""Transmit powers, and that of the drone where it transmits."""
 
 from __future__ import annotations
 
@@ -10,31 +10,43 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import DecibelMilliwatts, Watts, power_w
 from nullpose.scenario.ways import Ways, exactly_one
 
-__all__ = ["Transmitter"]
+__all__ = ["POWER", "Powered", "Transmitter"]
+
+POWER = exactly_one("power_w", "power_dbm")
+"""The keys of a transmit power."""
 
 
-class Transmitter(Section):
-    """The drone's own transmit power, for the downlink.
+class Powered(Section):
+    """What transmits.
 
     Args:
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
+    ways: ClassVar[tuple[Ways, ...]] = (POWER,)
 
     power_w: Watts | None = Field(
         default=None,
-        description="Transmit power of the drone in watts. Either this or power_dbm.",
+        description="Transmit power in watts. Either this or power_dbm.",
         examples=[1.0],
     )
     power_dbm: DecibelMilliwatts | None = Field(
         default=None,
-        description="Transmit power of the drone in dBm. Either this or power_w.",
+        description="Transmit power in dBm. Either this or power_w.",
         examples=[20.0],
     )
 
     @property
     def transmit_power_w(self) -> float:
-        """Transmit power, however it was stated [W]."""
+        """Transmit power, however it was stated [W]; 0 where none is."""
         return power_w(self.power_w, self.power_dbm)
+
+
+class Transmitter(Powered):
+    """The drone's own transmit power, for the downlink.
+
+    Args:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+    """
