@@ -153,12 +153,12 @@ def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str 
     if isinstance(holder, dict):
         return {key: key for key in kind.model_fields} if kind else {}
     members = holder if isinstance(holder, list) else []
-    names = {
+    steps: dict[str | int, str | int] = {index: index for index in range(len(members))}
+    return steps | {
         member.get("name") or f"{kind.letter}{index}": index - 1
         for index, member in enumerate(members, 1)
         if kind is not None and isinstance(member, dict)
     }
-    return {index: index for index in range(len(members))} | names
 
 
 def _instead(step: str | int, members: Collection[str | int], path: str) -> str:
