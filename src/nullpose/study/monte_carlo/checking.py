@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Scenario
 from nullpose.scenario.faults import path_of
@@ -10,59 +12,49 @@ from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["require_sound", "spec_faults"]
+__all__ = ["require_sound"]
 
 _TRIED_SCENES = 5  # one that cannot be drawn may be bad luck, so many cannot
 _TRIED_VALUES = 50  # of each swept path, both ends among them
 
 
-def require_sound(spec: StudySpec) -> None:
-    """Raise a ScenarioError with what is wrong between the parts of a spec, if anything is.
+def require_sound(spec: StudySpec, source: str = "study") -> None:
+    """Raise a ScenarioError with what is wrong between the parts of a spec, each of which is sound by itself.
 
     Args:
         spec: the study.
+        source: what to call it in messages.
 
     Raises:
         ScenarioError: with every fault.
     """
-    faults = spec_faults(spec)
+    draws = Draws(spec)
+    unsound = {index: _faults_at(draws, index, {}) for index in range(min(_TRIED_SCENES, spec.n_scenes))}
+    sound = [index for index, found in unsound.items() if not found]
+    if sound:
+        faults = _sweep_faults(draws, spec, sound[0])
+        faults = faults or _cases_faults(spec, [draws.at(sound[0], 0), draws.at(sound[0], -1)])
+    else:
+        faults = [Fault(f"scene 0: {each.path}", each.message) for each in unsound[0]]
     if faults:
-        raise ScenarioError(faults, "study")
+        raise ScenarioError(faults, source)
 
 
-def spec_faults(spec: StudySpec) -> list[Fault]:
-    """Return what is wrong between the parts of a spec, each of which is sound by itself.
-
-    Args:
-        spec: the study.
-    """
-    draws, index, faults = Draws(spec), 0, list[Fault]()
-    for index in range(min(_TRIED_SCENES, spec.n_scenes)):
-        unsound = _faults_at(draws, index, None)
-        if not unsound:
-            faults = _sweep_faults(spec, index)
-            return faults or _cases_faults(spec, [draws.at(index, 0), draws.at(index, -1)])
-        faults = faults or [Fault(f"scene {index}: {each.path}", each.message) for each in unsound]
-    return faults
-
-
-def _faults_at(draws: Draws, index: int, point: int | None) -> tuple[Fault, ...]:
+def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> tuple[Fault, ...]:
     try:
-        draws.base(index) if point is None else draws.at(index, point)
+        draws.base(index, values)
     except ScenarioError as error:
         return error.faults
     return ()
 
 
-def _sweep_faults(spec: StudySpec, index: int) -> list[Fault]:
+def _sweep_faults(draws: Draws, spec: StudySpec, index: int) -> list[Fault]:
     """Return the faults that the values of each path lead to, each once."""
     told: dict[tuple[str, str], Fault] = {}
     for path, values in spec.sweep:
         step = max(1, len(values) // _TRIED_VALUES)
-        tried = (*values[::step], values[-1])
-        draws = Draws(spec.model_copy(update={"sweep": ((path, tuple(dict.fromkeys(tried))),)}))
-        for point, value in enumerate(dict.fromkeys(tried)):
-            for fault in _faults_at(draws, index, point):
+        for value in dict.fromkeys((*values[::step], values[-1])):
+            for fault in _faults_at(draws, index, {path: value}):
                 message = f"{fault.message} (at {value:g})"
                 told.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
     return list(told.values())

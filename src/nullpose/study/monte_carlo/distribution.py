@@ -18,6 +18,8 @@ from nullpose.scenario.wording import plain
 
 __all__ = ["Distribution", "Drawn"]
 
+FloatArray = NDArray[np.float64]
+
 _Number = Annotated[float, Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")]
 _Two = tuple[_Number, _Number]
 _Ends = Annotated[_Two, ListOf("a list of two numbers, the lower first", 2, 2)]
@@ -75,27 +77,36 @@ class Distribution(Section):
             return (self.fixed,)
         return self.uniform or self.log_uniform or self.choice or ()
 
-    def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
+    def draw(self, generator: np.random.Generator, count: int) -> FloatArray:
         """Return numbers drawn one after the other: the first few are the same for any count.
 
         Args:
             generator: where chance comes from.
             count: how many.
         """
-        if self.fixed is not None:
-            return np.full(count, self.fixed)
-        if self.normal is not None:
-            mean, deviation = self.normal
-            return mean + deviation * generator.standard_normal(count)
-        shares = generator.random(count)
-        if self.choice is not None:
-            return np.array([self.choice[int(share * len(self.choice))] for share in shares])
-        if self.log_uniform is not None:
-            low, high = np.log(self.log_uniform)
-            return np.asarray(np.clip(np.exp(low + (high - low) * shares), *self.log_uniform))
-        assert self.uniform is not None, "validation lets exactly one of the keys through"
-        low, high = self.uniform
-        return np.asarray(low + (high - low) * shares)
+        ((kind, given),) = self.to_dict().items()
+        if kind == "fixed":
+            return np.full(count, given)
+        if kind == "normal":
+            mean, deviation = given
+            return np.asarray(mean + deviation * generator.standard_normal(count))
+        return _OF_SHARES[kind](generator.random(count), np.array(given))
+
+
+def _log_uniform(shares: FloatArray, ends: FloatArray) -> FloatArray:
+    return np.clip(np.exp(_uniform(shares, np.log(ends))), *ends)
+
+
+def _uniform(shares: FloatArray, ends: FloatArray) -> FloatArray:
+    return np.asarray(ends[0] + (ends[1] - ends[0]) * shares)
+
+
+def _choice(shares: FloatArray, numbers: FloatArray) -> FloatArray:
+    return np.asarray(numbers[(shares * len(numbers)).astype(int)])
+
+
+# What makes numbers of shares that are drawn evenly from 0 to 1, and of what the spec gives.
+_OF_SHARES = {"uniform": _uniform, "log_uniform": _log_uniform, "choice": _choice}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +130,6 @@ class Drawn(Rule):
         """Returns the distribution, or raises the fault that it draws what is not allowed."""
         key = next(iter(value.to_dict()))
         wrong = [each for each in value.values if not self.quantity.low <= each <= self.quantity.high]
-        message = ""
         if wrong:
             message = f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
         elif value.normal is not None and self.quantity.low >= 0.0:
@@ -129,6 +139,6 @@ class Drawn(Rule):
             )
         elif value.normal is not None and value.normal[1] < 0.0:
             message = "the standard deviation is below 0; it must be 0 or more"
-        if message:
-            raise collected("", [((key,), message)])
-        return value
+        else:
+            return value
+        raise collected("", [((key,), message)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from contextlib import suppress
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from nullpose.study.monte_carlo.spec import StudySpec, known
 __all__ = ["MOST_DRAWS", "Draws", "draw_scene", "quantity_of", "scene_at"]
 
 FloatArray = NDArray[np.float64]
+_Swept = tuple[dict[str, Points], list[tuple[str, float]]]  # what is drawn, and what is set after that
 
 MOST_DRAWS = 100  # how often the points of one kind are drawn before their scene is given up
 
@@ -98,17 +100,18 @@ class Draws:
 
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
-        self._swept: dict[int, tuple[dict[str, Points], list[tuple[str, float]]]] = {}
+        self._swept: dict[int, _Swept] = {}
         self._kept: dict[int, dict[str, Any]] = {}
         self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
 
-    def base(self, index: int) -> Scenario:
-        """Return a scene before anything is swept.
+    def base(self, index: int, values: Mapping[str, float] = MappingProxyType({})) -> Scenario:
+        """Return a scene before anything is swept, or with some values set.
 
         Args:
             index: the scene's number, from 0.
+            values: by path.
         """
-        return self._drawn(index, self._spec.drawn)
+        return self._set(index, _of_point(self._spec, values))
 
     def at(self, index: int, point: int) -> Scenario:
         """Return a scene at one combination of swept values.
@@ -119,23 +122,21 @@ class Draws:
         """
         if point not in self._swept:
             self._swept[point] = _of_point(self._spec, self._spec.points[point])
-        drawn, settings = self._swept[point]
-        scene = self._drawn(index, drawn)
-        overrides = [each for path, value in settings for each in _settings(scene, path, value)]
-        return apply_overrides(scene, overrides) if overrides else scene
+        return self._set(index, self._swept[point])
 
-    def _drawn(self, index: int, drawn: Mapping[str, Points]) -> Scenario:
-        if self._last is None or self._last[0] != index or self._last[1] != drawn:
+    def _set(self, index: int, swept: _Swept) -> Scenario:
+        drawn, settings = swept
+        if self._last is None or self._last[:2] != (index, drawn):
             number = index % self._spec.scene.size
             if number not in self._kept:
                 self._kept[number] = self._spec.scene.kept(number, drawn)
             self._last = index, drawn, _scene(self._spec, index, drawn, self._kept[number])
-        return self._last[2]
+        scene = self._last[2]
+        overrides = [each for path, value in settings for each in _settings(scene, path, value)]
+        return apply_overrides(scene, overrides) if overrides else scene
 
 
-def _of_point(
-    spec: StudySpec, values: Mapping[str, float]
-) -> tuple[dict[str, Points], list[tuple[str, float]]]:
+def _of_point(spec: StudySpec, values: Mapping[str, float]) -> _Swept:
     """Return what is drawn at a combination of swept values, and what is set in the scene after that.
 
     A path may mean a key of what draws, as in ``nodes.count``, or one of a scene.
@@ -144,16 +145,12 @@ def _of_point(
     for path, value in values.items():
         kind, _, key = path.partition(".")
         if kind in drawn and key in type(drawn[kind]).model_fields:
-            drawn[kind] = drawn[kind].model_copy(update=_replacing(drawn[kind], key, value))
+            # The key that states the same in another unit is dropped.
+            others = {other for ways in drawn[kind].ways for other in ways.others(key)}
+            drawn[kind] = drawn[kind].model_copy(update={**dict.fromkeys(others), key: value})
         else:
             settings.append((path, value))
     return drawn, settings
-
-
-def _replacing(points: Points, key: str, value: float) -> dict[str, object]:
-    """Return the update that sets a key and drops the one that states the same in another unit."""
-    others = {other for ways in points.ways for other in ways.others(key)}
-    return {**dict.fromkeys(others), key: value}
 
 
 def _settings(scene: Scenario, path: str, value: float) -> list[Override]:

@@ -11,7 +11,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import load
 from nullpose.scenario.loading import inside
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
-from nullpose.study.monte_carlo.checking import spec_faults
+from nullpose.study.monte_carlo.checking import require_sound
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["load_spec"]
@@ -32,18 +32,16 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
         ScenarioError: when the file, or one that it names, cannot be read or is faulty; with every fault.
     """
     source = os.fspath(path)
+    faults: list[Fault] = []
     try:
         tables = tables_of(file_text(Path(source), _SPEC_FILE))
-    except ScenarioError as error:
-        raise ScenarioError(error.faults, source) from None
-    faults = _read_scenarios(tables, Path(source).parent, allow_outside)
-    try:
-        spec = StudySpec.from_dict(tables, source)
+        faults = _read_scenarios(tables, Path(source).parent, allow_outside)
+        spec = StudySpec.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError([*faults, *error.faults], source) from None
-    faults = faults or spec_faults(spec)
     if faults:
         raise ScenarioError(faults, source)
+    require_sound(spec, source)
     return spec
 
 
@@ -57,29 +55,23 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
     file, files = scene.get("file"), scene.get("files")
     names = [file] if files is None else files if isinstance(files, list) else []
     faults: list[Fault] = []
-    held = []
+    held: list[dict[str, Any]] = []
     for name in names:
         if not isinstance(name, str):  # the spec says what is wrong with it
             continue
         try:
-            path = inside(folder, name, allow_outside)
-            held.append(load(path, allow_outside=allow_outside).to_dict())
+            held.append(load(inside(folder, name, allow_outside), allow_outside=allow_outside).to_dict())
         except ScenarioError as error:
-            faults += [
-                Fault(f"{name}: {fault.path}" if fault.path else name, fault.message)
-                for fault in error.faults
-            ]
-    if faults:
-        # Whatever else is faulty is told too; a stand-in keeps that free of what only follows.
-        tables["scene"] = {key: value for key, value in scene.items() if key not in ("file", "files")}
-        tables["scene"]["scenarios"] = [_STAND_IN]
-        tables.setdefault("scenes", 1)
-    elif held:
+            # Whatever else is faulty is told too; a stand-in keeps that free of what only follows.
+            held.append(_STAND_IN)
+            paths = [f"{name}: {fault.path}" if fault.path else name for fault in error.faults]
+            faults += map(Fault, paths, [fault.message for fault in error.faults])
+    if held:
         tables["scene"] = {**scene, "scenarios": held}
     return faults
 
 
-_STAND_IN = {
+_STAND_IN: dict[str, Any] = {
     "airspace": {"altitude_m": [10.0, 20.0]},
     "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
     "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],

@@ -102,16 +102,6 @@ class SceneBase(Section):
         """How many scenarios take turns."""
         return max(1, len(self.scenarios))
 
-    def tables(self, index: int) -> dict[str, Any]:
-        """Return the tables of a scene as plain data, before anything is drawn.
-
-        Args:
-            index: the scene.
-        """
-        if self.scenarios:
-            return self.scenarios[index % len(self.scenarios)].to_dict()
-        return {key: value for key, value in self.to_dict().items() if key in _TABLES}
-
     def kept(self, index: int, drawn: Collection[str]) -> dict[str, Any]:
         """Return what a scene keeps when points are drawn, validated already, as the values of a scenario.
 
@@ -121,21 +111,15 @@ class SceneBase(Section):
             index: the scene.
             drawn: the kinds of points that are drawn.
         """
-        whole: SceneBase | Scenario = self
-        if self.scenarios:
-            whole = self.scenarios[index % len(self.scenarios)]
+        whole = self.scenarios[index % self.size] if self.scenarios else self
         values = {key: getattr(whole, key) for key in _TABLES if key not in drawn}
         if drawn:
-            for kind in POINT_LISTS:
-                if kind in values:
-                    values[kind] = tuple(_in_metres(point) for point in values[kind])
+            values |= {kind: tuple(map(_in_metres, values[kind])) for kind in POINT_LISTS if kind in values}
         return {key: value for key, value in values.items() if value is not None}
 
 
 def _in_metres(point: GroundPoint) -> GroundPoint:
-    if point.lat_deg is None:
-        return point
-    return point.model_copy(update={"position_m": point.position_m})
+    return point if point.lat_deg is None else point.model_copy(update={"position_m": point.position_m})
 
 
 _TABLES = (

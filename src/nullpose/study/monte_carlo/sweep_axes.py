@@ -19,10 +19,10 @@ __all__ = ["MOST_POINTS", "SweepAxes"]
 MOST_POINTS = 1_000_000  # combinations of swept values
 
 _DEEPEST = 16  # parts of a path: no value of a scene is deeper
-_KEYS = ("from", "to", "points", "spacing")
 _VALUE = Quantity("a number", -1e30, 1e30, "in the unit that the path ends in")
 _POINTS = Count("a number of values", 2, 100_000, "both ends included")
 _SPACING = Choice("a spacing", ("linear", "log"))
+_KEYS: dict[str, Rule] = {"from": _VALUE, "to": _VALUE, "points": _POINTS, "spacing": _SPACING}
 
 Axis = tuple[str, tuple[float, ...]]
 
@@ -40,9 +40,7 @@ class _Axes(Rule):
         for path, given in _paths(value):
             try:
                 axes.append((path, _values(plain(given))))
-            except PydanticCustomError as error:
-                faults.append(((path,), error.message()))
-            except UsageError as error:
+            except (PydanticCustomError, UsageError) as error:
                 faults.append(((path,), str(error).replace("\n  ", "; ")))
         if faults:
             raise collected("sweep", faults)
@@ -79,9 +77,8 @@ def _values(given: object) -> tuple[float, ...]:
     for key in given:
         if key not in _KEYS:
             raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
-    missing = [key for key in _KEYS[:3] if key not in given]
+    missing = [key for key in ("from", "to", "points") if key not in given]
     if missing:
         raise rejection(f"{listed(missing)} missing; a table here has from, to, points and perhaps spacing")
-    log = _SPACING.read(given.get("spacing", "linear")) == "log"
-    start, stop = _VALUE.read(given["from"]), _VALUE.read(given["to"])
-    return spaced(start, stop, _POINTS.read(given["points"]), log=log)
+    start, stop, points, spacing = (rule.read(given.get(key, "linear")) for key, rule in _KEYS.items())
+    return spaced(start, stop, points, log=spacing == "log")
