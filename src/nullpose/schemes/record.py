@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,14 +35,6 @@ class Curve:
     marker: str
     width: float
     order: float
-
-
-def _nothing_against(scenario: Scenario) -> str | None:
-    return None
-
-
-def _no_note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
-    return ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,8 +72,8 @@ class SchemeRecord:
     sentence: Callable[[Scenario, str | None], str]
     fields: Callable[[Scenario, str | None], Mapping[str, AxisField] | None]
     in_paper: bool = False
-    note: Callable[[Scenario, tuple[str, ...], int], str] = _no_note
-    reason_against: Callable[[Scenario], str | None] = _nothing_against
+    note: Callable[[Scenario, tuple[str, ...], int], str] = field(default=lambda *_: "")
+    reason_against: Callable[[Scenario], str | None] = field(default=lambda _: None)
     any_objective: bool = False
     any_airframe: bool = False
     nulls_a_jammer: bool = False

@@ -19,10 +19,6 @@ def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]
     return {"vertical": AxisField.vertical()}
 
 
-def _reason_against(scenario: Scenario) -> str | None:
-    return "the airframe does not reach a vertical antenna" if scenario.axis_band[1] < 1.0 else None
-
-
 VERTICAL = SchemeRecord(
     name="vertical",
     label="Vertical",
@@ -31,7 +27,9 @@ VERTICAL = SchemeRecord(
     in_paper=True,
     sentence=lambda scenario, null_jammer: "with a vertical antenna",
     fields=_fields,
-    reason_against=_reason_against,
+    reason_against=lambda scenario: (
+        "the airframe does not reach a vertical antenna" if scenario.axis_band[1] < 1.0 else None
+    ),
     any_objective=True,
     any_airframe=True,
 )

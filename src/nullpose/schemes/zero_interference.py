@@ -33,12 +33,6 @@ def _note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
     return f"null on jammer {fields[chosen].removeprefix(_FIELD)}{best_of}"
 
 
-def _reason_against(scenario: Scenario) -> str | None:
-    if scenario.jammers:
-        return None
-    return "zero interference needs a jammer to point its null at; the scenario has none"
-
-
 ZERO_INTERFERENCE = SchemeRecord(
     name="zero-interference",
     label="Zero interference",
@@ -48,6 +42,10 @@ ZERO_INTERFERENCE = SchemeRecord(
     sentence=_sentence,
     fields=_fields,
     note=_note,
-    reason_against=_reason_against,
+    reason_against=lambda scenario: (
+        None
+        if scenario.jammers
+        else "zero interference needs a jammer to point its null at; the scenario has none"
+    ),
     nulls_a_jammer=True,
 )

@@ -70,19 +70,18 @@ def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
 
 
 def _meaningless(case: StudyCase, scene: Scenario) -> str:
+    """Return why a case has no meaning in a scene; empty if it has."""
     try:
         vehicle = case.on(scene)
+        if case.robust and not vehicle.is_uncertain:
+            raise UsageError(
+                "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
+                "receiver.attitude_error_deg or receiver.position_error_m to the scene"
+            )
+        if case.array is not None and vehicle.objective_record.transmits:
+            raise UsageError("an array is for a drone that receives, not for this objective")
+        if not (case.robust or case.array or case.pose):
+            (case.scheme or Scheme.OPTIMUM).require_applicable(vehicle)
     except (ScenarioError, UsageError) as error:
         return str(error)
-    if case.robust and not vehicle.is_uncertain:
-        return (
-            "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
-            "receiver.attitude_error_deg or receiver.position_error_m to the scene"
-        )
-    if case.array is not None and vehicle.objective_record.transmits:
-        return "an array is for a drone that receives, not for this objective"
-    if case.robust or case.array is not None or case.pose is not None:
-        return ""
-    scheme = case.scheme or Scheme.OPTIMUM
-    reason = scheme.not_applicable(vehicle)
-    return f"scheme {scheme.value}: {reason}; try another scheme" if reason else ""
+    return ""

@@ -138,13 +138,9 @@ def _quiet() -> Iterator[None]:
     """Keep Dask's own log lines off the terminal: what matters is said in this package's words."""
     import distributed  # noqa: F401  its import sets up its loggers
 
-    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == "distributed"]
-    loggers: list[Any] = [logging.getLogger(name) for name in names]
-    before = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL + 1)
-    try:
+    with ExitStack() as afterwards:
+        for name in [name for name in logging.root.manager.loggerDict if name.split(".")[0] == "distributed"]:
+            logger = logging.getLogger(name)
+            afterwards.callback(logger.setLevel, logger.level)
+            logger.setLevel(logging.CRITICAL + 1)
         yield
-    finally:
-        for logger, level in zip(loggers, before, strict=True):
-            logger.setLevel(level)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from nullpose.scenario.faults import Place, collected
+from nullpose.scenario.faults import collected
 from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, exactly_one
@@ -60,22 +60,6 @@ class Distribution(Section):
     choice: _Several | None = Field(
         default=None, description="One of these numbers, each as likely.", examples=[[0.1, 1.0, 10.0]]
     )
-
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault that the two numbers of a range are none."""
-        for key in ("uniform", "log_uniform"):
-            ends = getattr(self, key)
-            if ends is not None and not ends[0] < ends[1]:
-                yield (key,), f"got {list(ends)}, must be two numbers, the lower first"
-            elif ends is not None and key == "log_uniform" and ends[0] <= 0.0:
-                yield (key,), f"got a lower end of {ends[0]!r}, must be above 0, as its logarithm is taken"
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """The numbers that say how far it reaches: all that are drawn lie between them, but for a normal."""
-        if self.fixed is not None:
-            return (self.fixed,)
-        return self.uniform or self.log_uniform or self.choice or ()
 
     def draw(self, generator: np.random.Generator, count: int) -> FloatArray:
         """Return numbers drawn one after the other: the first few are the same for any count.
@@ -128,17 +112,27 @@ class Drawn(Rule):
 
     def judge(self, value: Distribution) -> Distribution:
         """Returns the distribution, or raises the fault that it draws what is not allowed."""
-        key = next(iter(value.to_dict()))
-        wrong = [each for each in value.values if not self.quantity.low <= each <= self.quantity.high]
+        ((key, given),) = value.to_dict().items()
+        message = self._normal_fault(given[1]) if key == "normal" else self._fault(key, np.atleast_1d(given))
+        if message:
+            raise collected("", [((key,), message)])
+        return value
+
+    def _fault(self, key: str, numbers: FloatArray) -> str:
+        """Return what is wrong with the numbers between which all that are drawn lie; empty if nothing is."""
+        wrong = [each for each in numbers.tolist() if not self.quantity.low <= each <= self.quantity.high]
+        if key in ("uniform", "log_uniform") and not numbers[0] < numbers[1]:
+            return f"got {numbers.tolist()}, must be two numbers, the lower first"
+        if key == "log_uniform" and numbers[0] <= 0.0:
+            return f"got a lower end of {float(numbers[0])!r}, must be above 0, as its logarithm is taken"
         if wrong:
-            message = f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
-        elif value.normal is not None and self.quantity.low >= 0.0:
-            message = (
+            return f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
+        return ""
+
+    def _normal_fault(self, deviation: float) -> str:
+        if self.quantity.low >= 0.0:
+            return (
                 f"a normal distribution falls below what is allowed, {self.quantity.allowed}; use uniform or "
                 "log_uniform, or for a power the key that ends in _dbm"
             )
-        elif value.normal is not None and value.normal[1] < 0.0:
-            message = "the standard deviation is below 0; it must be 0 or more"
-        else:
-            return value
-        raise collected("", [((key,), message)])
+        return "the standard deviation is below 0; it must be 0 or more" if deviation < 0.0 else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from types import MappingProxyType
 from typing import Any
@@ -15,7 +15,6 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.origin import POINT_LISTS
-from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, known
 
@@ -173,9 +172,8 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points], kept: Mappi
             if again is None or attempts[again] + 1 >= MOST_DRAWS:
                 if not any(attempts.values()):
                     raise
-                first = error.faults[0]
-                message = f"{first.message} (after {MOST_DRAWS} draws)"
-                raise ScenarioError([Fault(first.path, message)]) from None
+                message = f"{error.faults[0].message} (after {MOST_DRAWS} draws)"
+                raise ScenarioError([Fault(error.faults[0].path, message)]) from None
             attempts[again] += 1
             points[again] = _draw(spec.seed, index, again, drawn[again], attempts[again])
 
@@ -193,31 +191,26 @@ def _draw(seed: int, index: int, kind: str, points: Points, attempt: int) -> lis
         key = (index, _KINDS[kind], _STREAMS[stream], attempt)
         return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
 
-    plane_m = _places(points, chance("count"), chance("parents"), chance("place"))
+    plane_m = _places(points, chance)
     count = len(plane_m)
-    heights_m = points.height_m.draw(chance("height_m"), count)
-    members: list[dict[str, Any]] = [
-        {"name": name, "position_m": [float(east), float(north), float(up)]}
-        for name, (east, north), up in zip(points.names(count), plane_m, heights_m, strict=True)
+    positions_m = np.column_stack([plane_m, points.height_m.draw(chance("height_m"), count)]).tolist()
+    stated = {key: getattr(points, key, None) for key in _EMITTED}
+    columns = {key: one.draw(chance(key), count).tolist() for key, one in stated.items() if one is not None}
+    return [
+        {"name": name, "position_m": position_m, **dict(zip(columns, values, strict=True))}
+        for name, position_m, *values in zip(points.names(count), positions_m, *columns.values(), strict=True)
     ]
-    for key in _EMITTED:
-        distribution = getattr(points, key, None)
-        if isinstance(distribution, Distribution):
-            for member, value in zip(members, distribution.draw(chance(key), count), strict=True):
-                member[key] = float(value)
-    return members
 
 
-def _places(
-    points: Points, counting: np.random.Generator, parents: np.random.Generator, placing: np.random.Generator
-) -> FloatArray:
+def _places(points: Points, chance: Callable[[str], np.random.Generator]) -> FloatArray:
     """Return positions seen from above [m], (n, 2)."""
+    counting, placing = chance("count"), chance("place")
     if points.layout == "poisson":
         mean = _bounded(points, (points.density_per_m2 or 0.0) * _area_m2(points))
         return _evenly(points, placing, int(counting.poisson(mean)))
     if points.layout != "clusters":
         return _evenly(points, placing, _between(counting, points.count))
-    centres_m = _evenly(points, parents, _between(counting, points.parents))
+    centres_m = _evenly(points, chance("parents"), _between(counting, points.parents))
     sizes = [_between(counting, points.count) for _ in centres_m]
     total = int(_bounded(points, sum(sizes)))
     around_m = (points.spread_m or 0.0) * placing.standard_normal((total, 2))
@@ -233,24 +226,26 @@ def _bounded(points: Points, count: float) -> float:
 
 
 def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int:
-    low, high = ends or (0, 0)
-    return int(counting.integers(low, high, endpoint=True))
+    return int(counting.integers(*(ends or (0, 0)), endpoint=True))
 
 
 def _area_m2(points: Points) -> float:
     if points.radius_m is not None:
         return math.pi * points.radius_m**2
-    (west, east), (south, north) = points.x_m or (0.0, 0.0), points.y_m or (0.0, 0.0)
-    return (east - west) * (north - south)
+    return float(np.prod(np.diff(_ends_m(points))))
+
+
+def _ends_m(points: Points) -> FloatArray:
+    """Return the ends of a rectangle, (2, 2): west and east, south and north."""
+    return np.array([points.x_m, points.y_m], dtype=np.float64)
 
 
 def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatArray:
     """Return positions drawn evenly in a disc or a rectangle: the first few are the same for any count."""
     shares = placing.random((count, 2))
-    if points.radius_m is not None and points.centre_m is not None:
-        radii_m = points.radius_m * np.sqrt(shares[:, 0])
-        angles = 2.0 * np.pi * shares[:, 1]
+    if points.radius_m is not None:
+        radii_m, angles = points.radius_m * np.sqrt(shares[:, 0]), 2.0 * np.pi * shares[:, 1]
         around_m = radii_m[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        return np.asarray(points.centre_m + around_m)
-    (west, east), (south, north) = points.x_m or (0.0, 0.0), points.y_m or (0.0, 0.0)
-    return np.asarray([west, south] + shares * [east - west, north - south])
+        return np.asarray(np.array(points.centre_m) + around_m)
+    low_m, high_m = _ends_m(points).T
+    return np.asarray(low_m + shares * (high_m - low_m))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -57,8 +57,6 @@ def _drawn(kind: Any) -> Drawn:
     return Drawn(next(each for each in kind.__metadata__ if isinstance(each, Quantity)))
 
 
-_LAYOUTS = ("disc", "rectangle", "poisson", "clusters")
-_Layout = Annotated[Literal["disc", "rectangle", "poisson", "clusters"], Choice("a layout", _LAYOUTS)]
 _Density = Annotated[
     float, Quantity("a density per square metre", 1e-12, 1e6, "the mean number over the area")
 ]
@@ -68,6 +66,8 @@ _NEEDED = {
     "poisson": ("density_per_m2",),
     "clusters": ("parents", "count", "spread_m"),
 }
+_Layout = Annotated[str, Choice("a layout", tuple(_NEEDED))]
+_IN_A_REGION = ("poisson", "clusters")
 _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))
 _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_REGIONS[1])
 
@@ -88,7 +88,6 @@ class Points(Section):
     """
 
     letter: ClassVar[str] = ""
-    fewest: ClassVar[int] = 0
 
     layout: _Layout = Field(
         description="How they are placed: disc or rectangle (evenly in it), poisson (a Poisson process in "
@@ -139,24 +138,18 @@ class Points(Section):
         """Returns the faults between the layout and the keys that place its points."""
         if self.layout is None:
             return
-        needed = _NEEDED[self.layout]
-        in_a_region = self.layout in _NEEDED_REGION
-        may = {*needed} | ({*_REGIONS[0], *_REGIONS[1]} if in_a_region else set())
+        may = {*_NEEDED[self.layout]}
         given = [key for key in _PLACING if getattr(self, key) is not None]
-        for key in needed:
+        for key in _NEEDED[self.layout]:
             if key not in given:
-                description = type(self).model_fields[key].description or ""
-                yield (key,), f'missing; layout "{self.layout}" needs it: {description.rstrip(".")}'
+                meant = (type(self).model_fields[key].description or "").rstrip(".")
+                yield (key,), f'missing; layout "{self.layout}" needs it: {meant}'
+        if self.layout in _IN_A_REGION:
+            may |= {*_REGIONS[0], *_REGIONS[1]}
+            yield from (((), message) for message in Ways(_REGIONS).faults(given))
         for key in given:
             if key not in may:
                 yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
-        if in_a_region:
-            yield from (((), message) for message in Ways(_REGIONS).faults(given))
-
-    @property
-    def may_be_several(self) -> bool:
-        """Whether there may be more than one point."""
-        return self.layout in ("poisson", "clusters") or (self.count or (0, 0))[1] > 1
 
     def names(self, count: int) -> list[str]:
         """Return the points' names.
@@ -164,12 +157,10 @@ class Points(Section):
         Args:
             count: how many points there are.
         """
-        if self.name is not None and not self.may_be_several:
+        is_one = self.layout not in _IN_A_REGION and (self.count or (0, 0))[1] <= 1
+        if self.name is not None and is_one:
             return [self.name] * count
         return [f"{self.name or self.letter}{number}" for number in range(1, count + 1)]
-
-
-_NEEDED_REGION = ("poisson", "clusters")
 
 
 class Nodes(Points):
@@ -183,7 +174,6 @@ class Nodes(Points):
     """
 
     letter: ClassVar[str] = "S"
-    fewest: ClassVar[int] = 1
     ways: ClassVar[tuple[Ways, ...]] = (
         at_most_one("power_w", "power_dbm"),
         at_most_one("weight", "min_sinr_db"),
@@ -240,7 +230,6 @@ class Eavesdroppers(Points):
     """
 
     letter: ClassVar[str] = "E"
-    fewest: ClassVar[int] = 1
 
     uncertainty_m: Annotated[Distribution, _drawn(ErrorMetres)] | None = Field(
         default=None,
