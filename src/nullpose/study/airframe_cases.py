@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 from nullpose.scenario import Airframe, Array, Scenario
 
@@ -51,24 +52,24 @@ class AirframeCase:
         return scenario.model_copy(update={"airframe": self.airframe, "array": self.array})
 
 
-def _case(name: str, label: str, phrase: str, tilt_max_deg: float, mount_deg: float) -> AirframeCase:
-    airframe = Airframe(tilt_max_deg=tilt_max_deg, mount_deg=mount_deg)
-    return AirframeCase(name=name, label=label, phrase=phrase, airframe=airframe)
-
-
 # The vehicles that every comparison tries, by the tilt that they take. Yaw is free for all of them.
-AIRFRAME_CASES: tuple[AirframeCase, ...] = (
-    _case("level-vertical", "level, vertical", "a level vehicle with a vertical dipole", 0.0, 0.0),
-    _case("level-horizontal", "level, horizontal", "a level vehicle with a horizontal dipole", 0.0, 90.0),
-    _case("tilt-10", "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole", 10.0, 90.0),
-    _case("tilt-30", "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole", 30.0, 90.0),
-    _case(OMNIDIRECTIONAL, "omnidirectional", "an omnidirectional vehicle", 180.0, 0.0),
+AIRFRAME_CASES: tuple[AirframeCase, ...] = tuple(
+    AirframeCase(
+        name=name, label=label, phrase=phrase, airframe=Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
+    )
+    for name, label, phrase, tilt_deg, mount_deg in (
+        ("level-vertical", "level, vertical", "a level vehicle with a vertical dipole", 0.0, 0.0),
+        ("level-horizontal", "level, horizontal", "a level vehicle with a horizontal dipole", 0.0, 90.0),
+        ("tilt-10", "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole", 10.0, 90.0),
+        ("tilt-30", "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole", 30.0, 90.0),
+        (OMNIDIRECTIONAL, "omnidirectional", "an omnidirectional vehicle", 180.0, 0.0),
+    )
 )
 
 ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries, each digital and analogue
 
 _LEVEL = AIRFRAME_CASES[0].airframe
-_ARRAY = Array(elements=1, layout="linear", spacing_wavelengths=0.5)
+_ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
 _COMBINING = {"digital": "with digital combining", "analogue": "with one analogue beam"}
 
 
@@ -81,18 +82,13 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     Args:
         scenario: with or without an airframe or an array.
     """
-    vehicles, own = AIRFRAME_CASES, scenario.airframe
+    vehicles, own, array = AIRFRAME_CASES, scenario.airframe, scenario.array or _ARRAY
     if own is not None and all(own.axis_band != case.airframe.axis_band for case in vehicles):
         tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
         vehicles = tuple(tilting)
-    if scenario.objective_record.transmits:
-        return vehicles
-    array = _ARRAY if scenario.array is None else scenario.array
-    sizes = set(ARRAY_SIZES) | ({array.elements} if scenario.array is not None else set())
-    return (
-        *vehicles,
-        *(_array_case(array, size, combining) for combining in _COMBINING for size in sorted(sizes)),
-    )
+    sizes = sorted({*ARRAY_SIZES, array.elements})
+    arrays = () if scenario.objective_record.transmits else product(_COMBINING, sizes)
+    return (*vehicles, *(_array_case(array, size, combining) for combining, size in arrays))
 
 
 def mounted_phrase(airframe: Airframe) -> str:
@@ -101,7 +97,7 @@ def mounted_phrase(airframe: Airframe) -> str:
     Args:
         airframe: any.
     """
-    tilt, mount = _degrees(airframe)
+    tilt, mount = _degrees(airframe.tilt_max_rad), _degrees(airframe.mount_rad)
     return f"a {tilt} degree tilt with the dipole mounted at {mount} degrees"
 
 
@@ -115,15 +111,12 @@ def array_phrase(elements: int, combining: str) -> str:
     return f"a level vehicle with an array of {elements} {_COMBINING[combining]}"
 
 
-def _degrees(airframe: Airframe) -> tuple[str, str]:
-    """Return the largest tilt and the angle of the mount."""
-    tilt, mount = (math.degrees(angle) for angle in (airframe.tilt_max_rad, airframe.mount_rad))
-    return f"{round(tilt, 6):g}", f"{round(mount, 6):g}"
+def _degrees(angle_rad: float) -> str:
+    return f"{round(math.degrees(angle_rad), 6):g}"
 
 
 def _stated(own: Airframe) -> AirframeCase:
-    tilt, mount = _degrees(own)
-    label = f"file: tilt {tilt}, mount {mount}"
+    label = f"file: tilt {_degrees(own.tilt_max_rad)}, mount {_degrees(own.mount_rad)}"
     phrase = f"the file's vehicle ({mounted_phrase(own)})"
     return AirframeCase(name=STATED, label=label, phrase=phrase, airframe=own)
 

@@ -80,8 +80,9 @@ def plan_sweep(
     """
     varied = [setting.strip() for setting in settings if "=" not in setting]
     if len(varied) != 1:
-        given = ", ".join(settings)
-        raise UsageError(f"--set: exactly one path to vary is needed, without a value; given {given}")
+        raise UsageError(
+            f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
+        )
     SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from types import MappingProxyType
 from typing import Unpack
@@ -75,13 +76,13 @@ def scenarios_along(
         ScenarioError: the path does not exist, or values make no valid scenario; every fault once.
     """
     varied: list[tuple[float, Scenario]] = []
-    faults: dict[str, list[tuple[float, Fault]]] = {}
+    faults: dict[str, list[tuple[float, Fault]]] = defaultdict(list)
     for value in map(float, values):
         try:
             varied.append((value, apply_overrides(scenario, [Override(path, value)])))
         except ScenarioError as error:
             for fault in error.faults:
-                faults.setdefault(fault.path, []).append((value, fault))
+                faults[fault.path].append((value, fault))
     if faults:
         raise ScenarioError([_summary(found) for found in faults.values()], source=f"sweep of {path}")
     return tuple(varied)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
@@ -147,15 +147,17 @@ class SweepTable:
         Raises:
             OutputError: the file cannot be written.
         """
-        taken = _NUMBERS | (_own_numbers(self.rows[0].objective.quantity) if self.rows else {})
-        nodes = [link.node for link in self.rows[0].links] if self.rows else []
-        links = [f"sinr_{node}_db" for node in nodes]
+        first = self.rows[:1]
+        numbers = _NUMBERS | {
+            name: take for row in first for name, take in _own_numbers(row.objective.quantity)
+        }
+        links = [f"sinr_{link.node}_db" for row in first for link in row.links]
         with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([self.path, "scheme", "status", "rigour", *taken, *links, "note", "reason"])
+            writer.writerow([self.path, "scheme", "status", "rigour", *numbers, *links, "note", "reason"])
             for row in self.rows:
-                numbers = [take(row) for take in taken.values()] + [link.sinr_db for link in row.links]
-                texts = ["" if number is None else repr(float(number)) for number in numbers]
+                found = [take(row) for take in numbers.values()] + [link.sinr_db for link in row.links]
+                texts = ["" if number is None else repr(float(number)) for number in found]
                 words = (repr(float(row.value)), row.scheme, row.status, row.objective.rigour.value)
                 writer.writerow([*words, *texts, row.note, row.reason])
         return path
@@ -183,11 +185,10 @@ _NUMBERS: dict[str, _Number] = {
 }
 
 
-def _own_numbers(quantity: Quantity) -> dict[str, _Number]:
-    """Return the columns of a quantity other than the SINR."""
-    if quantity == _SINR:
-        return {}
+def _own_numbers(quantity: Quantity) -> Iterator[tuple[str, _Number]]:
+    """Yield the columns of a quantity other than the SINR."""
     unit = "bps_hz" if quantity.is_rate else "db"
-    bound: dict[str, _Number] = {f"upper_bound_{unit}": lambda row: row.upper_bound}
-    value: dict[str, _Number] = {f"{quantity.name}_{unit}": lambda row: quantity.in_unit(row.objective.value)}
-    return value | (bound if quantity.is_rate else {})
+    if quantity != _SINR:
+        yield f"{quantity.name}_{unit}", lambda row: quantity.in_unit(row.objective.value)
+    if quantity.is_rate:
+        yield f"upper_bound_{unit}", lambda row: row.objective.upper_bound

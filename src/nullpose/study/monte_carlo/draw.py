@@ -100,7 +100,6 @@ class Draws:
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
         self._swept: dict[int, _Swept] = {}
-        self._kept: dict[int, dict[str, Any]] = {}
         self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
 
     def base(self, index: int, values: Mapping[str, float] = MappingProxyType({})) -> Scenario:
@@ -126,10 +125,7 @@ class Draws:
     def _set(self, index: int, swept: _Swept) -> Scenario:
         drawn, settings = swept
         if self._last is None or self._last[:2] != (index, drawn):
-            number = index % self._spec.scene.size
-            if number not in self._kept:
-                self._kept[number] = self._spec.scene.kept(number, drawn)
-            self._last = index, drawn, _scene(self._spec, index, drawn, self._kept[number])
+            self._last = index, drawn, _scene(self._spec, index, drawn)
         scene = self._last[2]
         overrides = [each for path, value in settings for each in _settings(scene, path, value)]
         return apply_overrides(scene, overrides) if overrides else scene
@@ -160,9 +156,9 @@ def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
     return [Override(f"{kind}[{place}].{rest}", value) for place in range(len(getattr(scene, kind)))]
 
 
-def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points], kept: Mapping[str, Any]) -> Scenario:
+def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario:
     """Return a scene, drawing those points again that make it invalid."""
-    attempts = dict.fromkeys(drawn, 0)
+    kept, attempts = spec.scene.kept(index, drawn), dict.fromkeys(drawn, 0)
     points = {kind: _draw(spec.seed, index, kind, drawn[kind], 0) for kind in drawn}
     while True:
         try:

@@ -151,14 +151,18 @@ class Points(Section):
             if key not in may:
                 yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
 
+    @property
+    def may_be_several(self) -> bool:
+        """Whether there may be more than one point."""
+        return self.layout in _IN_A_REGION or (self.count or (0, 0))[1] > 1
+
     def names(self, count: int) -> list[str]:
         """Return the points' names.
 
         Args:
             count: how many points there are.
         """
-        is_one = self.layout not in _IN_A_REGION and (self.count or (0, 0))[1] <= 1
-        if self.name is not None and is_one:
+        if self.name is not None and not self.may_be_several:
             return [self.name] * count
         return [f"{self.name or self.letter}{number}" for number in range(1, count + 1)]
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable
 from typing import Any
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.physics import evaluate
 from nullpose.scenario import Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve import NODE_LIMIT, SolveKeywords, Status, solve, solve_array
@@ -19,6 +20,8 @@ from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = ["GIVEN_POSE", "found", "options_of", "reason_of", "solved_row"]
+
+_PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
 
 GIVEN_POSE = "a pose that was given: nothing is searched or proved"  # a reason
 
@@ -72,27 +75,24 @@ def options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
     }
 
 
-def found(status: Status, pose: Pose, value: float, bound: float | None, gap: float | None) -> dict[str, Any]:
+def found(
+    status: Status, place: Iterable[float], value: float, bound: float | None, gap: float | None
+) -> dict[str, Any]:
     """Return the columns of a pose with what is proved of it; a bound or gap that is not finite is none.
 
     Args:
         status: how the solve ended.
-        pose: where the drone is and how it is turned.
+        place: position and attitude, six numbers.
         value: a power ratio, or bits/s/Hz.
         bound: no pose exceeds it; None if nothing is proved.
         gap: relative, between the two.
     """
-    x_m, y_m, z_m = (float(each) for each in pose.position_m)
-    angles = {name: float(getattr(pose, name)) for name in ("roll_rad", "pitch_rad", "yaw_rad")}
+    proved = {"bound": bound, "gap": gap}
     return {
-        "status": str(status.value),
+        "status": status.value,
         "value": float(value),
-        "bound": bound if bound is not None and math.isfinite(bound) else None,
-        "gap": gap if gap is not None and math.isfinite(gap) else None,
-        "x_m": x_m,
-        "y_m": y_m,
-        "z_m": z_m,
-        **angles,
+        **{name: each if each is not None and math.isfinite(each) else None for name, each in proved.items()},
+        **dict(zip(_PLACE, map(float, place), strict=True)),
     }
 
 
@@ -100,7 +100,13 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         weakest = min(evaluate(scene, pose), key=quantity.at)
-        columns = found(Status.BEST_FOUND, pose, quantity.at(weakest), None, None)
+        columns = found(
+            Status.BEST_FOUND,
+            (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
+            quantity.at(weakest),
+            None,
+            None,
+        )
         return columns | {"reason": GIVEN_POSE, "binding_node": weakest.node}
     if case.robust:
         result = solve_robust(scene, **options)
@@ -108,9 +114,13 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
         result = solve_array(scene, case.array.combining, **options)
     else:
         result = solve(scene, case.scheme or Scheme.OPTIMUM, **options)
-    objective = result.objective
+    objective, pose = result.objective, result.pose
     columns = found(
-        result.status, result.pose, objective.value, objective.upper_bound, objective.relative_gap
+        result.status,
+        (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
+        objective.value,
+        objective.upper_bound,
+        objective.relative_gap,
     )
     node = result.details.robust.binding_node if case.robust else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}

@@ -7,7 +7,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solve import ManySolutions, solve_many
 from nullpose.study.monte_carlo.case import StudyCase
@@ -73,8 +72,7 @@ def _known(many: ManySolutions, at: tuple[int, int], scene: Scenario) -> dict[st
     status, reason = many.status[at], str(many.reason[at])
     if status is None:
         return {"status": FAILED, "reason": reason}
-    angles = (float(each[at]) for each in (many.roll_rad, many.pitch_rad, many.yaw_rad))
-    pose = Pose(many.position_m[at], *angles)
-    columns = found(status, pose, many.value[at], float(many.upper_bound[at]), float(many.relative_gap[at]))
+    place = (*many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at])
+    columns = found(status, place, many.value[at], float(many.upper_bound[at]), float(many.relative_gap[at]))
     node = scene.node_names[int(many.binding_node[at])]
     return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}

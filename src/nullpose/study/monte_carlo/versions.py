@@ -26,5 +26,7 @@ def fingerprint() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions that a manifest records."""
-    found = {name: version(name) for name in _LIBRARIES}
-    return found | {"python": platform.python_version(), "code": fingerprint()}
+    return {name: version(name) for name in _LIBRARIES} | {
+        "python": platform.python_version(),
+        "code": fingerprint(),
+    }
