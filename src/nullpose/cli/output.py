@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 __all__ = ["compiling_announced", "prepare_outputs", "show", "show_json", "tell", "write_figure"]
-
-_BLAS = "scipy.linalg.cython_blas"
 
 
 def tell(
@@ -80,23 +77,12 @@ def show_json(value: object) -> None:
 @contextmanager
 def compiling_announced() -> Iterator[None]:
     """Say so on standard error if the kernels have to be compiled in the block."""
-    _import_compiler()
     from nullpose.solve.compiling import announce_compiling
 
     with announce_compiling(
         lambda: typer.echo("Compiling kernels for this machine (once, about half a minute) ...", err=True)
     ):
         yield
-
-
-def _import_compiler() -> None:
-    """Import numba without the BLAS that it looks for and no kernel uses: that takes a tenth of a second."""
-    sys.modules.setdefault(_BLAS, None)  # type: ignore[arg-type]  # None: not to be imported
-    try:
-        import numba.np.arraymath  # noqa: F401 - imported for what it imports
-    finally:
-        if sys.modules[_BLAS] is None:
-            del sys.modules[_BLAS]
 
 
 def prepare_outputs(file: Path, *, figure: Path | None, **others: Path | None) -> None:

@@ -12,7 +12,7 @@ from numba import config
 
 from nullpose.family import records
 from nullpose.objectives import ratios
-from nullpose.solve.kernels.linked import LinkedDispatcher
+from nullpose.solve.kernels.linked import LinkedDispatcher, Part
 
 __all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
 
@@ -22,7 +22,6 @@ _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wra
 _LEAN: dict[str, Any] = _OPTIONS | {"_nrt": False}
 # said, since a kernel inherits what is not said from the first that calls it
 _HEAP: dict[str, Any] = _OPTIONS | {"_nrt": True}
-_INNER = {"no_cpython_wrapper": True}
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -37,7 +36,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 def inner_kernel(function: Callable[..., Any]) -> Any:
     """Return a kernel that only kernels can call: without a Python wrapper a tenth less is compiled."""
-    return _compiled(function, _LEAN | _INNER)
+    return _compiled(function, _LEAN, Part)
 
 
 def heap_kernel(function: Callable[..., Any]) -> Any:
@@ -47,17 +46,19 @@ def heap_kernel(function: Callable[..., Any]) -> Any:
 
 def inner_heap_kernel(function: Callable[..., Any]) -> Any:
     """Return a kernel that makes such arrays and that only kernels can call."""
-    return _compiled(function, _HEAP | _INNER)
+    return _compiled(function, _HEAP, Part)
 
 
-def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+def _compiled(function: Callable[..., Any], options: dict[str, Any], kind: Any = LinkedDispatcher) -> Any:
     if getattr(config, "DISABLE_JIT", False):
         return function
-    dispatcher = LinkedDispatcher(function, {"nopython": True, "boundscheck": None, **options})
+    kernel = kind(function, {"nopython": True, "boundscheck": None, **options})
+    if kind is Part:
+        return kernel
     with contextlib.suppress(RuntimeError):  # numba's word for "no locator available"
-        dispatcher.enable_caching()
-        _drop_outdated(dispatcher.stats.cache_path)
-    return dispatcher
+        kernel.enable_caching()
+        _drop_outdated(kernel.stats.cache_path)
+    return kernel
 
 
 @cache

@@ -8,13 +8,17 @@ whole.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
+from llvmlite import binding
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.registry import CPUDispatcher
+from numba.core.runtime.nrt import rtsys
 
-__all__ = ["LinkedDispatcher", "entry_of"]
+__all__ = ["LinkedDispatcher", "Part", "entry_of"]
 
 
 class _Whole(JITCodeLibrary):
@@ -60,18 +64,65 @@ class _PartCompiler(_Compiler):
     library = _Part
 
 
+class Part:
+    """A kernel as other kernels link it in; nothing is made of it before the first of them is compiled."""
+
+    def __init__(self, function: Any, options: dict[str, Any]) -> None:
+        self._function, self._options = function, options
+
+    @cached_property
+    def _dispatcher(self) -> Any:
+        options = self._options | {"no_cpython_wrapper": True}
+        return CPUDispatcher(self._function, targetoptions=options, pipeline_class=_PartCompiler)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self._dispatcher._numba_type_
+
+
+class _Stored(CompileResultCacheImpl):
+    """What the cache holds of a kernel."""
+
+    def reduce(self, cres: Any) -> Any:
+        """Return machine code alone.
+
+        Nothing links a whole: of its bitcode only the two names that it is entered by are read.
+        Environments hold constants for Python: to load one without any imports its module for nothing.
+        """
+        (name, kind, (code, _)), described, *rest, environments = super().reduce(cres)
+        entries = described.llvm_func_name, described.llvm_cpython_wrapper_name
+        names = binding.parse_assembly("\n".join(f'@"{each}" = global i8 0' for each in entries))
+        used = [each for each in environments if each.consts]
+        return (name, kind, (code, names.as_bitcode())), described, *rest, used
+
+
+class _Cache(FunctionCache):
+    """Kernels on disk."""
+
+    _impl_class = _Stored
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return what was compiled before, without loading the compiler, as numba would; None for nothing."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
+
+
 class LinkedDispatcher(CPUDispatcher):
     """A kernel: a whole where Python calls it, a part where a kernel does."""
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
         self.entries: list[Any] = []
-        part = options | {"no_cpython_wrapper": True}
-        self._part = CPUDispatcher(function, targetoptions=part, pipeline_class=_PartCompiler)
+        self._part = Part(function, options)
 
     @property
     def _numba_type_(self) -> Any:
         return self._part._numba_type_
+
+    def enable_caching(self) -> None:
+        """Keep machine code on disk."""
+        self._cache = _Cache(self.py_func)
 
     def add_overload(self, cres: Any) -> None:
         """Keep the machine code for one choice of types."""

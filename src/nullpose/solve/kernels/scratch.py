@@ -14,7 +14,6 @@ import numpy as np
 from numba import config, types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numba.np.arrayobj import make_array, populate_array
 
 __all__ = ["scratch", "scratch_int", "zeroed"]
 
@@ -24,6 +23,8 @@ _MOST = 4096  # of them in one array: a thread's stack is small
 
 def _allocate(context: Any, builder: Any, kind: Any, shape: list[int], fill: bool) -> Any:
     """Return the value of an array in the calling kernel's own frame."""
+    from numba.np.arrayobj import make_array, populate_array  # a part of the compiler
+
     count = math.prod(shape)
     # in the entry block: one place however often the line is passed
     data = cgutils.alloca_once(builder, context.get_value_type(kind.dtype), size=count)
