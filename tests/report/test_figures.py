@@ -80,7 +80,7 @@ def test_pattern_is_sine_squared(axis: tuple[float, float, float]) -> None:
     """In each direction the surface is as far from the drone as the gain there, and zero along the axis."""
     pose = Pose.from_axis(np.array([1.0, -2.0, 8.0]), axis)
     points = (
-        pattern_surface_m(pose, 7.5, np.linspace(0.0, 2.0 * np.pi, 13)).reshape(3, -1).T - pose.position_m
+        pattern_surface_m(SHORT_DIPOLE, pose, 7.5, np.linspace(0.0, 2.0 * np.pi, 13)).reshape(3, -1).T - pose.position_m
     )
     radii = np.linalg.norm(points, axis=1)
     far = radii > 1e-6

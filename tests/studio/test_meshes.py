@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
+from nullpose.antenna import SHORT_DIPOLE
 from nullpose.physics import Pose, antenna_gain
 from nullpose.scenario import NoFlyZone
 from nullpose.studio import meshes
@@ -30,7 +31,7 @@ def _gains(mesh: Mesh) -> np.ndarray:
 
 def test_the_doughnut_is_the_gain() -> None:
     """Along each direction the doughnut's distance is the antenna's gain there, zero on its axis."""
-    mesh = meshes.doughnut_mesh(2.0, np.linspace(0.0, math.pi, 25), 32)
+    mesh = meshes.doughnut_mesh(SHORT_DIPOLE, 2.0, np.linspace(0.0, math.pi, 25), 32)
     distance = np.linalg.norm(mesh.vertices, axis=1)
     assert distance[distance > 1e-6] == pytest.approx(2.0 * _gains(mesh), abs=1e-9)
     assert np.min(distance) < 1e-12
@@ -39,8 +40,8 @@ def test_the_doughnut_is_the_gain() -> None:
 
 def test_bands_are_the_whole_pattern() -> None:
     """The bands of like gain together have the pattern's area, and each band's gain is that of its points."""
-    bands = meshes.doughnut_bands(1.0, 10)
-    whole = meshes.doughnut_mesh(1.0, np.linspace(0.0, math.pi, 200), 32)
+    bands = meshes.doughnut_bands(SHORT_DIPOLE, 1.0, 10)
+    whole = meshes.doughnut_mesh(SHORT_DIPOLE, 1.0, np.linspace(0.0, math.pi, 200), 32)
     assert sum(_area(band) for band, _ in bands) == pytest.approx(_area(whole), rel=0.01)
     for band, gain in bands:
         assert np.abs(_gains(band) - gain).max() <= 0.05 + 1e-9

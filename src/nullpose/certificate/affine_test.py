@@ -26,7 +26,7 @@ from nullpose.certificate.forms import (
     outer,
     squares,
 )
-from nullpose.certificate.interval import Interval, dot, swapped
+from nullpose.certificate.interval import Interval, dot, stack, swapped
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
@@ -39,18 +39,25 @@ _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 Jet: TypeAlias = tuple[Interval, Interval, Interval, Interval]
 
 
-def link_jet(field: AxisField, boxes: Boxes, points: FloatArray) -> Jet:
+def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
     """Return a link's value and gradient at the centres, its Hessian and its value over the boxes.
 
     Args:
         field: the axis field.
         boxes: b of them.
         points: (b, 3) the ground point of each.
+        leak: the antenna's gain along its axis.
     """
     matrix, half = Interval(field.matrix[:, :, None]), Interval(boxes.half.T)
     u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
     cross, slopes = _cross(u, r), _cross(matrix, r[:, None]) - _cross(u[:, None], _UNIT)
     bend = -(_cross(matrix[:, ROW], _UNIT[:, COLUMN]) + _cross(matrix[:, COLUMN], _UNIT[:, ROW]))
+    if leak > 0.0:  # a fourth entry, sqrt(leak) u.r: the sum of squares is |u x r|^2 + leak (u.r)^2
+        root = Interval(leak).sqrt()
+        along = dot(u, r), dot(matrix, r[:, None]) - u, -(matrix[ROW, COLUMN] + matrix[COLUMN, ROW])
+        cross, slopes, bend = (
+            stack([*each, root * last]) for each, last in zip((cross, slopes, bend), along, strict=True)
+        )
     value, gradient, _ = _quotient(matrix, u, r, cross, slopes, bend)
     # u x r is quadratic in the position: over the boxes it is what its expansion at the centre makes of it
     swing = dot(Interval(np.moveaxis(bend.magnitude()[:, PLACE], 2, 0)), half[:, None, None]).high
@@ -59,7 +66,7 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray) -> Jet:
     cross, slopes = cross + Interval(-reach, reach), slopes + Interval(-swing, swing)
     u, r = _axis_and_way(field, points, boxes.hull)
     over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
-    # sin^2 <= 1, and never below zero
+    # the gain is at most 1, and never below zero
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
     return value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most)
 
@@ -77,15 +84,15 @@ def _axis_and_way(field: AxisField, points: FloatArray, p: Interval) -> tuple[In
 def _quotient(
     matrix: Interval, u: Interval, r: Interval, cross: Interval, slopes: Interval, bend: Interval
 ) -> tuple[Interval, Interval, Interval]:
-    """Return ``n / (b s^2)`` with n, b and s the squares of u x r, u and r, its gradient and its Hessian.
+    """Return ``n / (b s^2)`` with n, b and s the squares of x, u and r, its gradient and its Hessian.
 
     Args:
         matrix: (3, 3, 1) M, the derivative of u; that of r is -I.
         u: (3, b).
         r: (3, b).
-        cross: (3, b) u x r.
-        slopes: (3, 3, b) its derivatives, along the second axis.
-        bend: (3, 6, 1) its second derivatives.
+        cross: (3, b) x = u x r, or (4, b) with sqrt(leak) u.r besides.
+        slopes: (3, 3, b) its derivatives, along the second axis; (4, 3, b) likewise.
+        bend: (3, 6, 1) its second derivatives; (4, 6, 1) likewise.
     """
     n, b, s = (vector.squared().total() for vector in (cross, u, r))
     weight = b * s.squared()
@@ -110,7 +117,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     """
     identity, above, below = weighted_sum(family, leaves)
     terms = above + [(point, -scale) for point, scale in below]
-    jets = [(scale, link_jet(field, boxes, family.points_m[point])) for point, scale in terms]
+    jets = [(scale, link_jet(field, boxes, family.points_m[point], family.leak)) for point, scale in terms]
     zero = Interval(np.zeros((6, len(boxes))))
     starts = (identity, zero[:3], zero, identity)
     value, slopes, hessian, ranged = (

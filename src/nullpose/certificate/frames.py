@@ -18,7 +18,7 @@ from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.linear import Linear
 from nullpose.family import Family
 
-__all__ = ["SWING", "Frames", "constant", "expansion", "frames_of"]
+__all__ = ["SWING", "Frames", "anchor_shape", "constant", "expansion", "frames_of"]
 
 # Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up.
 SWING = (1.0 + np.sqrt(2.0)) * (1.0 + 1e-12)
@@ -88,8 +88,8 @@ def expansion(
 ) -> tuple[Linear, Interval, Interval]:
     """Return the form of one point for each box, and bounds on its second derivative, (b,) each.
 
-    The bounds, up and (positive) down, multiply the identity; for the anchor of a turning frame, the
-    projector across its direction, which is what its form is made of.
+    The bounds, up and (positive) down, multiply the identity; for the anchor of a turning frame, what its
+    form is made of: :func:`anchor_shape`.
     """
     anchored = frames.turning & (point == frames.anchor)
     points_m = family.points_m[point]
@@ -97,16 +97,18 @@ def expansion(
     s = a.squared().total()
     here = frames.turned(a)
     twice = squares(here)
-    # the anchor's is (I - d d^T) / rho^2, without the rounding of a - rho d
-    form = where(anchored, frames.across / s, (frames.gram * s - twice) / s.squared())
+    bent_share = 1.0 - Interval(family.leak)  # of r r^T in the form
+    # the anchor's is (I - (1 - leak) d d^T) / rho^2, without the rounding of a - rho d
+    shape = anchor_shape(family, frames)
+    form = where(anchored, shape / s, (frames.gram * s - twice * bent_share) / s.squared())
     # b' = -e + (e (d.a) - d (a.e)) / rho for the three axes e, and rho d for the anchor itself
     swing = (dot(frames.direction, a) * _UNIT - frames.direction[:, None] * a) / frames.rho
     step = where(frames.turning, swing, 0.0) - _UNIT
     rate = dot(a[:, None], step) * 2.0
-    bent = outer(frames.turned(step), here[:, None]) + rate * frames.gram[:, None]
-    slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
+    bent = outer(frames.turned(step), here[:, None]) * bent_share + rate * frames.gram[:, None]
+    slopes = rate * twice[:, None] * 2.0 * bent_share / (s.squared() * s) - bent / s.squared()
     pull = frames.direction * 2.0 / (s * frames.rho)
-    slopes = where(anchored, frames.across[:, None] * pull, slopes)
+    slopes = where(anchored, shape[:, None] * pull, slopes)
     near, turn = boxes.nearest(points_m), frames.turning & ~anchored
     fourth = 1.0 / near.squared().squared()
     mixed = where(turn, 1.0 / (near.squared() * near * frames.rho_least), 0.0)
@@ -114,6 +116,15 @@ def expansion(
     up = fourth * 6.0 + mixed * 16.0 + both * (6.0 + _AREA)
     down = fourth * np.where(anchored, 2.0, 4.0) + mixed * 12.0 + both * (4.0 + _AREA)
     return Linear(form, slopes), up.most(), down.most()
+
+
+def anchor_shape(family: Family, frames: Frames) -> Interval:
+    """Return ``I - (1 - leak) d d^T`` in the bases, (6, b): an anchor's form times its distance squared.
+
+    Without a leak its third row is exactly zero.
+    """
+    leak = Interval(family.leak)
+    return frames.across * (1.0 - leak) + frames.gram * leak
 
 
 def constant(frames: Frames, q: Interval) -> Linear:

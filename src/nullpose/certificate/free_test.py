@@ -11,7 +11,7 @@ from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.forms import COUNTED, IDENTITY, matrices, quadratic
-from nullpose.certificate.frames import SWING, Frames, constant, expansion, frames_of
+from nullpose.certificate.frames import SWING, Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.linear import Linear
 from nullpose.certificate.weighted_sum import weighted_sum
@@ -84,7 +84,7 @@ def ratio_forms(
         if vectors is not None:
             share, rest = sharper(form.value, vectors, boxes, frames, point, family.points_m[point], rest)
         used = where(scale.high > 0.0, (scale * rest).most(), 0.0)
-        around = where(frames.turning & (point == frames.anchor), frames.across, frames.gram)
+        around = where(frames.turning & (point == frames.anchor), anchor_shape(family, frames), frames.gram)
         total = total + form.times(-(scale * (1.0 - Interval(share)))).plus(around * used)
     return total
 

@@ -100,10 +100,10 @@ def sine2(x: Exact, y: Exact) -> Fraction:
     return Fraction(cross @ cross, (x @ x) * (y @ y))
 
 
-def link(point: Exact, position: Exact, axis: Exact) -> Fraction:
-    """Return ``sin^2(gamma) / |r|^2`` of a link (paper eqs. 1.2 to 1.4), exactly."""
+def link(point: Exact, position: Exact, axis: Exact, leak: Fraction) -> Fraction:
+    """Return a link's gain over ``|r|^2``, exactly; without a leak, paper eqs. 1.2 to 1.4."""
     r = point - position
-    return sine2(r, axis) / Fraction(r @ r)
+    return (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
 
 
 def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
@@ -114,7 +114,8 @@ def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
         position: where, metres.
         axis: the antenna's axis, of any length.
     """
-    links = np.array([link(point, position, axis) for point in exact(family.points_m)])
+    leak = Fraction(family.leak)
+    links = np.array([link(point, position, axis, leak) for point in exact(family.points_m)])
     entries = exact(family.denominator_weight) * links[family.denominator_point]
     starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
     denominators = np.array(

@@ -27,7 +27,7 @@ def subject(certificate: Certificate) -> dict[str, Any]:
         "null_jammer": certificate.null_jammer,
         "value": certificate.value,
         "upper_bound": certificate.upper_bound,
-        "antenna": "short dipole",
+        "antenna": certificate.scenario.antenna_record.label,
         "scenario": scenario,
     }
 

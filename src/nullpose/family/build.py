@@ -30,6 +30,7 @@ def build_family(scenario: Scenario) -> Family:
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
     ratios = scenario.objective_record.ratios(scenario)
+    ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
     _refuse_the_loudest(scenario, family)
     return family

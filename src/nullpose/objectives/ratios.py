@@ -16,8 +16,8 @@ IntArray: TypeAlias = NDArray[np.int64]
 class Ratios(NamedTuple):
     """Ratios over the link forms of points.
 
-    With ``T(r) = (|r|^2 I - r r^T) / |r|^4`` and ``r_j = points[j] - p``, ratio k is
-    ``N_k = n_k I + w_k T(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e T(r_j(e))``, the sum being over the
+    With ``M(r) = (|r|^2 I - (1 - l) r r^T) / |r|^4`` and ``r_j = points[j] - p``, ratio k is
+    ``N_k = n_k I + w_k M(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e M(r_j(e))``, the sum being over the
     entries e from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a denominator.
     Everything is dimensionless but the positions.
 
@@ -32,6 +32,7 @@ class Ratios(NamedTuple):
         denominator_point: (e,) index of each entry's point.
         denominator_weight: (e,) ``b_e``, m^2.
         turn: (m, 3, 3) rotations: point j sees the axis ``turn[j] u``; or (0, 3, 3), where all see u itself.
+        leak: l, the antenna's gain along its axis; it is 1 across it.
     """
 
     points_m: FloatArray
@@ -44,3 +45,4 @@ class Ratios(NamedTuple):
     denominator_point: IntArray
     denominator_weight: FloatArray
     turn: FloatArray = np.zeros((0, 3, 3))
+    leak: float = 0.0

@@ -74,7 +74,9 @@ def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     scenario, row = with_jamming(study.scenario, level), study.at(scheme, level)
     (jammer_m,), position_m, receiver = scenario.jammer_positions_m, row.pose.position_m, scenario.receiver
     place = (position_m, row.pose.antenna_axis, scenario.jammer_positions_m)
-    received_w = received_power_w(*place, scenario.jammer_powers_w, receiver.reference_gain)
+    received_w = received_power_w(
+        *place, scenario.jammer_powers_w, receiver.reference_gain, scenario.antenna_record
+    )
     return {
         RATIO: level,
         _ANGLE: math.degrees(null_angle_rad(row.pose, jammer_m)),

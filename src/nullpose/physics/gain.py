@@ -1,10 +1,11 @@
-"""The small dipole's power gain towards a point (paper eqs. 1.2 to 1.4)."""
+"""The antenna's power gain towards a point (paper eqs. 1.2 to 1.4)."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
 from nullpose.physics.types import FloatArray
 
 __all__ = ["antenna_gain", "elevation_cosine"]
@@ -33,12 +34,14 @@ def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike
     return np.asarray(np.sum(_unit(to_points) * np.asarray(axis, dtype=float)[..., None, :], axis=-1))
 
 
-def antenna_gain(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) -> FloatArray:
-    """Return the dipole's power gain towards each point, 1 broadside and 0 along its axis.
+def antenna_gain(
+    position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: QuadraticAntenna = SHORT_DIPOLE
+) -> FloatArray:
+    """Return the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
 
-    ``G(gamma_i) = sin^2(gamma_i) = 1 - <(p_i - p) / |p_i - p|, u>^2``, evaluated as the squared norm of the
-    cross product of the two unit vectors: the same number, which keeps its digits beside the null, where the
-    printed difference loses all of them.
+    A short dipole has ``G(gamma_i) = sin^2(gamma_i) = 1 - <(p_i - p) / |p_i - p|, u>^2``, evaluated as the
+    squared norm of the cross product of the two unit vectors: the same number, which keeps its digits beside
+    the null, where the printed difference loses all of them. Other antennas say what becomes of that sine.
 
     Source: paper eqs. 1.2 and 1.4; the maximum is 1, not the 1.5 of a short dipole's directivity.
 
@@ -46,10 +49,11 @@ def antenna_gain(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) ->
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
         points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
+        antenna: which antenna the drone has.
 
     Returns:
         Array of shape ``(..., m)``, between 0 and 1.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     across = np.cross(_unit(to_points), np.asarray(axis, dtype=float)[..., None, :])
-    return np.asarray(np.sum(across**2, axis=-1))
+    return np.asarray(antenna.gain(np.sum(across**2, axis=-1)))

@@ -20,7 +20,7 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     The same numbers as those of :func:`margin`, scene by scene (paper eq. 2.1).
 
     Args:
-        scenarios: with as many nodes and as many jammers each.
+        scenarios: with as many nodes and as many jammers each, and the same antenna.
         position_m: the drone's position in each scene, shape ``(s, 3)``, metres.
         axis: unit antenna axis in each, shape ``(s, 3)``.
 
@@ -34,7 +34,8 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     jammer_m = np.array([one.jammer_positions_m.reshape(-1, 3) for one in scenarios])
     node_w = np.array([one.node_powers_w for one in scenarios])
     jammer_w = np.array([one.jammer_powers_w for one in scenarios])
-    signal_w = received_power_w(position_m, axis, node_m, node_w, g0)
-    jamming_w = received_power_w(position_m, axis, jammer_m, jammer_w, g0)
+    antenna = scenarios[0].antenna_record
+    signal_w = received_power_w(position_m, axis, node_m, node_w, g0, antenna)
+    jamming_w = received_power_w(position_m, axis, jammer_m, jammer_w, g0, antenna)
     interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
     return np.asarray(signal_w / (interference_w + noise_w) / required)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
 from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -18,6 +19,7 @@ def received_power_w(
     points_m: ArrayLike,
     powers_w: ArrayLike,
     reference_gain: ArrayLike,
+    antenna: QuadraticAntenna = SHORT_DIPOLE,
 ) -> FloatArray:
     """Return the power that the drone receives from each ground transmitter.
 
@@ -32,13 +34,14 @@ def received_power_w(
         points_m: transmitters, shape ``(m, 3)``, metres, or ``(..., m, 3)`` where they differ.
         powers_w: their powers, shape ``(m,)``, watts; likewise.
         reference_gain: path gain at 1 m, a power ratio.
+        antenna: which antenna the drone has.
 
     Returns:
         Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     distance_sq = np.sum(to_points**2, axis=-1)  # m^2
-    gain = antenna_gain(position_m, axis, points_m)
+    gain = antenna_gain(position_m, axis, points_m, antenna)
     return np.asarray(
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
     )
@@ -60,8 +63,9 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    g0 = scenario.receiver.reference_gain
-    signal_w = received_power_w(position_m, axis, scenario.node_positions_m, scenario.node_powers_w, g0)
-    jamming_w = received_power_w(position_m, axis, scenario.jammer_positions_m, scenario.jammer_powers_w, g0)
+    link = (scenario.receiver.reference_gain, scenario.antenna_record)
+    signal_w = received_power_w(position_m, axis, scenario.node_positions_m, scenario.node_powers_w, *link)
+    jammers = (scenario.jammer_positions_m, scenario.jammer_powers_w)
+    jamming_w = received_power_w(position_m, axis, *jammers, *link)
     interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
     return np.asarray(signal_w / (interference_w + scenario.objective_record.noise_w(scenario)))

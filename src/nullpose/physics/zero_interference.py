@@ -33,7 +33,7 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     """Return every node's SINR with the null on the scenario's only jammer.
 
     ``Gamma_i = (1 - <d_i, d_M>^2) P_i / (|p_i - p|^2 sigma^2)``, with ``d`` the unit directions: the jammer's
-    power is gone from it.
+    power is gone from it. An antenna whose null is not perfect lets some of it in, and the nodes more.
 
     Source: paper eq. 3.2.
 
@@ -55,6 +55,9 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     node_directions = to_nodes / np.sqrt(distance_sq)[..., None]
     jammer_direction = zero_interference_axis(p, scenario.jammer_positions_m[0])
     # 1 - <a, b>^2 = |a x b|^2 for unit vectors
-    gain = np.sum(np.cross(node_directions, jammer_direction[..., None, :]) ** 2, axis=-1)
-    received_w = scenario.receiver.reference_gain * gain * scenario.node_powers_w / distance_sq
-    return np.asarray(received_w / scenario.receiver.noise_power_w)
+    sine_sq = np.sum(np.cross(node_directions, jammer_direction[..., None, :]) ** 2, axis=-1)
+    g0, antenna = scenario.receiver.reference_gain, scenario.antenna_record
+    received_w = g0 * antenna.gain(sine_sq) * scenario.node_powers_w / distance_sq
+    jammer_distance_sq = np.sum((scenario.jammer_positions_m[0] - p) ** 2, axis=-1, keepdims=True)
+    jamming_w = g0 * antenna.gain(0.0) * scenario.jammer_powers_w / jammer_distance_sq
+    return np.asarray(received_w / (jamming_w + scenario.receiver.noise_power_w))

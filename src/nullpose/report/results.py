@@ -96,7 +96,8 @@ def solution_view(solution: Result) -> RenderableType:
     """
     scenario, objective, pose = solution.scenario, solution.objective, solution.pose
     rate = objective.quantity.is_rate
-    gains = antenna_gain(pose.position_m, pose.antenna_axis, scenario.node_positions_m)
+    at = (pose.position_m, pose.antenna_axis, scenario.node_positions_m)
+    gains = antenna_gain(*at, scenario.antenna_record)
     leaning = f"azimuth {azimuth_text(pose)} deg (0 east, 90 north)"
     airframe = scenario.airframe
     own = [
@@ -250,7 +251,8 @@ def _nulls_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
         names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
         link = (pose.position_m, pose.antenna_axis, points, powers_w, receiver.reference_gain)
-        ratios = received_power_w(*link) / receiver.noise_power_w
+        antenna = scenario.antenna_record
+        ratios = received_power_w(*link, antenna) / receiver.noise_power_w
     columns = {
         noun: names,
         f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points],

@@ -161,7 +161,7 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
         "array": None if array is None else array_words(array),
         "airframe": None if airframe is None else airframe_words(airframe),
-        "antenna": f"short dipole, {reach_words(airframe)}",
+        "antenna": f"{scenario.antenna_record.label}, {reach_words(airframe)}",
         "attitude error": f"at most {attitude_deg:g} deg" if attitude_deg else None,
         "position error": f"at most {position_m:g} m" if position_m else None,
         "transmits": None if sender is None else _power_words(sender.transmit_power_w),

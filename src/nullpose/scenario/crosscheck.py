@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nullpose.antenna import SHORT_DIPOLE
 from nullpose.objectives import RECORDS
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
@@ -56,6 +57,8 @@ def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterato
             "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
             "dipole at an angle; remove either table",
         )
+    if scenario.array is not None and scenario.antenna_record != SHORT_DIPOLE:
+        yield ("antenna",), "the elements of an array are short dipoles; remove this table or [array]"
     airspace = scenario.airspace
     if airspace is not None:
         zones: dict[Place, Any] = {

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.antenna import Antenna
 from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.crosscheck import scenario_faults
@@ -42,6 +44,7 @@ class Scenario(Section):
         origin: where on the Earth the frame's zero is, or None.
         airspace: where the vehicle may be.
         airframe: which antenna axes it reaches; None for all of them.
+        antenna: which antenna it carries; None for a short dipole.
         array: several upright dipoles in place of the one, or None.
         receiver: its noise, the path gain at 1 m, and how well the vehicle holds a pose.
         transmitter: the drone's own power, where it transmits.
@@ -87,6 +90,10 @@ class Scenario(Section):
         description="A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted. "
         "Left out: every axis is reached.",
     )
+    antenna: Antenna | None = Field(
+        default=None,
+        description="A table headed [antenna]: which antenna the drone carries. Left out: a short dipole.",
+    )
     array: Array | None = Field(
         default=None,
         description="A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one.",
@@ -127,6 +134,11 @@ class Scenario(Section):
     def objective_record(self) -> ObjectiveRecord:
         """What the objective states of itself."""
         return RECORDS[self.objective]
+
+    @property
+    def antenna_record(self) -> QuadraticAntenna:
+        """What the drone's antenna states of itself."""
+        return SHORT_DIPOLE if self.antenna is None else self.antenna.record
 
     @property
     def node_names(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.antenna import QuadraticAntenna
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colours
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
@@ -53,6 +54,7 @@ class Drone:
         self._scene, self._slot, self._size_m = scene, slot, size_m
         self._name = f"/drone-{'ab'[slot]}"
         self._parts: dict[str, Any] = {}
+        self._antenna: QuadraticAntenna | None = None
 
     def show(self, answer: Answer, text: str, link_range_db: tuple[float, float], *, pattern: bool) -> None:
         """Put the drone where an answer has it.
@@ -66,8 +68,11 @@ class Drone:
         from viser.transforms import SO3
 
         result, pose = answer.result, answer.result.pose
-        if not self._parts:
-            self._build()
+        antenna = result.scenario.antenna_record
+        if antenna != self._antenna:
+            self.remove()
+            self._antenna = antenna
+            self._build(antenna)
         parts, here = self._parts, pose.position_m
         parts["body"].position = here
         parts["body"].wxyz = SO3.from_rpy_radians(pose.roll_rad, pose.pitch_rad, pose.yaw_rad).wxyz
@@ -100,9 +105,9 @@ class Drone:
         """Take the drone out of the scene."""
         if self._parts:
             self._parts["whole"].remove()
-            self._parts = {}
+            self._parts, self._antenna = {}, None
 
-    def _build(self) -> None:
+    def _build(self, antenna: QuadraticAntenna) -> None:
         scene, slot, size_m, name = self._scene, self._slot, self._size_m, self._name
         frames = {
             "whole": name,
@@ -116,18 +121,18 @@ class Drone:
         add_mesh(scene, f"{name}/body/hull", body_mesh(arm_m), _HULLS[slot], flat_shading=True)
         add_mesh(scene, f"{name}/body/rotors", rotor_mesh(arm_m), SLOTS[slot], opacity=0.45)
         add_mesh(scene, f"{name}/body/antenna/rod", rod_mesh(0.2 * size_m), _NULL)
-        self._add_pattern(frames["pattern"], 0.11 * size_m)
+        self._add_pattern(frames["pattern"], antenna, 0.11 * size_m)
         self._parts["label"] = add_label(scene, f"{name}/label", "", np.zeros(3), 1.0, _ANCHORS[slot])
         for line, (colour, thickness) in _LINES.items():
             nowhere = np.zeros((1, 2, 3))
             self._parts[line] = add_lines(scene, f"{name}/{line}", nowhere, colour, thickness)
 
-    def _add_pattern(self, name: str, radius_m: float) -> None:
+    def _add_pattern(self, name: str, antenna: QuadraticAntenna, radius_m: float) -> None:
         """Draw the pattern: see-through bands of one gain each, or wires for the second."""
         if self._slot == 1:
-            wires = doughnut_mesh(radius_m, np.linspace(0.0, np.pi, 19), 24)
+            wires = doughnut_mesh(antenna, radius_m, np.linspace(0.0, np.pi, 19), 24)
             add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True)
             return
-        for i, (band, gain) in enumerate(doughnut_bands(radius_m)):
+        for i, (band, gain) in enumerate(doughnut_bands(antenna, radius_m)):
             # its near side only: both of them, finely meshed, took a quarter of the time of a picture
             add_mesh(self._scene, f"{name}/band-{i}", band, scale_colours(gain, 0.0, 1.0), opacity=0.5)

@@ -101,7 +101,8 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(answer, grid[usable], go_on)
     loss = np.sum((ground - pose.position_m) ** 2, axis=-1) / max(1.0, altitude_m**2)
-    gain = antenna_gain(pose.position_m, pose.antenna_axis, ground.reshape(-1, 3)).reshape(loss.shape)
+    at = (pose.position_m, pose.antenna_axis, ground.reshape(-1, 3))
+    gain = antenna_gain(*at, scenario.antenna_record).reshape(loss.shape)
     plane = {"east_m": east, "north_m": north}
     best = values if quantity.is_rate else _db(values)
     footprint = _db(gain / np.maximum(loss, 1e-12))
@@ -157,7 +158,8 @@ def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> Fl
     """Return how well the nodes are served, the jammers ignored."""
     nodes = scenario.node_positions_m
     loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
-    received = antenna_gain(positions_m, axes, nodes) * scenario.node_powers_w / loss
+    gain = antenna_gain(positions_m, axes, nodes, scenario.antenna_record)
+    received = gain * scenario.node_powers_w / loss
     return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.antenna import QuadraticAntenna
 from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
 from nullpose.scenario import NoFlyZone
@@ -87,23 +88,27 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int) -> Mesh
     return Mesh(vertices, faces)
 
 
-def doughnut_mesh(radius_m: float, gamma_rad: ArrayLike, around: int) -> Mesh:
-    """Return the dipole's pattern about the z axis: the distance is ``radius sin^2(gamma)`` (paper eq. 1.2).
+def doughnut_mesh(antenna: QuadraticAntenna, radius_m: float, gamma_rad: ArrayLike, around: int) -> Mesh:
+    """Return the antenna's pattern about the z axis: the distance is the gain times the radius.
 
     Args:
+        antenna: whose pattern it is.
         radius_m: where the gain is 1, metres.
         gamma_rad: (n,) angles from the lower end of the axis at which it is drawn, growing, radians.
         around: steps about the axis.
     """
     gamma = np.asarray(gamma_rad, dtype=float)
-    distance = radius_m * np.sin(gamma) ** 2
+    distance = radius_m * antenna.gain(np.sin(gamma) ** 2)
     return revolved_mesh(distance * np.sin(gamma), -distance * np.cos(gamma), around)
 
 
-def doughnut_bands(radius_m: float, bands: int = 10, around: int = 32) -> list[tuple[Mesh, float]]:
-    """Return the dipole's pattern in bands of like gain, each with the gain in its middle.
+def doughnut_bands(
+    antenna: QuadraticAntenna, radius_m: float, bands: int = 10, around: int = 32
+) -> list[tuple[Mesh, float]]:
+    """Return the antenna's pattern in bands, each with the gain in its middle.
 
     Args:
+        antenna: whose pattern it is.
         radius_m: where the gain is 1, metres.
         bands: how many.
         around: steps about the axis.
@@ -112,8 +117,8 @@ def doughnut_bands(radius_m: float, bands: int = 10, around: int = 32) -> list[t
     parts = []
     for band, (low, high) in enumerate(pairwise(ends)):
         below = np.linspace(low, high, 4)
-        halves = [doughnut_mesh(radius_m, gamma, around) for gamma in (below, math.pi - below[::-1])]
-        parts.append((merged(halves), (band + 0.5) / bands))
+        halves = [doughnut_mesh(antenna, radius_m, gamma, around) for gamma in (below, math.pi - below[::-1])]
+        parts.append((merged(halves), float(antenna.gain((band + 0.5) / bands))))
     return parts
 
 

@@ -27,7 +27,7 @@ def ellipsoid(axes: np.ndarray, semi: np.ndarray) -> Sets:
 
 def strongest(sets: Sets, y: np.ndarray, q: np.ndarray, tolerance: float) -> tuple[float, float, np.ndarray]:
     """Returns what is attained, the upper bound, and the place."""
-    attained, upper, place = strongest_link(sets, 0, tuple(y), tuple(q), tolerance)
+    attained, upper, place = strongest_link(sets, 0, tuple(y), tuple(q), 0.0, tolerance)
     return attained, upper, np.array(place)
 
 

@@ -1,4 +1,4 @@
-"""Radiation patterns as surfaces: of the dipole at a pose, and of an array's beam."""
+"""Radiation patterns as surfaces: of the drone's antenna at a pose, and of an array's beam."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.antenna import QuadraticAntenna
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
@@ -26,13 +27,18 @@ def _directions(down: int, around_rad: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def pattern_surface_m(
-    pose: Pose, radius_m: float, around_rad: FloatArray, camera: ArrayLike = (0.3, -0.5, 0.8)
+    antenna: QuadraticAntenna,
+    pose: Pose,
+    radius_m: float,
+    around_rad: FloatArray,
+    camera: ArrayLike = (0.3, -0.5, 0.8),
 ) -> FloatArray:
-    """Return points on the dipole's radiation pattern drawn around a pose, a doughnut about its axis.
+    """Return points on the antenna's radiation pattern drawn around a pose: of a dipole, a doughnut.
 
-    In each direction the distance from the drone is ``radius_m * sin^2(gamma)`` (paper eq. 1.2).
+    In each direction the distance from the drone is ``radius_m`` times the gain (paper eq. 1.2).
 
     Args:
+        antenna: whose pattern it is.
         pose: where the drone is and its attitude.
         radius_m: distance drawn where the gain is 1, metres.
         around_rad: the angles about the axis to draw, shape ``(m,)``, radians; 0 faces the camera.
@@ -47,7 +53,7 @@ def pattern_surface_m(
     facing = facing / np.linalg.norm(facing)
     frame = np.stack([facing, np.cross(axis, facing), axis])
     local, sine = _directions(_DOWN, around_rad)
-    surface: FloatArray = np.einsum("kij,kc->cij", radius_m * sine**2 * local, frame)
+    surface: FloatArray = np.einsum("kij,kc->cij", radius_m * antenna.gain(sine**2) * local, frame)
     return surface + pose.position_m[:, None, None]
 
 

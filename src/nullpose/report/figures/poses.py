@@ -115,7 +115,7 @@ def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     look = {"linewidth": 1.8, "zorder": 6.5, "label": "antenna axis (null)"}
     draw_line(axes, position - reach, position + reach, color=DRONE, **look)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)
-    surface = pattern_surface_m(pose, radius_m, around, stage.view.camera)
+    surface = pattern_surface_m(stage.scenario.antenna_record, pose, radius_m, around, stage.view.camera)
     draw_surface(axes, surface, SURFACE, (surface[:, :, 0], surface[:, :, -1]), DRONE)
     axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")
 

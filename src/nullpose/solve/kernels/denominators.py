@@ -31,7 +31,7 @@ def add_scaled(weight, form, slopes, matrix, matrix_slopes):
 
 @inner_kernel
 def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
-    """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes."""
+    """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes besides."""
     form, slopes = scratch(6), scratch(3, 6)
     size = family.denominator_isotropic[g]
     for m in range(3):
@@ -40,10 +40,12 @@ def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
     radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
-        _, down = expand_point(family.points_m, family.turn, j, frame, centre, half, form, slopes)
+        _, down = expand_point(family, j, frame, centre, half, form, slopes)
         add_scaled(-level * weight, form, slopes, out, out_slopes)
         if frame.kind == TOWARDS_POINT and j == frame.anchor:
-            across += level * weight * (ROUNDING * (form[0] + form[1]) - radius * down)
+            rest = level * weight * (ROUNDING * (form[0] + form[1]) - radius * down)
+            across += (1.0 - family.leak) * rest
+            everywhere += family.leak * rest
         else:
             size += weight * (form[0] + form[1] + form[2])
             everywhere -= level * weight * radius * down
@@ -93,13 +95,14 @@ def null_rest(a, rho):
 def sharpen(family, frame, row, matrix, slopes):
     """Replace the denominators' remainders by smaller ones where they are smaller.
 
-    With ``w = r / |r|^2``, r seen in the frame, a link is ``|u x w|^2``, and the rest of w beyond first
-    order is at most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
-    form is at least ``(1 - eta) (T + T'.x) - (W |x|^2 / 2)^2 / eta I`` for any eta in (0, 1): beside the
-    null, where T is small, far better than a remainder of the second order. The point that the frame turns
+    With ``w = r / |r|^2``, r seen in the frame, a link is ``|u x w|^2 + leak (u.w)^2``, a sum of squares of
+    numbers that are linear in w and together no longer than it; and the rest of w beyond first order is at
+    most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
+    form is at least ``(1 - eta) (M + M'.x) - (W |x|^2 / 2)^2 / eta I`` for any eta in (0, 1): beside the
+    null, where M is small, far better than a remainder of the second order. The point that the frame turns
     towards keeps its own.
     """
-    points, turn = family.points_m, family.turn
+    points = family.points_m
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)
     top_eigenvector(matrix, v)
@@ -114,7 +117,7 @@ def sharpen(family, frame, row, matrix, slopes):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
             if frame.kind == TOWARDS_POINT and j == frame.anchor:
                 continue
-            _, down = expand_point(points, turn, j, frame, centre, half, form, form_slopes)
+            _, down = expand_point(family, j, frame, centre, half, form, form_slopes)
             here, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
             rest = 0.5 * square * null_rest(min_distance(points, j, centre, half), frame.least_radius_m)
             plain = -0.5 * square * down

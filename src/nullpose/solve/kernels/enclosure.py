@@ -1,7 +1,8 @@
 """A link under an affine axis field over a box of positions: value, gradient, and bounds on the Hessian.
 
-With ``u = o + M p`` and ``r = q - p`` the link is ``f = |u x r|^2 / (|u|^2 |r|^4)``: a quotient of
-polynomials, whose second derivatives are bounded by interval arithmetic. Hessians are kept as
+With ``u = o + M p`` and ``r = q - p`` the link is ``f = n / (|u|^2 |r|^4)``, ``n = |u x r|^2 + l (u.r)^2``
+with the antenna's leak l being the sum of the squares of the entries of ``u x r`` and of ``sqrt(l) u.r``: a
+quotient of polynomials, whose second derivatives are bounded by interval arithmetic. Hessians are kept as
 (xx, yy, zz, xy, xz, yz).
 """
 
@@ -34,19 +35,6 @@ def square(a):
 
 
 @inner_kernel
-def plus(a, b):
-    """Return bounds on the sum of two numbers of which bounds are given."""
-    return a[0] + b[0], a[1] + b[1]
-
-
-@inner_kernel
-def times(factor, a):
-    """Return bounds on a multiple of a number of which bounds are given."""
-    x, y = factor * a[0], factor * a[1]
-    return min(x, y), max(x, y)
-
-
-@inner_kernel
 def bounds(table, i):
     """Return the bounds in row i of a table."""
     return table[i, 0], table[i, 1]
@@ -67,8 +55,11 @@ def axis_clearance(axis_field, centre, half):
 
 
 @inner_kernel
-def cross_parts(offset, matrix, r, centre, half, u, c, dc, hc):
-    """Fill the axis at the centre, the three entries of ``u x r``, their gradients and constant Hessians."""
+def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
+    """Fill the axis at the centre, the entries whose squares make n, their gradients and constant Hessians.
+
+    Returns how many entries there are: the fourth is ``sqrt(leak) u.r``.
+    """
     for m in range(3):
         u[m] = offset[m]
         for i in range(3):
@@ -88,6 +79,15 @@ def cross_parts(offset, matrix, r, centre, half, u, c, dc, hc):
             hc[m, b, i] -= matrix[a, i]
             hc[m, i, a] += matrix[b, i]
             hc[m, a, i] += matrix[b, i]
+    if not leak > 0.0:
+        return 3
+    root = math.sqrt(leak)
+    c[3] = root * (u[0] * r[0] + u[1] * r[1] + u[2] * r[2])
+    for i in range(3):
+        dc[3, i] = root * (matrix[0, i] * r[0] + matrix[1, i] * r[1] + matrix[2, i] * r[2] - u[i])
+        for j in range(3):
+            hc[3, i, j] = -root * (matrix[i, j] + matrix[j, i])
+    return 4
 
 
 @inner_kernel
@@ -113,52 +113,30 @@ def turned_field(axis_field, turn, j, offset, matrix):
 
 
 @inner_kernel
-def second_derivative(e, matrix, hc, boxed, dn, beta, sigma, n, s, b, w):
-    """Return bounds on number e of a link's Hessian, ``w (n_ij + n_i l_j + l_i n_j + n q_ij)`` (lemma 3).
+def of_gradients(i, k, dn, beta, sigma):
+    """Return bounds on ``n_i l_k + l_i n_k`` and on q without its share of the second derivatives (lemma 3).
 
-    Args:
-        e: which number of the form.
-        matrix: (3, 3) of the axis field.
-        hc: (3, 3, 3) the constant Hessians of the entries of ``u x r``.
-        boxed: (3, 4, 2) bounds on those entries and on their gradients.
-        dn: (3, 2) bounds on the gradient of ``n = |u x r|^2``.
-        beta: (3, 2) on the gradient of ``|u|^2`` over itself.
-        sigma: (3, 2) on that of ``|r|^2``.
-        n: bounds on n.
-        s: on ``|r|^2``.
-        b: on ``|u|^2``.
-        w: on ``1 / (|u|^2 |r|^4)``.
+    ``l = -beta - 2 sigma`` is the gradient of the logarithm of w, and ``q`` is ``2 beta beta^T + 2 (beta
+    sigma^T + sigma beta^T) + 6 sigma sigma^T``.
     """
-    i, k = entry(e)
-    first, gram = (0.0, 0.0), 0.0
-    for m in range(3):
-        left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
-        first = plus(first, times(2.0, product(left, right) if i != k else square(left)))
-        first = plus(first, times(2.0 * hc[m, i, k], bounds(boxed[m], 0)))
-        gram += 2.0 * matrix[m, i] * matrix[m, k]
-    slope_i = (-beta[i, 1] - 2.0 * sigma[i, 1], -beta[i, 0] - 2.0 * sigma[i, 0])
-    slope_k = (-beta[k, 1] - 2.0 * sigma[k, 1], -beta[k, 0] - 2.0 * sigma[k, 0])
-    first = plus(plus(first, product(bounds(dn, i), slope_k)), product(bounds(dn, k), slope_i))
     beta_i, beta_k, sigma_i, sigma_k = bounds(beta, i), bounds(beta, k), bounds(sigma, i), bounds(sigma, k)
+    fall_i = (-beta_i[1] - 2.0 * sigma_i[1], -beta_i[0] - 2.0 * sigma_i[0])
+    fall_k = (-beta_k[1] - 2.0 * sigma_k[1], -beta_k[0] - 2.0 * sigma_k[0])
+    one, other = product(bounds(dn, i), fall_k), product(bounds(dn, k), fall_i)
     bb = square(beta_i) if i == k else product(beta_i, beta_k)
     ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
     bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
     low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
     high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
-    low -= gram / (b[0] if gram > 0.0 else b[1])
-    high -= gram / (b[1] if gram > 0.0 else b[0])
-    if i == k:
-        low, high = low - 4.0 / s[0], high - 4.0 / s[1]
-    return product(w, plus(first, product(n, (low, high))))
+    return one[0] + other[0], one[1] + other[1], low, high
 
 
 @kernel
-def link_jet(points, turn, j, axis_field, centre, half, jet):
+def link_jet(family, j, axis_field, centre, half, jet):
     """Fill the jet of point j: value and gradient at the centre, midpoint and radius of the Hessian, bounds.
 
     Args:
-        points: (m, 3) ground points.
-        turn: rotations of the axis that points see, (m, 3, 3) or none.
+        family: with its points.
         j: which of them.
         axis_field: (1, offset, matrix); not zero in the box.
         centre: (3,) the box's centre.
@@ -166,12 +144,12 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         jet: output, (JET,).
     """
     offset, matrix = scratch(3), scratch(3, 3)
-    turned_field(axis_field, turn, j, offset, matrix)
-    r, u, c = scratch(3), scratch(3), scratch(3)
-    dc, hc = scratch(3, 3), scratch(3, 3, 3)
+    turned_field(axis_field, family.turn, j, offset, matrix)
+    r, u, c = scratch(3), scratch(3), scratch(4)
+    dc, hc = scratch(4, 3), scratch(4, 3, 3)
     for i in range(3):
-        r[i] = points[j, i] - centre[i]
-    cross_parts(offset, matrix, r, centre, half, u, c, dc, hc)
+        r[i] = family.points_m[j, i] - centre[i]
+    count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
     # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
     s = s_low = s_high = b = b_low = b_high = 0.0
     for m in range(3):
@@ -183,9 +161,9 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         low, high = square((u[m] - swing, u[m] + swing))
         b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
     sigma, beta, dn = scratch(3, 2), scratch(3, 2), scratch(3, 2)
-    boxed = scratch(3, 4, 2)  # of each entry of u x r: bounds on the value and on the gradient
+    boxed = scratch(4, 4, 2)  # of each entry: bounds on the value and on the gradient
     n_low = n_high = n = 0.0
-    for m in range(3):
+    for m in range(count):
         swing = 0.0
         for i in range(3):
             bend = 0.0
@@ -200,11 +178,12 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
     jet[0] = n * w
     for i in range(3):
         db = swing = slope = low = high = 0.0
-        for m in range(3):
-            db += 2.0 * matrix[m, i] * u[m]
+        for m in range(count):
             slope += 2.0 * c[m] * dc[m, i]
             x, y = product((boxed[m, 0, 0], boxed[m, 0, 1]), (boxed[m, 1 + i, 0], boxed[m, 1 + i, 1]))
             low, high = low + 2.0 * x, high + 2.0 * y
+        for m in range(3):
+            db += 2.0 * matrix[m, i] * u[m]
             for k in range(3):
                 swing += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
         jet[1 + i] = w * (slope - n * (db / b - 4.0 * r[i] / s))
@@ -213,9 +192,23 @@ def link_jet(points, turn, j, axis_field, centre, half, jet):
         beta[i, 0], beta[i, 1] = relative_slopes(b, db, swing, b_low, b_high)
     w_range = (1.0 / (b_high * s_high * s_high), 1.0 / (b_low * s_low * s_low))
     jet[16], jet[17] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_low)
-    n_range, s_range, b_range = (n_low, n_high), (s_low, s_high), (b_low, b_high)
     for e in range(6):
-        low, high = second_derivative(
-            e, matrix, hc, boxed, dn, beta, sigma, n_range, s_range, b_range, w_range
-        )
+        i, k = entry(e)
+        first_low, first_high, low, high = of_gradients(i, k, dn, beta, sigma)
+        gram = 0.0
+        for m in range(count):
+            left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
+            x, y = product(left, right) if i != k else square(left)
+            first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
+            bent = 2.0 * hc[m, i, k]
+            x, y = bent * boxed[m, 0, 0], bent * boxed[m, 0, 1]
+            first_low, first_high = first_low + min(x, y), first_high + max(x, y)
+        for m in range(3):
+            gram += 2.0 * matrix[m, i] * matrix[m, k]
+        low -= gram / (b_low if gram > 0.0 else b_high)
+        high -= gram / (b_high if gram > 0.0 else b_low)
+        if i == k:
+            low, high = low - 4.0 / s_low, high - 4.0 / s_high
+        x, y = product((n_low, n_high), (low, high))
+        low, high = product(w_range, (first_low + x, first_high + y))
         jet[4 + e], jet[10 + e] = 0.5 * (low + high), 0.5 * (high - low)

@@ -148,7 +148,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
         weight = row[WEIGHT + s]
         isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
         j = family.numerator_point[k]
-        up, _ = expand_point(family.points_m, family.turn, j, frame, centre, half, form, form_slopes)
+        up, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
         add_scaled(weight * strength, form, form_slopes, matrix, slopes)
         for m in range(3):
             matrix[m] += weight * isotropic

@@ -52,15 +52,17 @@ def frame_at(points, kind, anchor, centre, half, basis):
 
 
 @kernel
-def expand_point(points, turn, j, frame, centre, half, form, slopes):
+def expand_point(family, j, frame, centre, half, form, slopes):
     """Fill the form of point j at the centre and its derivative along each world axis.
 
     Points with a turn of their own are looked at in the frame at rest only.
 
     Returns an upper and a lower bound on the second derivative along any unit direction, anywhere in the
-    box. For the anchor of a frame that turns towards it they hold on the first two axes; the third row and
-    column vanish.
+    box. For the anchor of a frame that turns towards it they hold on the first two axes, and multiplied by
+    the leak on the third, as the form does.
     """
+    points, turn, leak = family.points_m, family.turn, family.leak
+    bent = 1.0 - leak
     x, y, z = seen_from(points, turn, j, centre, frame.basis)
     basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
     anchored = turns and j == frame.anchor
@@ -68,8 +70,11 @@ def expand_point(points, turn, j, frame, centre, half, form, slopes):
         x = y = 0.0
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
-    form[0], form[1], form[2] = (y * y + z * z) * i4, (x * x + z * z) * i4, (x * x + y * y) * i4
-    form[3], form[4], form[5] = -x * y * i4, -x * z * i4, -y * z * i4
+    form[0] = (leak * x * x + y * y + z * z) * i4
+    form[1] = (x * x + leak * y * y + z * z) * i4
+    form[2] = (x * x + y * y + leak * z * z) * i4
+    b4 = bent * i4
+    form[3], form[4], form[5] = -x * y * b4, -x * z * b4, -y * z * b4
     for i in range(3):
         q0, q1, q2 = basis[i, 0], basis[i, 1], basis[i, 2]
         u, v, w = -q0, -q1, -q2
@@ -78,14 +83,14 @@ def expand_point(points, turn, j, frame, centre, half, form, slopes):
             v += q1 * z / frame.radius_m
             w -= (q1 * y + q0 * x) / frame.radius_m
         dot = x * u + y * v + z * w
-        k = 4.0 * dot * i4 * i2
+        k = 4.0 * dot * b4 * i2
         base = -2.0 * dot * i4
-        slopes[i, 0] = base - 2.0 * x * u * i4 + k * x * x
-        slopes[i, 1] = base - 2.0 * y * v * i4 + k * y * y
-        slopes[i, 2] = base - 2.0 * z * w * i4 + k * z * z
-        slopes[i, 3] = -(x * v + y * u) * i4 + k * x * y
-        slopes[i, 4] = -(x * w + z * u) * i4 + k * x * z
-        slopes[i, 5] = -(y * w + z * v) * i4 + k * y * z
+        slopes[i, 0] = base - 2.0 * x * u * b4 + k * x * x
+        slopes[i, 1] = base - 2.0 * y * v * b4 + k * y * y
+        slopes[i, 2] = base - 2.0 * z * w * b4 + k * z * z
+        slopes[i, 3] = -(x * v + y * u) * b4 + k * x * y
+        slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
+        slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
     a = min_distance(points, j, centre, half)
     i4 = 1.0 / (a * a * a * a)
     if anchored:

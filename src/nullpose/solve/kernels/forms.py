@@ -110,37 +110,39 @@ def seen_from(points, turn, j, p, basis):
 
 
 @inner_kernel
-def add_form(x, y, z, weight, isotropic, out):
-    """Add ``weight * T(r)`` and ``isotropic * I`` to a form of six numbers, r being (x, y, z)."""
+def add_form(x, y, z, leak, weight, isotropic, out):
+    """Add ``weight * M(r)`` and ``isotropic * I`` to a form of six numbers, r being (x, y, z)."""
     rho2 = x * x + y * y + z * z
     s = weight / (rho2 * rho2)
-    out[0] += isotropic + s * (y * y + z * z)
-    out[1] += isotropic + s * (x * x + z * z)
-    out[2] += isotropic + s * (x * x + y * y)
-    out[3] -= s * x * y
-    out[4] -= s * x * z
-    out[5] -= s * y * z
+    bent = (1.0 - leak) * s
+    out[0] += isotropic + s * (leak * x * x + y * y + z * z)
+    out[1] += isotropic + s * (x * x + leak * y * y + z * z)
+    out[2] += isotropic + s * (x * x + y * y + leak * z * z)
+    out[3] -= bent * x * y
+    out[4] -= bent * x * z
+    out[5] -= bent * y * z
 
 
 @inner_kernel
-def fill_form(points, turn, j, p, weight, isotropic, out):
-    """Add ``weight * T(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
-    x, y, z = turned_back(turn, j, points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2])
-    add_form(x, y, z, weight, isotropic, out)
+def fill_form(family, j, p, weight, isotropic, out):
+    """Add ``weight * M(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
+    point = family.points_m[j]
+    x, y, z = turned_back(family.turn, j, point[0] - p[0], point[1] - p[1], point[2] - p[2])
+    add_form(x, y, z, family.leak, weight, isotropic, out)
 
 
 @kernel
 def fill_forms(family, p, numerators, denominators):
     """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
-    npt, d0, dstart = family.numerator_point, family.denominator_isotropic, family.denominator_start
-    dpt, dw, turn = family.denominator_point, family.denominator_weight, family.turn
+    n0, nw, npt = family.numerator_isotropic, family.numerator_weight, family.numerator_point
+    d0, dstart = family.denominator_isotropic, family.denominator_start
+    dpt, dw = family.denominator_point, family.denominator_weight
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
     for k in range(nw.shape[0]):
-        fill_form(points, turn, npt[k], p, nw[k], n0[k], numerators[k])
+        fill_form(family, npt[k], p, nw[k], n0[k], numerators[k])
     for g in range(d0.shape[0]):
         for i in range(3):
             denominators[g, i] = d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            fill_form(points, turn, dpt[e], p, dw[e], 0.0, denominators[g])
+            fill_form(family, dpt[e], p, dw[e], 0.0, denominators[g])

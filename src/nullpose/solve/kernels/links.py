@@ -1,9 +1,10 @@
 """Ratios of a family at a pose, and their derivatives.
 
-With ``r = q - p`` the link form of a point is ``h(p, u) = |u x r|^2 / |r|^4``, which for a unit axis is
-``sin^2(gamma) / |r|^2`` (design family (F); paper eqs. 1.2 to 1.4). Ratio k is ``N_k / D_g(k)`` with
-``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not depend on the length of ``u``, so an
-axis that is an affine function of the position needs no normalising and no second derivative of its own.
+With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
+antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). Ratio k is
+``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not depend on the
+length of ``u``, so an axis that is an affine function of the position needs no normalising and no second
+derivative of its own.
 """
 
 from __future__ import annotations
@@ -32,22 +33,24 @@ def seen_axis(turn, j, u):
 
 
 @kernel
-def link_form(points, turn, j, p, u):
-    """Return ``|u x r|^2 / |r|^4`` for point j, without cancellation beside the null."""
-    rx, ry, rz = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
-    ux, uy, uz = seen_axis(turn, j, u)
+def link_form(family, j, p, u):
+    """Return ``(|u x r|^2 + leak (u.r)^2) / |r|^4`` for point j, without cancellation beside the null."""
+    point = family.points_m[j]
+    rx, ry, rz = point[0] - p[0], point[1] - p[1], point[2] - p[2]
+    ux, uy, uz = seen_axis(family.turn, j, u)
+    ahead = ux * rx + uy * ry + uz * rz
     cx = uy * rz - uz * ry
     cy = uz * rx - ux * rz
     cz = ux * ry - uy * rx
     rho2 = rx * rx + ry * ry + rz * rz
-    return (cx * cx + cy * cy + cz * cz) / (rho2 * rho2)
+    return (cx * cx + cy * cy + cz * cz + family.leak * ahead * ahead) / (rho2 * rho2)
 
 
 @inner_kernel
 def numerator_at(family, k, p, u):
     """Return ``u^T N_k u`` at position p."""
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
-    link = link_form(family.points_m, family.turn, family.numerator_point[k], p, u)
+    link = link_form(family, family.numerator_point[k], p, u)
     return family.numerator_isotropic[k] * uu + family.numerator_weight[k] * link
 
 
@@ -56,7 +59,7 @@ def denominator_at(family, g, p, u):
     """Return ``u^T D_g u`` at position p."""
     total = family.denominator_isotropic[g] * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-        link = link_form(family.points_m, family.turn, family.denominator_point[e], p, u)
+        link = link_form(family, family.denominator_point[e], p, u)
         total += family.denominator_weight[e] * link
     return total
 
@@ -84,14 +87,15 @@ def min_log_ratio(family, p, u, log_denominators, out):
 
 
 @inner_kernel
-def add_form(points, turn, j, weight, p, u, grad, hess, second):
+def add_form(family, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_seen_form`` does for the axis seen."""
+    turn = family.turn
     if turn.shape[0] == 0:
-        return add_seen_form(points, j, weight, p, u, grad, hess, second)
+        return add_seen_form(family, j, weight, p, u, grad, hess, second)
     q = turn[j]
     v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
     v[0], v[1], v[2] = seen_axis(turn, j, u)
-    value = add_seen_form(points, j, weight, p, v, g, h, second)
+    value = add_seen_form(family, j, weight, p, v, g, h, second)
     for i in range(3):
         grad[i] += g[i]
         for a in range(3):
@@ -109,22 +113,24 @@ def add_form(points, turn, j, weight, p, u, grad, hess, second):
 
 
 @inner_kernel
-def add_seen_form(points, j, weight, p, u, grad, hess, second):
+def add_seen_form(family, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u) to ``grad`` and, if asked for, ``hess``.
 
-    The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (u.r)^2 = |u x r|^2`` and ``h = A
-    |r|^-4``.
+    The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (1 - l) (u.r)^2 = |u x r|^2 + l
+    (u.r)^2`` and ``h = A |r|^-4``.
     """
+    leak = family.leak
+    bent = 1.0 - leak
     r = scratch(3)
     for i in range(3):
-        r[i] = points[j, i] - p[i]
+        r[i] = family.points_m[j, i] - p[i]
     rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
     c = u[0] * r[0] + u[1] * r[1] + u[2] * r[2]
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     cx = u[1] * r[2] - u[2] * r[1]
     cy = u[2] * r[0] - u[0] * r[2]
     cz = u[0] * r[1] - u[1] * r[0]
-    area = cx * cx + cy * cy + cz * cz
+    area = cx * cx + cy * cy + cz * cz + leak * c * c
     i2 = 1.0 / rho2
     i4 = weight * i2 * i2
     i6 = i4 * i2
@@ -132,12 +138,13 @@ def add_seen_form(points, j, weight, p, u, grad, hess, second):
     ar = scratch(3)
     au = scratch(3)
     # (u.u) r - c u and (r.r) u - c r are double cross products: no cancellation beside the null
-    ar[0] = 2.0 * (cy * u[2] - cz * u[1])
-    ar[1] = 2.0 * (cz * u[0] - cx * u[2])
-    ar[2] = 2.0 * (cx * u[1] - cy * u[0])
-    au[0] = 2.0 * (r[1] * cz - r[2] * cy)
-    au[1] = 2.0 * (r[2] * cx - r[0] * cz)
-    au[2] = 2.0 * (r[0] * cy - r[1] * cx)
+    lc = leak * c
+    ar[0] = 2.0 * (cy * u[2] - cz * u[1] + lc * u[0])
+    ar[1] = 2.0 * (cz * u[0] - cx * u[2] + lc * u[1])
+    ar[2] = 2.0 * (cx * u[1] - cy * u[0] + lc * u[2])
+    au[0] = 2.0 * (r[1] * cz - r[2] * cy + lc * r[0])
+    au[1] = 2.0 * (r[2] * cx - r[0] * cz + lc * r[1])
+    au[2] = 2.0 * (r[0] * cy - r[1] * cx + lc * r[2])
     for i in range(3):
         grad[i] -= ar[i] * i4 - 4.0 * area * i6 * r[i]
         grad[3 + i] += au[i] * i4
@@ -146,12 +153,13 @@ def add_seen_form(points, j, weight, p, u, grad, hess, second):
             for k in range(3):
                 same = 1.0 if i == k else 0.0
                 hess[i, k] += (
-                    2.0 * (uu * same - u[i] * u[k]) * i4
+                    2.0 * (uu * same - bent * u[i] * u[k]) * i4
                     - 4.0 * i6 * (ar[i] * r[k] + r[i] * ar[k])
                     + area * (24.0 * i8 * r[i] * r[k] - 4.0 * i6 * same)
                 )
-                hess[3 + i, 3 + k] += 2.0 * (rho2 * same - r[i] * r[k]) * i4
-                mixed = 2.0 * (2.0 * u[i] * r[k] - r[i] * u[k] - c * same) * i4 - 4.0 * i6 * au[i] * r[k]
+                hess[3 + i, 3 + k] += 2.0 * (rho2 * same - bent * r[i] * r[k]) * i4
+                mixed = 2.0 * (2.0 * u[i] * r[k] - bent * (r[i] * u[k] + c * same)) * i4
+                mixed -= 4.0 * i6 * au[i] * r[k]
                 hess[3 + i, k] -= mixed
                 hess[k, 3 + i] -= mixed
     return weight * area * i2 * i2
@@ -164,10 +172,9 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
     ``work`` is scratch of shape (G, 50): per denominator its value, its gradient, its Hessian, its total
     multiplier.
     """
-    points, n0, nw = family.points_m, family.numerator_isotropic, family.numerator_weight
+    n0, nw = family.numerator_isotropic, family.numerator_weight
     npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
-    turn = family.turn
     uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
     for i in range(6):
         for k in range(6):
@@ -182,7 +189,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
             gradient[3 + i] = 2.0 * d0[g] * u[i]
             form[3 + i, 3 + i] = 2.0 * d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            value += add_form(points, turn, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
+            value += add_form(family, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
         work[g, 0] = value
         work[g, 43] = 0.0
         for i in range(6):
@@ -201,7 +208,7 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
                 gradient[3 + i] = 2.0 * n0[k] * u[i]
                 if second:
                     form[3 + i, 3 + i] = 2.0 * n0[k]
-        value += add_form(points, turn, npt[k], nw[k], p, u, gradient, form, second)
+        value += add_form(family, npt[k], nw[k], p, u, gradient, form, second)
         g = den[k]
         f[k] = math.log(value) - math.log(work[g, 0])
         for i in range(6):

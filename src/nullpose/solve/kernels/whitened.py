@@ -37,7 +37,7 @@ def fill_denominators(family, basis, centre, denominators, mean):
             denominators[g, m] = family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             x, y, z = seen_from(family.points_m, family.turn, family.denominator_point[e], centre, basis)
-            add_form(x, y, z, family.denominator_weight[e], 0.0, denominators[g])
+            add_form(x, y, z, family.leak, family.denominator_weight[e], 0.0, denominators[g])
         for m in range(6):
             mean[m] += denominators[g, m] / groups
 
@@ -66,7 +66,7 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
     for m in range(6):
         raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
     x, y, z = seen_from(family.points_m, family.turn, family.numerator_point[k], row[CENTRE:HALF], basis)
-    add_form(x, y, z, family.numerator_weight[k], family.numerator_isotropic[k], raw)
+    add_form(x, y, z, family.leak, family.numerator_weight[k], family.numerator_isotropic[k], raw)
     congruence(raw, back, out)
     if level_axes:  # no weight on the vertical: whitening leaves its direction alone
         out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level

@@ -17,7 +17,6 @@ from nullpose.solve.kernels.vectors import (
     along,
     combination,
     components,
-    cross,
     dot,
     minus,
     norm,
@@ -26,7 +25,7 @@ from nullpose.solve.kernels.vectors import (
     scaled,
     store,
 )
-from nullpose.solve.kernels.worst_case_links import Sets, strongest_link
+from nullpose.solve.kernels.worst_case_links import Sets, root_link, strongest_link
 
 __all__ = ["Errors", "Ratio", "descend", "into_ball", "into_cone", "ratio_at", "worst_found"]
 
@@ -41,7 +40,10 @@ Vector = tuple[float, float, float]
 
 
 class Ratio(NamedTuple):
-    """A ratio ``(a + c |y x v|^2) / (1 + sum_j b_j L_j)``: v the node's inverted point, L_j set j's link."""
+    """A ratio ``(a + c (|y x v|^2 + l (y.v)^2)) / (1 + sum_j b_j L_j)``.
+
+    v is the node's inverted point, L_j the link of set j, and l the antenna's leak.
+    """
 
     isotropic: float  # a
     weight: float  # c
@@ -49,6 +51,7 @@ class Ratio(NamedTuple):
     shares: FloatArray  # (n,) b_j
     centres: FloatArray  # (n, 3) of the sets
     sets: Sets
+    leak: float  # l
 
 
 class Errors(NamedTuple):
@@ -61,13 +64,13 @@ class Errors(NamedTuple):
 
 
 @inner_kernel
-def link_slopes(scale, y, q):
-    """Return the derivatives of ``scale |y x q|^2 / |q|^4`` by the axis and by an offset of the position."""
-    square, ahead = dot(q, q), dot(y, q)
+def link_slopes(scale, leak, y, q):
+    """Return the derivatives of a link times ``scale`` by the axis and by an offset of the position."""
+    square, bent = dot(q, q), (1.0 - leak) * dot(y, q)
     quartic = square * square
-    link = (square - ahead * ahead) / quartic
-    by_axis = over(scaled(2.0 * scale, along(scaled(square, y), -ahead, q)), quartic)
-    by_place = over(scaled(2.0, along(q, -ahead, y)), quartic)
+    link = (square - bent * dot(y, q)) / quartic
+    by_axis = over(scaled(2.0 * scale, along(scaled(square, y), -bent, q)), quartic)
+    by_place = over(scaled(2.0, along(q, -bent, y)), quartic)
     return by_axis, scaled(-scale, along(by_place, -1.0, over(scaled(4.0 * link, q), square)))
 
 
@@ -79,19 +82,20 @@ def ratio_at(ratio, y, offset, places):
     """
     below, below_y, below_d = 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for j in range(ratio.shares.shape[0]):
-        root, _, place = strongest_link(ratio.sets, j, y, minus(row(ratio.centres, j), offset), _LOOSE)
+        root, _, place = strongest_link(
+            ratio.sets, j, y, minus(row(ratio.centres, j), offset), ratio.leak, _LOOSE
+        )
         store(place, places[j])
         below += ratio.shares[j] * root * root
         if root < math.inf:
-            by_axis, by_offset = link_slopes(ratio.shares[j], y, place)
+            by_axis, by_offset = link_slopes(ratio.shares[j], ratio.leak, y, place)
             below_y, below_d = along(below_y, 1.0, by_axis), along(below_d, 1.0, by_offset)
     q = minus(ratio.node, offset)
     square = dot(q, q)
     if not (square > 0.0 and below < math.inf):
         return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    w = cross(y, q)
-    value = (ratio.isotropic + ratio.weight * dot(w, w) / (square * square)) / below
-    by_axis, by_offset = link_slopes(ratio.weight, y, q)
+    value = (ratio.isotropic + ratio.weight * root_link(y, q, ratio.leak) ** 2) / below
+    by_axis, by_offset = link_slopes(ratio.weight, ratio.leak, y, q)
     return value, over(along(by_axis, -value, below_y), below), over(along(by_offset, -value, below_d), below)
 
 
@@ -167,7 +171,7 @@ def null_within_reach(node, errors):
 def worst_found(ratio, errors, places):
     """Return the smallest ratio that descents from several errors end at, and the axis and offset there."""
     silent, y, offset = null_within_reach(ratio.node, errors)
-    if ratio.isotropic == 0.0 and silent:
+    if ratio.isotropic == ratio.leak == 0.0 and silent:
         return 0.0, y, offset
     nominal, first, second = errors.frame
     best = math.inf

@@ -2,9 +2,10 @@
 
 The axis is ``y = x0 f0 + x1 f1 + x2 f2`` with ``x0 = 1``, of any length, on a face of a cube about the drone.
 The ratio is at least t over a cell if ``F = (a - t) |y|^2 + c |y x v|^2 - t sum_j b_j |y|^2 L_j`` is not
-negative there. F less half of a bound on its second derivatives times the squared distance from the cell's
-centre is concave, whatever the places of the jammers, and so smallest at a corner of the cell. The cone and
-the ball of offsets enter with multipliers. Proofs: docs/robust.md.
+negative there, with ``|y x v|^2 + l (y.v)^2`` in place of ``|y x v|^2`` if the antenna leaks. F less half of
+a bound on its second derivatives times the squared distance from the cell's centre is concave, whatever the
+places of the jammers, and so smallest at a corner of the cell. The cone and the ball of offsets enter with
+multipliers. Proofs: docs/robust.md.
 """
 
 from __future__ import annotations
@@ -133,13 +134,15 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
             x = corner_of(cell.x, cell.x_half, 2 * m)
             y, square, length = axis_at(errors, cell.face, x), dot(x, x), norm(x)
             corners.cone[m] = x[ahead(cell.face)] ** 2 - errors.cosine**2 * square
-            w = 0.0
+            signal, noise = ratio.isotropic * square, square
             if weight > 0.0:
-                w = max(0.0, norm(cross(y, node)) - ROUND * length * norm(node)) / dot(node, node)
-            signal, noise = ratio.isotropic * square + weight * w * w, square
+                rounding = ROUND * length * norm(node)
+                across = max(0.0, norm(cross(y, node)) - rounding) / dot(node, node)
+                leaking = max(0.0, abs(dot(y, node)) - rounding) / dot(node, node)
+                signal += weight * (across * across + ratio.leak * leaking * leaking)
             for j in range(ratio.shares.shape[0]):
                 q = minus(row(ratio.centres, j), offset)
-                _, root, _ = strongest_link(ratio.sets, j, scaled(1.0 / length, y), q, tolerance)
+                _, root, _ = strongest_link(ratio.sets, j, scaled(1.0 / length, y), q, ratio.leak, tolerance)
                 if not root < math.inf:
                     return False
                 noise += ratio.shares[j] * (length * root) ** 2

@@ -1,7 +1,7 @@
 """The strongest link that a point known only up to a set can have: lemmas 1 to 3 of docs/robust.md.
 
 The link ``|y x q|^2 / |q|^4`` of a point at q is ``|y x v|^2`` with ``v = q / |q|^2``: the squared distance
-of the inverted point from the line of the axis (lemma 1).
+of the inverted point from the line of the axis (lemma 1). An antenna with a leak l adds ``l (y.v)^2``.
 """
 
 from __future__ import annotations
@@ -66,25 +66,55 @@ class Touching(NamedTuple):
 
 
 @inner_kernel
-def root_link(y, q):
-    """Return ``|y x q| / |q|^2``, the square root of a link."""
-    return norm(cross(y, q)) / dot(q, q)
+def root_link(y, q, leak):
+    """Return the square root of a link."""
+    across = norm(cross(y, q))
+    return (math.hypot(across, math.sqrt(leak) * dot(y, q)) if leak > 0.0 else across) / dot(q, q)
 
 
 @inner_kernel
-def strongest_in_ball(y, q, radius):
-    """Return lemma 2, the largest root link over a ball about q and where it is attained.
+def strongest_in_ball(y, q, radius, leak):
+    """Return lemma 2, (a bound on the largest root link over a ball about q, where it is about attained).
 
     Infinite if the ball reaches the origin.
     """
     clear = dot(q, q) - radius * radius
     if not clear > 0.0:
         return math.inf, _ORIGIN
-    side = along(q, -dot(q, y), y)
+    ahead = dot(q, y)
+    side = along(q, -ahead, y)
     # where the axis points at the centre any direction across it will do
     side = side if norm(side) > 1e-12 * norm(q) else perpendicular(y)
-    inverted = over(along(q, 1.0, over(scaled(radius, side), norm(side))), clear)
-    return (norm(cross(y, q)) + radius) / clear, over(inverted, dot(inverted, inverted))
+    most, lean = (norm(cross(y, q)) + radius) / clear, 0.0
+    if leak > 0.0 and radius > 0.0:
+        most, lean = leaking_bound(norm(cross(y, q)), ahead, radius, leak)
+        most = most / clear
+    elif leak > 0.0:
+        most = math.hypot(norm(cross(y, q)), math.sqrt(leak) * ahead) / clear
+    across = math.sqrt(max(0.0, radius * radius - lean * lean))
+    step = along(over(scaled(across, side), norm(side)), lean, y)
+    inverted = over(along(q, 1.0, step), clear)
+    return most, over(inverted, dot(inverted, inverted))
+
+
+@inner_kernel
+def leaking_bound(across, ahead, radius, leak):
+    """Return (the largest ``|y x v|^2 + l (y.v)^2`` over a ball, its root; the step along y to where it is).
+
+    The ball's centre has distance ``across`` from the line of y and is ``ahead`` along it. Lagrange's dual
+    ``m radius^2 + m across^2 / (m - 1) + m l ahead^2 / (m - l)`` is a bound for every m > 1; the least is
+    where its slope vanishes, between the two ends that the search starts from.
+    """
+    low = 1.0 + max(across / radius, 1e-12)
+    high = 1.0 + max(math.hypot(across, leak * ahead) / radius, 1e-12)
+    for _ in range(_ITERATIONS):
+        m = 0.5 * (low + high)
+        slope = radius * radius - (across / (m - 1.0)) ** 2 - (leak * ahead / (m - leak)) ** 2
+        low, high = (m, high) if slope < 0.0 else (low, m)
+    m = high
+    bound = m * (radius * radius + across * across / (m - 1.0) + leak * ahead * ahead / (m - leak))
+    lean = leak * ahead / (m - leak)
+    return math.sqrt(bound) * (1.0 + _HAIR), math.copysign(min(abs(lean), radius), ahead)
 
 
 @inner_kernel
@@ -192,11 +222,11 @@ def on_circle(y, angle):
 
 
 @kernel
-def strongest_in_ellipsoid(y, q, frame, semi, tolerance):
+def strongest_in_ellipsoid(y, q, frame, semi, leak, tolerance):
     """Return (attained, upper bound, place) of the largest root link over an ellipsoid about q.
 
     By lemma 3 (1) it is the largest h(w) over the unit vectors w across y: a circle, bounded arc by arc until
-    the bound is within the tolerance.
+    the bound is within the tolerance. What leaks is bounded by itself, at the least distance.
     """
     y, q = components(frame, y), components(frame, q)
     if not (q[0] / semi[0]) ** 2 + (q[1] / semi[1]) ** 2 + (q[2] / semi[2]) ** 2 > 1.0 + 1e-9:
@@ -228,8 +258,12 @@ def strongest_in_ellipsoid(y, q, frame, semi, tolerance):
         top += 2
     place = along(q, 1.0, times(semi, most))
     # w is across y up to rounding only, and no point inverted is longer than 1 over the least distance
-    upper = upper * (1.0 + _HAIR) + ROUND / least_distance(q, semi)
-    return root_link(y, place), upper, combination(frame, place)
+    near = least_distance(q, semi)
+    upper = upper * (1.0 + _HAIR) + ROUND / near
+    if leak > 0.0:
+        most = 1.0 / near if near > 0.0 else math.inf
+        upper = math.hypot(math.sqrt(1.0 - leak) * upper, math.sqrt(leak) * most) * (1.0 + _HAIR)
+    return root_link(y, place, leak), upper, combination(frame, place)
 
 
 @inner_kernel
@@ -253,13 +287,14 @@ def clearance_of(radius, axes, semi, j, q):
 
 
 @inner_kernel
-def strongest_of(radius, axes, semi, j, y, q, tolerance):
+def strongest_of(radius, axes, semi, j, y, q, leak, tolerance):
     """Return what ``strongest_link`` does; compiled without the branch where there are no axes."""
     if axes is not None:  # noqa: SIM102
         if radius < 0.0:
-            return strongest_in_ellipsoid(y, q, rows(axes[j]), row(semi, j), tolerance)
-    attained, place = strongest_in_ball(y, q, radius)
-    return attained, attained + ROUND * norm(q) / (dot(q, q) - radius * radius), place
+            return strongest_in_ellipsoid(y, q, rows(axes[j]), row(semi, j), leak, tolerance)
+    most, place = strongest_in_ball(y, q, radius, leak)
+    attained = root_link(y, place, leak) if leak > 0.0 and most < math.inf else most
+    return attained, most + ROUND * norm(q) / (dot(q, q) - radius * radius), place
 
 
 @kernel
@@ -269,6 +304,6 @@ def clearance(sets, j, q):
 
 
 @kernel
-def strongest_link(sets, j, y, q, tolerance):
+def strongest_link(sets, j, y, q, leak, tolerance):
     """Return (attained, upper bound, place) of the largest root link of set j about q, y a unit vector."""
-    return strongest_of(sets.radii[j], sets.axes, sets.semi, j, y, q, tolerance)
+    return strongest_of(sets.radii[j], sets.axes, sets.semi, j, y, q, leak, tolerance)

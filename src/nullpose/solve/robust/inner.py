@@ -113,6 +113,7 @@ class Inner:
             sets=Sets(self.radii[points], self.axes[points], self.semi[points])
             if np.any(self.radii < 0.0)
             else Sets(self.radii[points], None, None),
+            leak=family.leak,
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:

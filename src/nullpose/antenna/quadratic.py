@@ -1,0 +1,35 @@
+"""Antennas whose power gain is a quadratic form of their axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["QuadraticAntenna"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuadraticAntenna:
+    """An antenna of gain ``g = (1 - e) sin^2(gamma) + e``: 1 broadside, and e along its axis.
+
+    Its link to a point at r, gain over squared distance, is ``u^T M(r) u`` for a unit axis u, with
+    ``M(r) = (1 - e) T(r) + e I / |r|^2`` and ``T(r) = (|r|^2 I - r r^T) / |r|^4``. Solver and certificate
+    need no more than e of it.
+
+    Args:
+        name: as in a scenario file.
+        label: in sentences and tables.
+        leak: e, the gain along the axis, a power ratio from 0 to 1; 0 is a perfect null.
+    """
+
+    name: str
+    label: str
+    leak: float
+
+    def gain(self, sine_squared: Any) -> Any:
+        """Return the power gain at an angle from the axis, 1 broadside.
+
+        Args:
+            sine_squared: ``sin^2(gamma)``, a number or an array of any shape.
+        """
+        return self.leak + (1.0 - self.leak) * sine_squared
