@@ -154,6 +154,7 @@ def random_family() -> Callable[..., Family]:
             high_m=np.array([np.inf, np.inf, 30.0]),
             keep_out_points_m=points_m,
             keep_out_m=keep_out_m,
+            leak=float(rng.choice([0.0, 0.001, 0.3])),
         )
 
     return build
@@ -183,24 +184,24 @@ def make_leaves() -> Callable[..., Leaves]:
 
 
 @pytest.fixture(scope="session")
-def link_matrix() -> Callable[[np.ndarray], np.ndarray]:
-    """Returns a function: the forms of links, ``(|r|^2 I - r r^T) / |r|^4``, (..., 3, 3)."""
+def link_matrix() -> Callable[..., np.ndarray]:
+    """Returns a function: the forms of links, ``(|r|^2 I - (1 - leak) r r^T) / |r|^4``, (..., 3, 3)."""
 
-    def matrix(r: np.ndarray) -> np.ndarray:
+    def matrix(r: np.ndarray, leak: float) -> np.ndarray:
         square = np.sum(r * r, axis=-1)[..., None, None]
-        return (square * np.eye(3) - r[..., :, None] * r[..., None, :]) / square**2
+        return (square * np.eye(3) - (1.0 - leak) * r[..., :, None] * r[..., None, :]) / square**2
 
     return matrix
 
 
 @pytest.fixture(scope="session")
-def dense_forms(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., tuple]:
+def dense_forms(link_matrix: Callable[..., np.ndarray]) -> Callable[..., tuple]:
     """Returns a function: numerator and denominator of a family's first ratio at a position, densely."""
 
     def forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         g = family.denominator_of[0]
         entries = range(family.denominator_start[g], family.denominator_start[g + 1])
-        links = [link_matrix(point - position_m) for point in family.points_m]
+        links = [link_matrix(point - position_m, family.leak) for point in family.points_m]
         below = family.denominator_isotropic[g] * np.eye(3)
         below = below + sum(
             (family.denominator_weight[e] * links[family.denominator_point[e]] for e in entries),
@@ -213,14 +214,13 @@ def dense_forms(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[...
 
 
 @pytest.fixture(scope="session")
-def dense_ratios(link_matrix: Callable[[np.ndarray], np.ndarray]) -> Callable[..., np.ndarray]:
+def dense_ratios(link_matrix: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     """Returns a function: the ratios of a family at poses, (..., ratios), by plain matrices alone."""
 
     def ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
         u = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
-        gains = np.einsum(
-            "...i,...pij,...j->...p", u, link_matrix(family.points_m - position_m[..., None, :]), u
-        )
+        links = link_matrix(family.points_m - position_m[..., None, :], family.leak)
+        gains = np.einsum("...i,...pij,...j->...p", u, links, u)
         entries = family.denominator_weight * gains[..., family.denominator_point]
         sums = [entries[..., a:b].sum(axis=-1) for a, b in pairwise(family.denominator_start)]
         below = (family.denominator_isotropic + np.stack(sums, axis=-1))[..., family.denominator_of]

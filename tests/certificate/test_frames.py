@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.forms import COLUMN, ROW, matrices
-from nullpose.certificate.frames import Frames, constant, expansion, frames_of
+from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval
 from nullpose.family import Family
 
@@ -53,9 +53,12 @@ def test_expansions_enclose_the_forms(
         rotation = carried(frames, family.points_m[frames.anchor[0]], boxes.centre[0], p)
         for j in range(len(family.points_m)):
             form, up, down = expansion(family, frames, boxes, np.array([j]))
-            turned = basis.T @ rotation.T @ link_matrix(family.points_m[j] - p) @ rotation @ basis
+            turned = (
+                basis.T @ rotation.T @ link_matrix(family.points_m[j] - p, family.leak) @ rotation @ basis
+            )
             error = turned - full(form.value) - sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
-            around = full(frames.across) if turning and j == frames.anchor[0] else gram
+            anchored = turning and j == frames.anchor[0]
+            around = full(anchor_shape(family, frames)) if anchored else gram
             reach = 0.5 * float(x @ x)
             slack = 1e-12 * np.abs(turned).max()
             assert np.linalg.eigvalsh(error - up.high[0] * reach * around)[-1] <= slack
@@ -74,7 +77,7 @@ def test_the_form_at_the_centre_is_exact(
     assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
     for j in range(4):
         form = expansion(family, frames, boxes, np.array([j]))[0].value
-        exact = basis.T @ link_matrix(family.points_m[j] - boxes.centre[0]) @ basis
+        exact = basis.T @ link_matrix(family.points_m[j] - boxes.centre[0], family.leak) @ basis
         slack = 1e-14 * np.abs(exact).max()
         assert np.all(form.low[:, 0] - slack <= exact[ROW, COLUMN])
         assert np.all(exact[ROW, COLUMN] <= form.high[:, 0] + slack)

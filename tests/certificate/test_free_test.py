@@ -203,7 +203,7 @@ def test_the_remainder_near_a_null_is_a_bound(
         for x in corners * half:
             turn = carried(frames, anchor_m, centre, centre + x) @ frames.basis.middle()[:, :, 0]
             bound = full(form.value) + sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
-            exact = turn.T @ link_matrix(point_m - centre - x) @ turn
+            exact = turn.T @ link_matrix(point_m - centre - x, family.leak) @ turn
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]
             assert excess >= -1e-12 * np.trace(exact)
     assert 10 < used < 150

@@ -38,12 +38,12 @@ def random_scene() -> Callable[..., Scenario]:
 def dense_ratios() -> Callable[[Family, np.ndarray, np.ndarray], np.ndarray]:
     """Returns a function: the ratios of a family at a pose, by dense 3x3 matrices and nothing else."""
 
-    def link_matrix(r: np.ndarray) -> np.ndarray:
+    def link_matrix(r: np.ndarray, leak: float) -> np.ndarray:
         square = r @ r
-        return (square * np.eye(3) - np.outer(r, r)) / square**2
+        return (square * np.eye(3) - (1.0 - leak) * np.outer(r, r)) / square**2
 
     def ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
-        links = [link_matrix(point - position_m) for point in family.points_m]
+        links = [link_matrix(point - position_m, family.leak) for point in family.points_m]
         denominators = []
         for group, isotropic in enumerate(family.denominator_isotropic):
             matrix = isotropic * np.eye(3)

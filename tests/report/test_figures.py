@@ -8,6 +8,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from nullpose import Pose, Scenario
+from nullpose.antenna import SHORT_DIPOLE
 from nullpose.report.figures import draw_sweep
 from nullpose.report.figures.pattern import pattern_surface_m
 from nullpose.report.figures.style import CURVES
@@ -80,7 +81,8 @@ def test_pattern_is_sine_squared(axis: tuple[float, float, float]) -> None:
     """In each direction the surface is as far from the drone as the gain there, and zero along the axis."""
     pose = Pose.from_axis(np.array([1.0, -2.0, 8.0]), axis)
     points = (
-        pattern_surface_m(SHORT_DIPOLE, pose, 7.5, np.linspace(0.0, 2.0 * np.pi, 13)).reshape(3, -1).T - pose.position_m
+        pattern_surface_m(SHORT_DIPOLE, pose, 7.5, np.linspace(0.0, 2.0 * np.pi, 13)).reshape(3, -1).T
+        - pose.position_m
     )
     radii = np.linalg.norm(points, axis=1)
     far = radii > 1e-6

@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from nullpose.family import Family
+from nullpose.objectives import Ratios
 
 
 @pytest.fixture(scope="session")
 def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray]]:
     """Returns a function: a family's numerators (R, 3, 3) and denominators (G, 3, 3) at a position."""
 
-    def link_matrix(r: np.ndarray) -> np.ndarray:
+    def link_matrix(r: np.ndarray, leak: float) -> np.ndarray:
         square = r @ r
-        return (square * np.eye(3) - np.outer(r, r)) / square**2
+        return (square * np.eye(3) - (1.0 - leak) * np.outer(r, r)) / square**2
 
     def forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        links = [link_matrix(point - position_m) for point in family.points_m]
+        links = [link_matrix(point - position_m, family.leak) for point in family.points_m]
         numerators = [
             isotropic * np.eye(3) + weight * links[point]
             for isotropic, weight, point in zip(
@@ -33,6 +34,18 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
         return np.array(numerators), np.array(denominators)
 
     return forms
+
+
+@pytest.fixture(scope="session")
+def ratios_over() -> Callable[..., Ratios]:
+    """Returns a builder: one ratio over some points, for what asks for no more than points and leak."""
+
+    def build(points_m: np.ndarray, leak: float) -> Ratios:
+        none, first = np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
+        one, start = np.ones(1), np.zeros(2, dtype=np.int64)
+        return Ratios(points_m, np.zeros(1), one, first, first, one, start, none, np.zeros(0), leak=leak)
+
+    return build
 
 
 @pytest.fixture(scope="session")
@@ -56,6 +69,7 @@ def random_family() -> Callable[..., Family]:
             high_m=np.array([np.inf, np.inf, 30.0]),
             keep_out_points_m=np.zeros((0, 3)),
             keep_out_m=1.0,
+            leak=float(rng.choice([0.0, 0.01])),
         )
 
     return build

@@ -1,13 +1,15 @@
 """The jet of a link under an affine axis field, against the formula itself."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 from nullpose.family import AxisField
+from nullpose.objectives import Ratios
 from nullpose.solve.kernels.enclosure import JET, axis_clearance, link_jet
 
 POINT = np.array([[17.0, 15.0, 4.0]])
-UNTURNED = np.zeros((0, 3, 3))
 FIELDS = {
     "vertical": AxisField.vertical(),
     "null on the point itself's neighbour": AxisField.towards([-5.0, 30.0, 2.0]),
@@ -16,12 +18,12 @@ FIELDS = {
 PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
-def link(field: AxisField, p: np.ndarray) -> float:
-    """Return ``sin^2(gamma) / |r|^2`` at a position, from the definition."""
+def link(field: AxisField, p: np.ndarray, leak: float) -> float:
+    """Return gain over ``|r|^2`` at a position, from the definition."""
     offset, matrix = field.arrays.offset, field.arrays.matrix
     axis, r = offset + matrix @ p, POINT[0] - p
     sine = np.linalg.norm(np.cross(axis, r)) / (np.linalg.norm(axis) * np.linalg.norm(r))
-    return float(sine**2 / (r @ r))
+    return float((leak + (1.0 - leak) * sine**2) / (r @ r))
 
 
 def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -31,45 +33,49 @@ def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(rng.uniform(low, high), 10.0 ** rng.uniform(-2.5, 0.4, size=3)) for _ in range(count)]
 
 
+@pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
-def test_value_and_gradient_at_the_centre(field: AxisField) -> None:
+def test_value_and_gradient_at_the_centre(
+    field: AxisField, leak: float, ratios_over: Callable[..., Ratios]
+) -> None:
     """They agree with the definition and its central differences."""
     jet, step = np.empty(JET), 1e-4
     for centre, half in boxes(1, 30):
-        link_jet(POINT, UNTURNED, 0, field.arrays, centre, half, jet)
-        assert jet[0] == pytest.approx(link(field, centre), rel=1e-9, abs=1e-15)
+        link_jet(ratios_over(POINT, leak), 0, field.arrays, centre, half, jet)
+        assert jet[0] == pytest.approx(link(field, centre, leak), rel=1e-9, abs=1e-15)
         slopes = [
-            (link(field, centre + step * e) - link(field, centre - step * e)) / (2 * step) for e in np.eye(3)
+            (link(field, centre + step * e, leak) - link(field, centre - step * e, leak)) / (2 * step)
+            for e in np.eye(3)
         ]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
 
 
+@pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
-def test_the_box_is_enclosed(field: AxisField) -> None:
+def test_the_box_is_enclosed(field: AxisField, leak: float, ratios_over: Callable[..., Ratios]) -> None:
     """Anywhere in a box the value is within its bounds and every second difference within the Hessian's."""
     rng = np.random.default_rng(2)
     jet, step = np.empty(JET), 1e-3
     for centre, half in boxes(3, 40):
-        link_jet(POINT, UNTURNED, 0, field.arrays, centre, half, jet)
+        link_jet(ratios_over(POINT, leak), 0, field.arrays, centre, half, jet)
         for _ in range(6):
             p = centre + rng.uniform(-1.0, 1.0, size=3) * half
-            assert jet[16] * (1.0 - 1e-12) <= link(field, p) <= jet[17] * (1.0 + 1e-12)
+            assert jet[16] * (1.0 - 1e-12) <= link(field, p, leak) <= jet[17] * (1.0 + 1e-12)
             for entry, (i, k) in enumerate(PAIRS):
                 a, b = step * np.eye(3)[i], step * np.eye(3)[k]
-                second = link(field, p + a + b) - link(field, p + a - b)
-                second -= link(field, p - a + b) - link(field, p - a - b)
+                second = link(field, p + a + b, leak) - link(field, p + a - b, leak)
+                second -= link(field, p - a + b, leak) - link(field, p - a - b, leak)
                 error = abs(second / (4.0 * step * step) - jet[4 + entry])
                 assert error <= jet[10 + entry] * (1.0 + 1e-3) + 1e-8
 
 
-def test_the_enclosure_tightens_with_the_box() -> None:
+def test_the_enclosure_tightens_with_the_box(ratios_over: Callable[..., Ratios]) -> None:
     """Halving a small box halves the Hessian's radius: the bound is of third order."""
     jet = np.empty(JET)
     radii = []
     for scale in (1e-2, 5e-3):
-        link_jet(
-            POINT, UNTURNED, 0, FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale), jet
-        )
+        here = FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale)
+        link_jet(ratios_over(POINT, 0.0), 0, *here, jet)
         radii.append(jet[10:16].copy())
     np.testing.assert_allclose(radii[0] / radii[1], 2.0, rtol=0.05)
 

@@ -42,7 +42,7 @@ def exact_forms(family: Family, pose: list[Fraction]) -> tuple[list[Fraction], l
         r = [Fraction(float(q)) - x for q, x in zip(point, p, strict=True)]
         square = sum(x * x for x in r)
         dot = sum(a * b for a, b in zip(u, r, strict=True))
-        links.append((size * square - dot**2) / square**2)
+        links.append((size * square - (1 - Fraction(family.leak)) * dot**2) / square**2)
     numerators = [
         Fraction(float(isotropic)) * size + Fraction(float(weight)) * links[point]
         for isotropic, weight, point in zip(

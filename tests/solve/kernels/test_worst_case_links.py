@@ -128,3 +128,21 @@ def test_clearance_is_a_lower_bound(seed: int) -> None:
     assert 0.0 < least <= float(np.min(np.linalg.norm(points, axis=1)))
     radius = 0.5 * float(np.linalg.norm(q))
     assert clearance(ball(radius), 0, tuple(q)) == pytest.approx(radius, rel=1e-14)
+
+
+@given(seed=SEEDS, leak=st.sampled_from([1e-4, 0.01, 0.3]))
+def test_an_antenna_that_leaks(seed: int, leak: float) -> None:
+    """No point of a ball or an ellipsoid is above the bound, and a ball's is attained at the place named."""
+    rng = np.random.default_rng(seed)
+    axes, semi, q = an_ellipsoid(rng)
+    y = unit(rng) if seed % 2 else q / np.linalg.norm(q)
+    radius = float(rng.uniform(0.0, 0.9)) * float(np.linalg.norm(q))
+    x = unit(rng, 4000)
+    for sets, points in ((ball(radius), q + radius * x), (ellipsoid(axes, semi), q + (x * semi) @ axes.T)):
+        attained, upper, place = strongest_link(sets, 0, tuple(y), tuple(q), leak, LOOSE)
+        across, along = root_link(y, points), (points @ y) / np.sum(points**2, axis=-1)
+        assert np.all(np.hypot(across, np.sqrt(leak) * along) <= upper)
+        assert attained <= upper
+        if sets.axes is None:
+            assert attained == pytest.approx(upper, rel=1e-6, abs=1e-12)
+            assert float(np.linalg.norm(np.array(place) - q)) <= radius * (1.0 + 1e-9) + 1e-12
