@@ -56,7 +56,8 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float) ->
         root = Interval(leak).sqrt()
         along = dot(u, r), dot(matrix, r[:, None]) - u, -(matrix[ROW, COLUMN] + matrix[COLUMN, ROW])
         cross, slopes, bend = (
-            stack([each[0], each[1], each[2], root * last]) for each, last in zip((cross, slopes, bend), along, strict=True)
+            stack([each[0], each[1], each[2], root * last])
+            for each, last in zip((cross, slopes, bend), along, strict=True)
         )
     value, gradient, _ = _quotient(matrix, u, r, cross, slopes, bend)
     # u x r is quadratic in the position: over the boxes it is what its expansion at the centre makes of it
