@@ -1,15 +1,16 @@
 """How the documentation is built: `make docs`."""
 
 import sys
-import tomllib
 from pathlib import Path
+
+import nullpose
 
 DOCS = Path(__file__).parent
 sys.path[:0] = [str(DOCS), str(DOCS / "_ext")]
 
 project = "nullpose"
 author = "The nullpose developers"
-release = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+release = nullpose.__version__
 
 extensions = [
     "myst_parser",

@@ -9,7 +9,8 @@ from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
 from nullpose.certificate import verify
 from nullpose.physics.objective import objective_value
-from nullpose.solve import Solution, Status, certificate_of, solve
+from nullpose.solve import Solution, Status, solve
+from nullpose.solve.certificate_from_proof import certificate_of
 
 __all__ = ["Outcome", "check_scene"]
 

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
     from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
 
-    __version__: str
+__version__ = "0.1.0"
 
 __all__ = [
     "Airframe",
@@ -171,14 +171,9 @@ sys.modules[__name__].__class__ = _Face
 
 def __getattr__(name: str) -> Any:
     """Return a public name, importing its room at the first use (PEP 562)."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        value: Any = version("nullpose")
-    elif name in _ROOM_OF:
-        value = getattr(import_module(_ROOM_OF[name]), name)
-    else:
+    if name not in _ROOM_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_ROOM_OF[name]), name)
     globals()[name] = value
     return value
 

@@ -14,8 +14,8 @@ from nullpose.certificate.frames import Frames
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
-from nullpose.solve import certificate_of, solve
-from nullpose.solve.certificate_from_proof import leaves_of
+from nullpose.solve import solve
+from nullpose.solve.certificate_from_proof import certificate_of, leaves_of
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from nullpose.certificate import certificate_text, verify
 from nullpose.scenario import load
-from nullpose.solve import certificate_of, solve
+from nullpose.solve import solve
+from nullpose.solve.certificate_from_proof import certificate_of
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "certificate.md").read_text(encoding="utf-8")

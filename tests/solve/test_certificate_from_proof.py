@@ -10,8 +10,8 @@ from nullpose.certificate import verify
 from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, OFF_BAND, TOWARDS, WORLD
 from nullpose.errors import UsageError
 from nullpose.scenario import Airframe, Eavesdropper, Scenario, Transmitter
-from nullpose.solve import Solution, certificate_of, solve
-from nullpose.solve.certificate_from_proof import leaves_of
+from nullpose.solve import Solution, solve
+from nullpose.solve.certificate_from_proof import certificate_of, leaves_of
 from nullpose.solve.kernels import node
 
 ENOUGH_S = 600.0

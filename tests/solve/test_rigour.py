@@ -9,7 +9,8 @@ import pytest
 
 from nullpose import Scenario, SolveError, UsageError, apply_overrides, load, solve
 from nullpose.scenario import Array
-from nullpose.solve import Rigour, solve_array, solve_many, verified
+from nullpose.solve import Rigour, solve_array, solve_many
+from nullpose.solve.certificate_from_proof import verified
 from nullpose.solve.rigour import bound_above
 
 ENOUGH_S = 600.0

@@ -67,6 +67,8 @@ def main() -> None:
     """Run the command line and exit with its code."""
     # the kernels run no faster for LLVM's costlier passes, and compile a fifth longer
     os.environ.setdefault("NUMBA_OPT", "1")
+    # pydantic would look for plugins through all that is installed
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     # loading the libraries makes much that stays: to look through it for garbage takes a tenth of the start
     gc.set_threshold(100_000)
     app(prog_name="nullpose")

@@ -60,7 +60,7 @@ def show(view: RenderableType) -> None:
         def on_broken_pipe(self) -> None:
             raise BrokenPipeError
 
-    PlainConsole(highlight=False).print(view)
+    PlainConsole(highlight=False, emoji=False).print(view)
 
 
 def show_json(value: object) -> None:

@@ -139,14 +139,16 @@ def _solve_dipole(
     Raises:
         UsageError: before any work, there is no proof that could be checked, or no place on the map.
     """
-    from nullpose.report.geojson import require_origin
-    from nullpose.solve import require_certificate, verified
     from nullpose.solve import solve as solve_scenario
     from nullpose.solve.options import SolveOptions
 
     if checked:
+        from nullpose.solve.certificate_from_proof import require_certificate, verified
+
         require_certificate(scenario, scheme.value, null_jammer)
     if on_map:
+        from nullpose.report.geojson import require_origin
+
         require_origin(scenario)
     target = SolveOptions(**options).of(scenario).target
     with compiling_announced(), GapBar(target) as bar:
@@ -159,11 +161,12 @@ def _solve_dipole(
 
 def _write(solution: Result, certificate: Path | None, geojson: Path | None) -> None:
     """Write the files that were asked for."""
-    from nullpose.certificate import write_certificate
-    from nullpose.report.geojson import write_geojson
-    from nullpose.solve import certificate_of
-
     if certificate is not None:
+        from nullpose.certificate import write_certificate
+        from nullpose.solve.certificate_from_proof import certificate_of
+
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:
+        from nullpose.report.geojson import write_geojson
+
         write_geojson(solution, geojson)

@@ -3,7 +3,6 @@
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.array import ArrayDetails, solve_array
-from nullpose.solve.certificate_from_proof import certificate_of, require_certificate, verified
 from nullpose.solve.compiling import announce_compiling
 from nullpose.solve.many import ManySolutions, solve_many
 from nullpose.solve.options import (
@@ -42,13 +41,10 @@ __all__ = [
     "announce_compiling",
     "as_scheme",
     "best_axis",
-    "certificate_of",
     "compare",
     "default_gap",
     "default_gap_of",
-    "require_certificate",
     "solve",
     "solve_array",
     "solve_many",
-    "verified",
 ]

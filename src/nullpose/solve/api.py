@@ -9,7 +9,6 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.certificate import claimed_axes
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.objectives import Quantity
@@ -66,7 +65,7 @@ def solve(
     outcome = solve_scheme(scenario, scheme.record, asked, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
-    has_certificate = bool(outcome.proofs) and claimed_axes(scenario, scheme, null_jammer) is not None
+    has_certificate = bool(outcome.proofs) and scheme.record.fields(scenario, null_jammer) is not None
     rigour = Rigour.VERIFIABLE if has_certificate else Rigour.FLOATING_POINT
     status = Status.of(outcome.upper_bound, outcome.reason)
     return Result(

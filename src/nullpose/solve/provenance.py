@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import platform
 from functools import cache
-from importlib.metadata import version
+
+import numpy as np
+
+from nullpose import __version__
 
 __all__ = ["provenance"]
 
@@ -20,11 +23,13 @@ def provenance(seed: int) -> dict[str, object]:
 
 @cache
 def _versions() -> dict[str, object]:
+    import numba
+
     return {
-        "nullpose": version("nullpose"),
+        "nullpose": __version__,
         "python": platform.python_version(),
-        "numpy": version("numpy"),
-        "numba": version("numba"),
+        "numpy": np.__version__,
+        "numba": numba.__version__,
         "machine": platform.machine(),
         "system": platform.system(),
     }
