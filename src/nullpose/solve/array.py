@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
-from nullpose.objectives import Quantity
+from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import (
     analogue_sinr,
@@ -31,7 +31,6 @@ from nullpose.solve.result import Result, Stats, Status, objective_of
 
 __all__ = ["COMBININGS", "ArrayDetails", "solve_array"]
 
-FloatArray = NDArray[np.float64]
 
 COMBININGS = "digital", "analogue"
 """The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""

@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.family import AxisField
+from nullpose.objectives import FloatArray
 from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
 __all__ = ["ArrayBound", "array_bound"]
 
-FloatArray = NDArray[np.float64]
 
 _MOST_BOXES = 300_000
 _LEAST_BOXES = 20_000

@@ -6,13 +6,12 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.solve.array_task import ArrayTask
 
 __all__ = ["finished"]
 
-FloatArray = NDArray[np.float64]
 
 _STEPS = 300
 _PRECISION = 1e-13

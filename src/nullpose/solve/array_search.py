@@ -11,17 +11,16 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import AxisField
+from nullpose.objectives import FloatArray
 from nullpose.solve.array_finish import finished
 from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.multistart import NOT_RECEIVED, landmarks, multistart
 
 __all__ = ["ArrayHunt", "ArraySearch", "ArraySettings", "Pool"]
 
-FloatArray = NDArray[np.float64]
 
 _BETAS = np.array([4.0, 16.0, 64.0])
 _HOP_BETAS = _BETAS[1:]

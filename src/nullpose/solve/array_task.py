@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.family import Family, build_family
 from nullpose.family.records import ArrayProblem
+from nullpose.objectives import FloatArray
 from nullpose.physics.array import element_positions
 from nullpose.scenario import Array, Scenario
 
 __all__ = ["ArrayTask", "silent"]
 
-FloatArray = NDArray[np.float64]
 
 _CLEAR_M = 1e-9  # how far beyond a wall a position is put, more than the rounding of its coordinates
 _REPAIRS = 50

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, Family, build_family
+from nullpose.objectives import FloatArray
 from nullpose.scenario import Scenario
 from nullpose.schemes import SchemeRecord
 from nullpose.solve.incumbent import Incumbent
@@ -18,8 +18,6 @@ from nullpose.solve.position_search import search_positions
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["solve_scheme"]
-
-FloatArray = NDArray[np.float64]
 
 
 def solve_scheme(

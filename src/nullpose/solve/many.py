@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import SolveError, UsageError
 from nullpose.family import AxisField, Family, build_family
+from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solve.options import SolveKeywords, SolveOptions
@@ -24,8 +25,6 @@ from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 __all__ = ["NOWHERE", "ManySolutions", "solve_many"]
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""

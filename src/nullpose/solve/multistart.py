@@ -8,11 +8,11 @@ from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import AxisField, Family
 from nullpose.family.airspace import loosened
+from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.precompile import compile_search
 
@@ -26,8 +26,6 @@ __all__ = [
     "multistart",
     "search_settings",
 ]
-
-FloatArray = NDArray[np.float64]
 
 
 BORDER_M = 4e-10

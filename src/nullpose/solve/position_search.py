@@ -12,16 +12,15 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import SolveError
 from nullpose.family import Family
 from nullpose.family.airspace import loosened
+from nullpose.objectives import FloatArray
 from nullpose.solve.multistart import BORDER_M, NO_POSITION, NOT_RECEIVED, landmarks
 
 __all__ = ["search_positions"]
 
-FloatArray = NDArray[np.float64]
 
 _COARSE = 256
 _POLISHED = 8

@@ -7,20 +7,19 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
+from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import climb
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
-from nullpose.solve.worker_pool import Task, WorkerPool, processors
+from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
-__all__ = ["INTERRUPT", "BudgetUsed", "Proof", "prove"]
-
-FloatArray = NDArray[np.float64]
+__all__ = ["INTERRUPT", "Proof", "prove"]
 
 _DIRECT_NODES = 20_000  # of a try with axes split early; most problems of the paper's size need a few hundred
 _LATE_NODES = 3_000
@@ -59,19 +58,6 @@ class Proof:
     nodes: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BudgetUsed:
-    """What was used of the limits before a run began.
-
-    Args:
-        seconds: time.
-        nodes: nodes examined.
-    """
-
-    seconds: float = 0.0
-    nodes: int = 0
-
-
 class _Run:
     """The state of one run: arrays that the kernels write, and the clock."""
 
@@ -81,7 +67,8 @@ class _Run:
         axis_field: AxisField,
         incumbent: Incumbent,
         limits: SolveOptions,
-        used: BudgetUsed,
+        began: float,
+        nodes: int,
         bound: float,
     ) -> None:
         from nullpose.solve.kernels import branch, node
@@ -90,8 +77,8 @@ class _Run:
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
-        self.deadline = time.perf_counter() + limits.time_limit_s - used.seconds
-        self.node_limit = max(1, limits.node_limit - used.nodes)
+        self.deadline = began + limits.time_limit_s
+        self.node_limit = max(1, limits.node_limit - nodes)
         self.nodes = 0
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
@@ -155,7 +142,8 @@ class _Run:
         until = self.nodes + most
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while True:
-                self.nodes += workers.work(self._task(gap, until), pool)
+                budget = max(1, min(self.chunk, until - self.nodes))
+                self.nodes += workers.work(self._excluding(gap), budget, pool)
                 for position_m, axis in workers.better():
                     self._improve(position_m, axis)
                 if workers.done:
@@ -170,17 +158,13 @@ class _Run:
                 if workers.filled > _MOST_LEAVES:
                     return none, f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
 
-    def _task(self, gap: float, until: int) -> Task:
+    def _excluding(self, gap: float) -> Kernel:
+        """Return the kernel that excludes all above ``value (1 + gap)``."""
         from nullpose.solve.kernels.records import Goal
 
-        arguments = (
-            self.family.arrays,
-            self.family.domain,
-            self.axis_field.arrays,
-            self.value * (1.0 + gap),
-            Goal(self.value * (1.0 + self.doubt), self.favourite, self.axes_above),
-        )
-        return Task(self.branch, self.kernel.BETTER, arguments, max(1, min(self.chunk, until - self.nodes)))
+        goal = Goal(self.value * (1.0 + self.doubt), self.favourite, self.axes_above)
+        family, level = self.family, self.value * (1.0 + gap)
+        return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
 
     def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
         from nullpose.solve.kernels.links import min_log_ratio
@@ -231,7 +215,8 @@ def prove(
     incumbent: Incumbent,
     limits: SolveOptions,
     *,
-    used: BudgetUsed | None = None,
+    began: float | None = None,
+    nodes: int = 0,
     bound: float = math.inf,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
@@ -245,10 +230,12 @@ def prove(
         incumbent: the incumbent.
         limits: target gap, time, nodes and progress; a KeyboardInterrupt during the run ends it with the
             bound reached.
-        used: what was used of the limits before.
+        began: when the clock of the limits began, that of ``time.perf_counter``; now, if left out.
+        nodes: nodes examined before, which count towards the limit.
         bound: known before, of a field that holds all axes of this one; the leaves do not show it.
     """
-    run = _Run(family, axis_field, incumbent, limits, used or BudgetUsed(), bound)
+    began = time.perf_counter() if began is None else began
+    run = _Run(family, axis_field, incumbent, limits, began, nodes, bound)
     root = run.root()
     leaves = run.by_distance(root)
     target = run.target

@@ -12,7 +12,7 @@ from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import multistart, search_settings
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import precompile
-from nullpose.solve.proof import BudgetUsed, Proof, prove
+from nullpose.solve.proof import Proof, prove
 
 __all__ = ["Outcome", "solve_and_prove"]
 
@@ -78,8 +78,8 @@ def solve_and_prove(
         # the level to exclude is that of the best of all; where to look for better poses is this field's
         least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
         start = replace(each[i], log_value=max(best.log_value, least))
-        used = BudgetUsed(seconds=time.perf_counter() - began, nodes=sum(p.nodes for p in proofs))
-        proof = prove(family, field, start, options, used=used, bound=bound)
+        nodes = sum(p.nodes for p in proofs)
+        proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound)
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from itertools import chain
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Task", "WorkerPool", "processors"]
+from nullpose.objectives import FloatArray
 
-FloatArray = NDArray[np.float64]
+__all__ = ["Kernel", "WorkerPool", "processors"]
+
+Kernel: TypeAlias = Callable[..., Any]
+"""The branch and bound kernel with its arguments before the stack."""
 
 _FEWEST_TO_SHARE = 8
 _MOST_WORKERS = 8
-_BLOCK = 32_768
-_DEPTH = 1024  # rows that a stack is given beyond those it begins with: growing it later holds it twice
+_BLOCK = 32_768  # leaves that are made room for at once, at most
+_DEPTH = 1024  # rows that a stack is given beyond those it begins with
+_SPARE = 16  # rows of a stack that a kernel needs
 
 
 def processors() -> int:
@@ -30,39 +31,24 @@ def processors() -> int:
         return os.cpu_count() or 1
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Task:
-    """What every worker does: the arguments of the kernel that come before its own stack.
+class _Worker:
+    """A stack of nodes to do, ``top`` of them, and the leaves made of them, ``filled`` of them.
 
-    Args:
-        branch: the kernel.
-        better: its code of a pose that beats the incumbent.
-        arguments: family, domain, axis field, level, goal.
-        budget: nodes to work off before it reports.
+    Both arrays grow in place: a larger copy would hold them twice.
     """
 
-    branch: Any
-    better: int
-    arguments: tuple[Any, ...]
-    budget: int
-
-
-class _Worker:
-    """A stack of nodes to do and the leaves made of them."""
-
-    def __init__(self, columns: int) -> None:
-        self.stack = np.empty((256, columns))
-        self.blocks: list[FloatArray] = []  # full ones: growing one array would hold it twice
-        self.leaves = np.empty((1024, columns))
+    def __init__(self, nodes: FloatArray) -> None:
+        self.stack, self.leaves = np.empty((0, nodes.shape[1])), np.empty((1024, nodes.shape[1]))
         self.top = self.filled = 0
         self.position_m, self.axis = np.empty(3), np.empty(3)
         self.better = False
+        self.take(nodes)
 
-    def take(self, rows: FloatArray) -> None:
+    def take(self, nodes: FloatArray) -> None:
         """Put nodes on the stack."""
-        self.stack = _grown(self.stack, self.top, len(rows) + _DEPTH)
-        self.stack[self.top : self.top + len(rows)] = rows
-        self.top += len(rows)
+        _make_room(self.stack, self.top + len(nodes) + _DEPTH)
+        self.stack[self.top : self.top + len(nodes)] = nodes
+        self.top += len(nodes)
 
     def give(self) -> FloatArray:
         """Return every second node of the stack, which has one less half of its nodes then."""
@@ -71,42 +57,20 @@ class _Worker:
         self.stack[: self.top] = kept
         return given
 
-    @property
-    def made(self) -> int:
-        """How many leaves it has made."""
-        return sum(len(block) for block in self.blocks) + self.filled
+    def work(self, kernel: Kernel, budget: int) -> int:
+        """Work off a budget of nodes, or less if one beats the incumbent; return how many it was."""
+        from nullpose.solve.kernels.branch import BETTER
 
-    def hand_over(self, out: FloatArray) -> None:
-        """Move the leaves into an array of their number, and let go of each block once it is copied."""
-        used = 0
-        self.stack = out[:0]
-        last, self.leaves = self.leaves[: self.filled], out[:0]
-        for block in chain(_popped(self.blocks), (last,)):
-            out[used : used + len(block)] = block
-            used += len(block)
-
-    def work(self, task: Task) -> int:
-        """Work off a budget of nodes; return how many it was."""
-        self.better = False
-        total = 0
-        while self.top and total < task.budget and not self.better:
-            self.stack = _grown(self.stack, self.top, 16)
+        self.better, total = False, 0
+        while self.top and total < budget and not self.better:
+            if self.top + _SPARE > len(self.stack):
+                _make_room(self.stack, self.top + self.top // 2 + _SPARE)
             if self.filled == len(self.leaves):
-                self.blocks.append(self.leaves)
-                self.leaves = np.empty((min(_BLOCK, 2 * self.filled), self.leaves.shape[1]))
-                self.filled = 0
-            code, self.top, self.filled, done, _ = task.branch(
-                *task.arguments,
-                self.stack,
-                self.top,
-                self.leaves,
-                self.filled,
-                task.budget - total,
-                self.position_m,
-                self.axis,
-            )
+                _make_room(self.leaves, self.filled + min(self.filled, _BLOCK))
+            stacks = self.stack, self.top, self.leaves, self.filled
+            code, self.top, self.filled, done, _ = kernel(*stacks, budget - total, self.position_m, self.axis)
             total += done
-            self.better = code == task.better
+            self.better = code == BETTER
         return total
 
 
@@ -119,10 +83,8 @@ class WorkerPool:
     """
 
     def __init__(self, start: FloatArray, workers: int) -> None:
-        self._workers = [_Worker(start.shape[1]) for _ in range(max(1, min(workers, _MOST_WORKERS)))]
-        self._columns = start.shape[1]
-        for i, worker in enumerate(self._workers):
-            worker.take(start[i :: len(self._workers)])
+        count = max(1, min(workers, _MOST_WORKERS))
+        self._workers = [_Worker(start[i::count]) for i in range(count)]
 
     @property
     def done(self) -> bool:
@@ -132,15 +94,18 @@ class WorkerPool:
     @property
     def filled(self) -> int:
         """How many leaves there are."""
-        return sum(worker.made for worker in self._workers)
+        return sum(worker.filled for worker in self._workers)
 
-    def work(self, task: Task, pool: ThreadPoolExecutor | None) -> int:
+    def work(self, kernel: Kernel, budget: int, pool: ThreadPoolExecutor | None) -> int:
         """Let every worker with nodes work off a budget; return how many nodes it was in all."""
-        self._share()
+        for idle in self._workers:
+            richest = max(self._workers, key=lambda worker: worker.top)
+            if not idle.top and richest.top >= _FEWEST_TO_SHARE:
+                idle.take(richest.give())
         busy = [worker for worker in self._workers if worker.top]
         if pool is None or len(busy) == 1:
-            return sum(worker.work(task) for worker in busy)
-        return sum(pool.map(lambda worker: worker.work(task), busy))
+            return sum(worker.work(kernel, budget) for worker in busy)
+        return sum(pool.map(lambda worker: worker.work(kernel, budget), busy))
 
     def better(self) -> list[tuple[FloatArray, FloatArray]]:
         """Return the poses, position and axis, that beat the incumbent."""
@@ -148,31 +113,16 @@ class WorkerPool:
 
     def leaves(self) -> FloatArray:
         """Return all leaves made; the workers give up theirs, since memory for both would be too much."""
-        together = np.empty((self.filled, self._columns))
-        used = 0
-        for worker in self._workers:
-            made = worker.made
-            worker.hand_over(together[used : used + made])
-            used += made
-        return together
-
-    def _share(self) -> None:
-        for idle in self._workers:
-            richest = max(self._workers, key=lambda worker: worker.top)
-            if not idle.top and richest.top >= _FEWEST_TO_SHARE:
-                idle.take(richest.give())
+        first, *others = self._workers
+        used, whole = first.filled, first.leaves
+        _make_room(whole, self.filled)
+        for worker in others:
+            whole[used : used + worker.filled] = worker.leaves[: worker.filled]
+            used += worker.filled
+            del worker.leaves
+        return whole
 
 
-def _popped(blocks: list[FloatArray]) -> Iterator[FloatArray]:
-    """Yield the blocks in order, each removed from the list."""
-    while blocks:
-        yield blocks.pop(0)
-
-
-def _grown(array: FloatArray, used: int, spare: int) -> FloatArray:
-    """Return the array, longer by half or more if its used part leaves fewer than ``spare`` rows."""
-    if used + spare <= len(array):
-        return array
-    larger = np.empty((max(used + spare, len(array) + len(array) // 2), array.shape[1]))
-    larger[:used] = array[:used]
-    return larger
+def _make_room(array: FloatArray, rows: int) -> None:
+    """Give an array so many rows, in place."""
+    array.resize((rows, array.shape[1]), refcheck=False)

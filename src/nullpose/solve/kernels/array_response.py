@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import minus, over, row, store
 
@@ -25,7 +26,6 @@ __all__ = [
     "respond",
 ]
 
-FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _TINY = 1e-300

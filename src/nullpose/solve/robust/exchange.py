@@ -8,20 +8,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.family import AxisField, Family
 from nullpose.family.robust import BindingCase, build_robust_family
+from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import SearchSettings, climb, multistart, search_settings
 from nullpose.solve.options import SolveOptions
-from nullpose.solve.proof import BudgetUsed, prove
+from nullpose.solve.proof import prove
 from nullpose.solve.robust.inner import Inner
 
 __all__ = ["Exchange", "Visited"]
 
-FloatArray = NDArray[np.float64]
 
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
@@ -167,13 +166,12 @@ class Exchange:
         start = self.incumbent
         if self.limits.of_rate:  # a rate is never below zero
             start = replace(start, log_value=max(0.0, start.log_value))
-        used = BudgetUsed(seconds=time.perf_counter() - began, nodes=self.boxes)
         value = math.exp(start.log_value)
         gap = level / value - 1.0
         if not gap > _LEAST_GAP:  # the search was cut short
             gap = self.limits.ratio_gap(value)
         target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
-        proof = prove(self.family, self.axis_field, start, target, used=used)
+        proof = prove(self.family, self.axis_field, start, target, began=began, nodes=self.boxes)
         self.boxes += proof.nodes
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
+from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.inner import Inner, RatioGuarantee
 
 __all__ = ["ACCURACY", "Guarantee", "RatioGuarantee", "guarantee", "guarantee_of"]
 
-FloatArray = NDArray[np.float64]
 
 ACCURACY = 3e-3
 """Relative distance between a guarantee and the worst case found, unless another is asked for."""

@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.family import build_family
 from nullpose.family.robust import BindingCase, interferer_field, point_uncertainty_m
+from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
 from nullpose.scenario import Scenario
 
 __all__ = ["Inner", "RatioGuarantee"]
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ROUND_SET = 1e-12  # semi-axes this close make a ball
 _FLATTEST = 1e-9  # semi-axes are at least this share of the largest

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
 __all__ = ["in_words"]
 
-FloatArray = NDArray[np.float64]
 
 _LEAST_RAD = 1e-9
 _LEAST_M = 1e-6
