@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.report.numbers import MINUS
-from nullpose.studio.colours import scale_colours, scale_range
+from nullpose.studio.colours import round_steps, scale_colours, scale_range
 from nullpose.studio.drawing import FLAT, add_label, add_lines
 from nullpose.studio.field_map import Field
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Carpet"]
 
-_STEPS = (0.5, 1.0, 2.0, 5.0)
+_LIFT_M = 0.05  # off the grid on the ground
 _FINER = 6  # pixels for each step of the grid
 _ALPHA = 105
 _WHITE = (250, 250, 250)
@@ -35,16 +35,15 @@ class Carpet:
         self._scene = scene
         self._parts: list[Any] = []
 
-    def show(self, field: Field, *, lift_m: float = 0.0) -> tuple[float, float]:
+    def show(self, field: Field) -> tuple[float, float]:
         """Return the ends of the scale after drawing a field in place of the one before.
 
         Args:
-            field: what to draw.
-            lift_m: how far above its altitude it is drawn, metres.
+            field: what to draw, a little above its altitude.
         """
         self.hide()
         low, high = scale_range(field.values)
-        east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + lift_m
+        east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
         width = float(east[-1] + east[1] - 2.0 * east[0])
         height = float(north[-1] - north[0] + east[1] - east[0])
         image = self._scene.add_image(
@@ -60,18 +59,16 @@ class Carpet:
         self._parts.append(image)
         contours = _contours(field, low, high)
         if contours:
-            segments = [np.stack([line[:-1], line[1:]], axis=1) for _, line in contours]
-            flat = np.concatenate(segments)
+            flat = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for _, line in contours])
             raised = np.insert(flat, 2, altitude_m + 1e-3 * width, axis=-1)
             self._parts.append(add_lines(self._scene, "/map/contours", raised, _WHITE, 1.3))
         levels = sorted({level for level, _ in contours})
         for level in levels[:: max(1, len(levels) // _MOST_LABELS)]:
             points = np.concatenate([line for own, line in contours if own == level])
             x, y = points[np.argmin(points[:, 1])]  # southmost, out of the way of what is in the middle
-            text = f"{level:g} {field.unit}".replace("-", MINUS)
-            name = f"/map/level-{level:g}"
-            label = add_label(self._scene, name, text, (x, y, altitude_m), 0.7, "center-center")
-            self._parts.append(label)
+            name, text = f"/map/level-{level:g}", f"{level:g} {field.unit}".replace("-", MINUS)
+            at = (x, y, altitude_m)
+            self._parts.append(add_label(self._scene, name, text, at, 0.7, "center-center"))
         return low, high
 
     def hide(self) -> None:
@@ -97,7 +94,6 @@ def _contours(field: Field, low: float, high: float) -> list[tuple[float, NDArra
     """Return the contours, each with its level, as points, (n, 2)."""
     from contourpy import contour_generator
 
-    step = next((one for one in _STEPS if (high - low) / one <= 8.0), 10.0)
     generator = contour_generator(field.east_m, field.north_m, np.ma.masked_invalid(field.values))
-    levels = step * np.arange(np.ceil(low / step), np.floor(high / step) + 1.0)
+    levels = (level for level in round_steps(low, high, 8) if low <= level <= high)
     return [(level, np.asarray(line)) for level in levels for line in generator.lines(level) if len(line) > 4]

@@ -1,15 +1,14 @@
-"""Colours that every kind of colour vision tells apart, and the dB scale of maps and links."""
+"""Colours that every kind of colour vision tells apart, the dB scale of maps and links, round numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["KIND_COLOURS", "SLOTS", "Rgb", "css", "scale_colours", "scale_range"]
+__all__ = ["KIND_COLOURS", "SLOTS", "Rgb", "css", "round_steps", "scale_colours", "scale_range"]
 
 Rgb = tuple[int, int, int]
 
@@ -34,13 +33,6 @@ def css(colour: Iterable[int]) -> str:
     return "#{:02x}{:02x}{:02x}".format(*colour)
 
 
-@cache
-def _table() -> NDArray[np.uint8]:
-    from matplotlib import colormaps
-
-    return np.asarray(255.0 * colormaps["viridis"](np.linspace(0.0, 1.0, 256))[:, :3] + 0.5, dtype=np.uint8)
-
-
 def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint8]:
     """Return colours, shape (..., 3): viridis from a low value to a high one, ends held; NaN becomes the low.
 
@@ -49,9 +41,12 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
         low: value of the dark end.
         high: value of the bright end.
     """
+    from matplotlib import colormaps
+
     share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
-    index = np.nan_to_num(255.0 * share, nan=0.0, posinf=255.0, neginf=0.0).clip(0.0, 255.0)
-    return np.asarray(_table()[index.astype(np.intp)])
+    return np.asarray(
+        colormaps["viridis"](np.nan_to_num(share, nan=0.0, posinf=1.0, neginf=0.0), bytes=True)[..., :3]
+    )
 
 
 def scale_range(values: ArrayLike) -> tuple[float, float]:
@@ -67,3 +62,16 @@ def scale_range(values: ArrayLike) -> tuple[float, float]:
     high = float(np.ceil(finite.max()))
     low = float(np.floor(np.percentile(finite, 5.0)))
     return min(high - _LEAST_SPAN, max(low, high - _MOST_SPAN)), high
+
+
+def round_steps(low: float, high: float, most: int) -> NDArray[np.float64]:
+    """Return round numbers at even steps of 1, 2 or 5 times a power of ten, just beyond both ends too.
+
+    Args:
+        low: the lower end.
+        high: the upper end.
+        most: how many steps at most.
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    return np.asarray(MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(low, high))

@@ -70,11 +70,11 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
     from nullpose.studio.carpet import Carpet
     from nullpose.studio.drone import Drone
     from nullpose.studio.opening import LOOPBACK, open_server
-    from nullpose.studio.panel import BEST_MAP, NO_MAP
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
-    view, answers, fields = session.view, _current(session), session.field_map
+    view, answers, maps = session.view, _current(session), session.field_map
+    field = None if maps is None else maps.named(chosen_map)
     size_m = scene_size_m(view.scenario)
     server, _ = open_server(LOOPBACK, 0)
     try:
@@ -83,8 +83,8 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
         for slot, answer in enumerate(answers):
             text = drone_text(session, slot)
             Drone(server.scene, slot, size_m).show(answer, text, link_range_db, pattern=True)
-        if fields is not None and chosen_map != NO_MAP:
-            Carpet(server.scene).show(fields.best if chosen_map == BEST_MAP else fields.footprint)
+        if field is not None:
+            Carpet(server.scene).show(field)
         return str(server.scene.as_html()).encode()
     finally:
         with redirect_stdout(StringIO()):

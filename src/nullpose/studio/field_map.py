@@ -13,9 +13,12 @@ from nullpose.physics import antenna_gain, objective_value, to_db
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
 
-__all__ = ["Field", "FieldMap", "field_map", "map_extent_m"]
+__all__ = ["MAPS", "Field", "FieldMap", "field_map", "map_extent_m"]
 
 FloatArray = NDArray[np.float64]
+
+MAPS = ("best value at each place", "pattern's footprint")
+"""What the two maps are called, the first being that of the best values."""
 
 _CELLS = 45  # points along the longer side
 _CHUNK = 64  # positions tried together against all sampled axes
@@ -36,6 +39,7 @@ class Field:
         altitude_m: of the plane, metres.
         values: (ny, nx), not a number where there is none.
         unit: as in "dB".
+        title: what it shows.
     """
 
     east_m: FloatArray
@@ -43,6 +47,7 @@ class Field:
     altitude_m: float
     values: FloatArray
     unit: str
+    title: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,6 +63,14 @@ class FieldMap:
     version: int
     best: Field
     footprint: Field
+
+    def named(self, name: str) -> Field | None:
+        """Return the map of a name, or None.
+
+        Args:
+            name: one of ``MAPS``, or any other.
+        """
+        return dict(zip(MAPS, (self.best, self.footprint), strict=True)).get(name)
 
 
 def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -103,14 +116,23 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     loss = np.sum((ground - pose.position_m) ** 2, axis=-1) / max(1.0, altitude_m**2)
     at = (pose.position_m, pose.antenna_axis, ground.reshape(-1, 3))
     gain = antenna_gain(*at, scenario.antenna_record).reshape(loss.shape)
-    plane = {"east_m": east, "north_m": north}
-    best = values if quantity.is_rate else _db(values)
-    footprint = _db(gain / np.maximum(loss, 1e-12))
-    return FieldMap(
-        version=answer.version,
-        best=Field(**plane, altitude_m=altitude_m, values=best, unit=quantity.unit),
-        footprint=Field(**plane, altitude_m=0.0, values=footprint, unit="dB"),
+    best = Field(
+        east_m=east,
+        north_m=north,
+        altitude_m=altitude_m,
+        values=values if quantity.is_rate else _db(values),
+        unit=quantity.unit,
+        title=f"best value at each place, {altitude_m:.1f} m up; lines to nodes",
     )
+    footprint = Field(
+        east_m=east,
+        north_m=north,
+        altitude_m=0.0,
+        values=_db(gain / np.maximum(loss, 1e-12)),
+        unit="dB",
+        title="gain over path loss on the ground, 0 straight below at full gain",
+    )
+    return FieldMap(version=answer.version, best=best, footprint=footprint)
 
 
 def _points_m(scenario: Scenario) -> FloatArray:
@@ -131,15 +153,11 @@ def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], No
     if given:
         each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in given]
         return np.asarray(np.max(each, axis=0))
-    if fields is None:
-        axes = _ranked_axes((0.0, 1.0), positions_m, lambda some, axes: _served(scenario, some, axes), go_on)
-    elif scenario.axis_band == (0.0, 1.0) and not answer.result.objective.quantity.is_rate:
+    is_rate = answer.result.objective.quantity.is_rate
+    if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate:
         axes = _exact_axes(scenario, positions_m, go_on)
     else:
-        rank = objective_value
-        axes = _ranked_axes(
-            scenario.axis_band, positions_m, lambda some, axes: rank(scenario, some, axes), go_on
-        )
+        axes = _ranked_axes(scenario, positions_m, _served if fields is None else objective_value, go_on)
     return objective_value(scenario, positions_m, axes)
 
 
@@ -164,13 +182,13 @@ def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> Fl
 
 
 def _ranked_axes(
-    elevation_band: tuple[float, float],
+    scenario: Scenario,
     positions_m: FloatArray,
-    rank: Callable[[FloatArray, FloatArray], FloatArray],
+    rank: Callable[[Scenario, FloatArray, FloatArray], FloatArray],
     go_on: Callable[[], None],
 ) -> FloatArray:
-    """Return, for each position, the highest ranked of axes spread evenly over a band of ``u_z^2``."""
-    low, high = np.sqrt(elevation_band)
+    """Return, for each position, the highest ranked of axes spread evenly over those reached."""
+    low, high = np.sqrt(scenario.axis_band)
     up = low + (high - low) * np.linspace(0.0, 1.0, _AXES)
     across, azimuth_rad = np.sqrt(np.maximum(0.0, 1.0 - up**2)), _GOLDEN_RAD * np.arange(_AXES)
     axes = np.stack([across * np.cos(azimuth_rad), across * np.sin(azimuth_rad), up], axis=-1)
@@ -178,5 +196,5 @@ def _ranked_axes(
     for start in range(0, len(positions_m), _CHUNK):
         go_on()
         some = slice(start, start + _CHUNK)
-        chosen[some] = axes[np.argmax(rank(positions_m[some, None, :], axes), axis=1)]
+        chosen[some] = axes[np.argmax(rank(scenario, positions_m[some, None, :], axes), axis=1)]
     return chosen

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 import subprocess
 import sys
 import threading
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,40 +15,32 @@ import numpy as np
 from nullpose.family import build_family
 from nullpose.scenario import Airspace, Node, Receiver, Scenario
 
-__all__ = ["MapKernel", "compile_map_kernel"]
+__all__ = ["compile_map_kernel", "map_kernel_is_ready"]
 
 _PROGRAM = "from nullpose.studio.map_kernel import compile_map_kernel as c; c()"
 
+_asking = threading.Lock()
 
-class MapKernel:
-    """Whether the kernel can be called without compiling it; starts its compilation if it cannot."""
 
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._process: subprocess.Popen[bytes] | None = None
-        self._asked = False
+def map_kernel_is_ready() -> bool:
+    """Return whether the kernel can be called without compiling it; the first call has it compiled if not."""
+    with _asking:
+        process = _compilation()
+        return process is None or process.poll() is not None
 
-    def is_ready(self) -> bool:
-        """Return whether the kernel is at hand; the first call begins its compilation if it is not."""
-        with self._lock:
-            if not self._asked and not _is_compiled():
-                with suppress(OSError):
-                    command = [sys.executable, "-c", _PROGRAM]
-                    quiet = subprocess.DEVNULL
-                    self._process = subprocess.Popen(command, stdin=quiet, stderr=quiet)
-            self._asked = True
-            return self._process is None or self._process.poll() is not None
 
-    def __del__(self) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """End a compilation that still runs."""
-        with self._lock:
-            self._asked = True
-            if self._process is not None:
-                self._process.kill()
-                self._process.wait()
+@cache
+def _compilation() -> subprocess.Popen[bytes] | None:
+    """Return the process that compiles the kernel; None where there is nothing to compile, or no process."""
+    if _is_compiled():
+        return None
+    with suppress(OSError):
+        quiet = subprocess.DEVNULL
+        process = subprocess.Popen([sys.executable, "-c", _PROGRAM], stdin=quiet, stderr=quiet)
+        atexit.register(process.wait)
+        atexit.register(process.kill)  # before it is waited for
+        return process
+    return None
 
 
 def compile_map_kernel() -> None:

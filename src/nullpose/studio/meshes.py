@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.antenna import QuadraticAntenna
 from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
+from nullpose.report.geometry import outline_m
 from nullpose.scenario import NoFlyZone
 
 __all__ = [
@@ -167,9 +168,7 @@ def zone_mesh(zone: NoFlyZone, low_m: float, high_m: float) -> Mesh:
     """
     floor_m = max(low_m, zone.floor_m)
     ceiling_m = max(floor_m, min(high_m, zone.ceiling_m))
-    if zone.centre_m is not None and zone.radius_m is not None:
-        return _tube(zone.radius_m, floor_m, ceiling_m, 48).placed(offset_m=[*zone.centre_m, 0.0])
-    return prism_mesh(zone.outline_m, floor_m, ceiling_m)
+    return prism_mesh(outline_m(zone), floor_m, ceiling_m)
 
 
 def _tube(radius_m: float, bottom_m: float, top_m: float, around: int = 16) -> Mesh:

@@ -76,22 +76,17 @@ def _port_in_use(port: int) -> str:
 def _require_free(host: str, port: int) -> str:
     """Return the address that a host stands for, at which a port is free."""
     try:
-        family, kind, protocol, _, address = socket.getaddrinfo(
-            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-        )[0]
-    except OSError as error:
-        raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
-    with socket.socket(family, kind, protocol) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        family, kind, protocol, _, address = found[0]
+        with socket.socket(family, kind, protocol) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(address)
-        except PermissionError as error:
-            raise UsageError(f"--port: {port} needs special rights; choose one above 1023") from error
-        except OSError as error:
-            if error.errno in _NO_SUCH_ADDRESS:
-                message = f"--host: given {host}; allowed: a name or address of this machine"
-                raise UsageError(message) from error
-            raise UsageError(_port_in_use(port)) from error
+    except PermissionError as error:
+        raise UsageError(f"--port: {port} needs special rights; choose one above 1023") from error
+    except OSError as error:
+        if isinstance(error, socket.gaierror) or error.errno in _NO_SUCH_ADDRESS:
+            raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
+        raise UsageError(_port_in_use(port)) from error
     return str(address[0])
 
 

@@ -18,12 +18,11 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
-from nullpose.studio.case import Case, case_named
+from nullpose.studio.case import case_named
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.exports import figure_png, pose_json, scene_html
-from nullpose.studio.field_map import FieldMap
-from nullpose.studio.map_kernel import MapKernel
-from nullpose.studio.panel import BEST_MAP, NO_CASE, NO_MAP, Panel
+from nullpose.studio.field_map import MAPS, FieldMap
+from nullpose.studio.panel import NO_CASE, Panel
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
@@ -50,10 +49,9 @@ class Page:
     Args:
         client: the browser.
         scenario: the scene to begin with.
-        map_kernel: shared by all pages.
     """
 
-    def __init__(self, client: ClientHandle, scenario: Scenario, map_kernel: MapKernel) -> None:
+    def __init__(self, client: ClientHandle, scenario: Scenario) -> None:
         self._client = client
         self._lock = threading.RLock()
         self._open = True
@@ -61,12 +59,10 @@ class Page:
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
         self._size_m = np.inf
-        self._map_shown: tuple[FieldMap | None, str] = (None, NO_MAP)
+        self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self._link_range_db = LINK_RANGE_DB
         self._drones: list[Drone] = []
-        self.session = Session(
-            scenario, on_view=self._view_changed, on_event=self._refresh, map_kernel=map_kernel
-        )
+        self.session = Session(scenario, on_view=self._view_changed, on_event=self._refresh)
         self.panel = Panel(client.gui)
         self._ground = Ground(client.scene, self._dragged)
         self._carpet = Carpet(client.scene)
@@ -88,7 +84,7 @@ class Page:
         panel, session = self.panel, self.session
         controls: list[tuple[Any, Callable[[Any], object]]] = [
             (panel.case, lambda label: self._change(lambda view: view.with_case(case_named(label)))),
-            (panel.compared, lambda label: self._change(lambda view: view.with_compared(_case(label)))),
+            (panel.compared, self._compare),
             (panel.power, self._slid),
             *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
         ]
@@ -119,6 +115,10 @@ class Page:
             return False
         self.panel.faults.content = failure_html(None)
         return True
+
+    def _compare(self, label: str) -> None:
+        case = None if label == NO_CASE else case_named(label)
+        self._change(lambda view: view.with_compared(case))
 
     def _slid(self, value: float) -> None:
         now = time.monotonic()
@@ -198,23 +198,18 @@ class Page:
             drone.show(answer, text, self._link_range_db, pattern=pattern)
 
     def _show_map(self) -> None:
-        fields, wanted = self.session.field_map, self.panel.map.value
-        if (fields, wanted) == self._map_shown:
+        maps, name = self.session.field_map, self.panel.map.value
+        if (maps, name) == self._map_shown:
             return
-        self._map_shown = (fields, wanted)
-        if fields is None or wanted == NO_MAP:
+        self._map_shown = (maps, name)
+        field = None if maps is None else maps.named(name)
+        if field is None:
             self._carpet.hide()
             self.panel.scale.content = ""
             return
-        if wanted == BEST_MAP:
-            field, lift_m = fields.best, 0.0
-            title = f"best value at each place, {field.altitude_m:.1f} m up; lines to nodes"
-        else:
-            field, lift_m = fields.footprint, 0.05
-            title = "gain over path loss on the ground, 0 straight below at full gain"
-        ends = self._carpet.show(field, lift_m=lift_m)
-        self.panel.scale.content = scale_svg(*ends, title, field.unit)
-        if wanted == BEST_MAP and field.unit == "dB":
+        ends = self._carpet.show(field)
+        self.panel.scale.content = scale_svg(*ends, field.title, field.unit)
+        if name == MAPS[0] and field.unit == "dB":
             self._link_range_db = ends
 
     def _refresh_panel(self) -> None:
@@ -232,10 +227,6 @@ class Page:
         )
         panel.undo.disabled = not session.history.past
         panel.redo.disabled = not session.history.future
-
-
-def _case(label: str) -> Case | None:
-    return None if label == NO_CASE else case_named(label)
 
 
 def _by_hand(action: Callable[[Any], object]) -> Any:

@@ -6,18 +6,17 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from nullpose.studio.case import cases_of
+from nullpose.studio.field_map import MAPS
 from nullpose.studio.readout import about_html, failure_html
 from nullpose.studio.view import POWER_DB, View
 
 if TYPE_CHECKING:
     from viser import GuiApi
 
-__all__ = ["BEST_MAP", "NO_CASE", "NO_MAP", "Panel"]
+__all__ = ["NO_CASE", "Panel"]
 
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
-
-NO_MAP, BEST_MAP, FOOTPRINT = "no map", "best value at each place", "pattern's footprint"
 
 _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
     "Scene": {
@@ -48,7 +47,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "dropdown",
             "Map",
             "Colour a plane: the best possible at each place, or where the pattern falls on the ground.",
-            {"options": (NO_MAP, BEST_MAP, FOOTPRINT), "initial_value": BEST_MAP},
+            {"options": ("no map", *MAPS), "initial_value": MAPS[0]},
         ),
         "scale": ("html", "", "", {}),
         "pattern": (

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from nullpose.report.figures.style import CURVES
 from nullpose.schemes import Curve, Scheme
-from nullpose.studio.colours import css, scale_colours
+from nullpose.studio.colours import css, round_steps, scale_colours
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB
 
@@ -17,7 +17,6 @@ __all__ = ["power_plot_svg", "scale_svg"]
 
 _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
-_STEPS = (0.5, 1.0, 2.0, 5.0)
 _MOST_SPAN = 30.0
 
 _Points = list[tuple[float, float]]
@@ -92,11 +91,10 @@ def _frame_around(values: list[float]) -> _Frame:
 
 
 def _axes(frame: _Frame, unit: str) -> Iterator[str]:
-    step = next((one for one in _STEPS if (frame.high - frame.low) / one <= 6.0), 10.0)
-    for i in range(math.ceil(frame.low / step), math.floor(frame.high / step) + 1):
-        y = frame.at(0.0, i * step)[1]
+    for value in round_steps(*frame, 6)[1:-1]:
+        y = frame.at(0.0, value)[1]
         yield f'<line x1="{_LEFT}" y1="{y:.1f}" x2="{_RIGHT}" y2="{y:.1f}" stroke="#ddd"/>'
-        yield _text(_LEFT - 5, y + 3.5, "end", f"{i * step:g}")
+        yield _text(_LEFT - 5, y + 3.5, "end", f"{value:g}")
     for power_db in range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10):
         yield _text(frame.at(power_db, 0.0)[0], _BOTTOM + 14, "middle", f"{power_db}")
     yield _text(0.5 * (_LEFT + _RIGHT), _HEIGHT - 5, "middle", "jamming power over node power, dB")

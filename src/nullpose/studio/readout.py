@@ -10,20 +10,21 @@ import numpy as np
 from nullpose.errors import ScenarioError
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS, fixed
-from nullpose.solve import Result, Status
+from nullpose.solve import Result
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import SLOTS, css
 from nullpose.studio.session import Session
 
 __all__ = ["about_html", "drone_text", "failure_html", "readout_html"]
 
+_FAILED = "no pose"
 _TONES = {
-    "waiting": ("#8a5a00", "&#8987;"),
-    "found": ("#005a8c", "&#9679;"),
-    "proved": ("#00684a", "&#10003;"),
-    "failed": ("#a02000", "&#10007;"),
+    _FAILED: ("#a02000", "&#10007;"),
+    "certified": ("#00684a", "&#10003;"),
+    "best so far": ("#005a8c", "&#9679;"),
+    "": ("#8a5a00", "&#8987;"),
 }
-"""Colour and mark of how far a case has come."""
+"""Colour and mark of how far a case has come, by how its status begins."""
 
 _MOST_NULLS = 4
 _STYLE = "font-size:13px;line-height:1.35;padding:2px 10px 8px;font-variant-numeric:tabular-nums"
@@ -59,18 +60,13 @@ def readout_html(session: Session) -> str:
 def _case_html(session: Session, slot: int) -> str:
     case = session.view.cases[slot]
     answer, current, status = session.answer(case), session.current(case), session.status(case)
-    tone = "waiting"
-    if status.startswith("no pose"):
-        tone = "failed"
-    elif current is not None:
-        tone = "proved" if current.result.status is Status.CERTIFIED else "found"
-    colour, mark = _TONES[tone]
+    colour, mark = next(look for start, look in _TONES.items() if status.startswith(start))
     head = (
         f'<div style="font-weight:600;color:{css(SLOTS[slot])}">{_letter(session, slot)}'
         f"{escape(case.label)}</div>"
         f'<div data-np="status-{slot}" style="color:{colour};font-weight:600">{mark} {escape(status)}</div>'
     )
-    if answer is None or tone == "failed":
+    if answer is None or status.startswith(_FAILED):
         return head
     shade = "" if answer is current else "opacity:.4;"
     note = f'<div style="color:#555;font-size:12px">{escape(answer.note)}</div>' if answer.note else ""
@@ -151,7 +147,7 @@ def failure_html(error: ScenarioError | None, name: str = "") -> str:
         f"<li><code>{escape(fault.path or 'the whole file')}</code>: {escape(fault.message)}</li>"
         for fault in error.faults
     ]
-    style = f"{_STYLE};color:{_TONES['failed'][0]}"
+    style = f"{_STYLE};color:{_TONES[_FAILED][0]}"
     return (
         f'<div data-np="faults" style="{style}"><b>{escape(name)} was not taken</b>'
         f'<ul style="margin:2px 0 2px 16px;padding:0;overflow-wrap:anywhere">{"".join(rows)}</ul></div>'

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Airspace, GroundPoint, Scenario
-from nullpose.studio.colours import KIND_COLOURS, Rgb
+from nullpose.studio.colours import KIND_COLOURS, Rgb, round_steps
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
 from nullpose.studio.field_map import map_extent_m
 from nullpose.studio.meshes import MARKS, Mesh, ellipsoid_mesh, zone_mesh
@@ -29,7 +29,6 @@ _WIRE = (150, 150, 150)
 _GRID = (190, 190, 190)
 _AIRSPACE = (86, 150, 190)
 _CROWD = 6  # more points than this have smaller labels
-_NICE_M = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 1e4)
 
 
 def scene_size_m(scenario: Scenario) -> float:
@@ -131,9 +130,7 @@ class Ground:
 
     def _grid(self, scenario: Scenario) -> Iterable[Any]:
         low, high = _extent_m(scenario)
-        step_m = next(
-            (step for step in _NICE_M if np.max(high - low) / step <= 12.0), float(np.max(high - low))
-        )
+        step_m = np.diff(round_steps(0.0, float(np.max(high - low)), 12))[0]
         low, high = step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m)
         east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
         lines = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from nullpose.scenario import Scenario
 from nullpose.studio.camera import aim
-from nullpose.studio.map_kernel import MapKernel
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
 if TYPE_CHECKING:
@@ -48,7 +47,6 @@ class Studio:
         self.address = address
         self._server, self._scenario = server, scenario
         self._lock, self._places = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)
-        self._map_kernel = MapKernel()
         # a page may be closed at any moment, also while it is sent what was found
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
@@ -64,7 +62,6 @@ class Studio:
             pages, self.pages = list(self.pages.values()), {}
         for page in pages:
             page.close()
-        self._map_kernel.close()
         with redirect_stdout(StringIO()):
             self._server.stop()
 
@@ -75,7 +72,7 @@ class Studio:
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page = Page(client, self._scenario, self._map_kernel)
+            page = Page(client, self._scenario)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")

@@ -13,7 +13,6 @@ from nullpose.studio.case import Case, cases_of
 from nullpose.studio.events import Compiling, Event, Failure, PowerCurve
 from nullpose.studio.field_map import FieldMap
 from nullpose.studio.history import History
-from nullpose.studio.map_kernel import MapKernel
 from nullpose.studio.view import View
 from nullpose.studio.worker import REST_S, Worker
 
@@ -32,7 +31,6 @@ class Session:
         scenario: the scene to begin with.
         on_view: called after every change of the view.
         on_event: called with everything that the worker finds.
-        map_kernel: shared by the sessions of one server; without it, one of its own.
         rest_s: how long nothing must have changed before a proof begins, seconds.
 
     Attributes:
@@ -46,7 +44,6 @@ class Session:
         *,
         on_view: Callable[[], None] = lambda: None,
         on_event: Callable[[Event], None] = lambda event: None,
-        map_kernel: MapKernel | None = None,
         rest_s: float = REST_S,
     ) -> None:
         self._lock = threading.RLock()
@@ -54,7 +51,7 @@ class Session:
         self.version = 0
         self.history = History(View(scenario=scenario, case=cases_of(scenario)[0]))
         self._found: dict[tuple[type, Case | None], Event] = {}
-        self._worker = Worker(self._take, map_kernel or MapKernel(), rest_s=rest_s)
+        self._worker = Worker(self._take, rest_s=rest_s)
 
     def start(self) -> None:
         """Ask for the first answers."""

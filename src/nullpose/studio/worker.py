@@ -14,7 +14,7 @@ from nullpose.studio.answer import Answer
 from nullpose.studio.case import Case
 from nullpose.studio.events import Compiling, Event, Failure
 from nullpose.studio.field_map import field_map
-from nullpose.studio.map_kernel import MapKernel
+from nullpose.studio.map_kernel import map_kernel_is_ready
 from nullpose.studio.steps import power_curves, proved_answers, quick_answers
 from nullpose.studio.view import View
 
@@ -39,15 +39,12 @@ class Worker:
         publish: called from the thread with everything found, in order of its version. What a search found
             may come after a newer version was requested, so that poses follow a moving hand; a proof, a map
             or a curve of an outdated version does not.
-        map_kernel: tells when the maps can be worked out.
         rest_s: how long nothing must have changed before a proof begins, seconds; as long again, and the plot
             and the maps do.
     """
 
-    def __init__(
-        self, publish: Callable[[Event], None], map_kernel: MapKernel, *, rest_s: float = REST_S
-    ) -> None:
-        self._publish, self._map_kernel, self._rest_s = publish, map_kernel, rest_s
+    def __init__(self, publish: Callable[[Event], None], *, rest_s: float = REST_S) -> None:
+        self._publish, self._rest_s = publish, rest_s
         self._changed = threading.Condition()
         self._pending: tuple[int, View] | None = None
         self._closed = False
@@ -105,7 +102,7 @@ class Worker:
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._tell_all(version, view.case, power_curves(version, view, self._go_on))
         if best is not None:
-            while not self._map_kernel.is_ready():
+            while not map_kernel_is_ready():
                 self._rest()
             self._tell_all(version, best.case, [field_map(best, self._go_on)])
 
