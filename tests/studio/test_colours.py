@@ -34,3 +34,11 @@ def test_nothing_finite_has_a_scale_too() -> None:
 def test_kinds_differ_in_colour() -> None:
     """Nodes, jammers and eavesdroppers have three colours."""
     assert len({css(colour) for colour in KIND_COLOURS.values()}) == 3
+
+
+def test_one_value_has_one_colour() -> None:
+    """A number alone gives the three parts of its colour; what is beyond an end has that end's."""
+    assert scale_colours(0.5, 0.0, 1.0).shape == (3,)
+    assert (
+        scale_colours([-np.inf, np.inf, 1e300], 0.0, 1.0).tolist() == scale_colours([0, 1, 1], 0, 1).tolist()
+    )

@@ -115,8 +115,7 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
 
 def _decoded(content: bytes) -> str:
     if len(content) > MOST_BYTES:
-        message = f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read"
-        raise ScenarioError([Fault("", message)])
+        raise ScenarioError([Fault("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")])
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -44,9 +44,8 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
     from matplotlib import colormaps
 
     share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
-    return np.asarray(
-        colormaps["viridis"](np.nan_to_num(share, nan=0.0, posinf=1.0, neginf=0.0), bytes=True)[..., :3]
-    )
+    held = np.nan_to_num(share, nan=0.0, posinf=1.0, neginf=0.0)
+    return np.asarray(colormaps["viridis"](held, bytes=True))[..., :3]
 
 
 def scale_range(values: ArrayLike) -> tuple[float, float]:

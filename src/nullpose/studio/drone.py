@@ -98,7 +98,8 @@ class Drone:
 
     def hide(self) -> None:
         """Take the drone out of sight."""
-        self._parts["whole"].visible = False
+        if self._parts:
+            self._parts["whole"].visible = False
 
     def remove(self) -> None:
         """Take the drone out of the scene."""
@@ -123,7 +124,8 @@ class Drone:
         self._add_pattern(frames["pattern"], antenna, 0.11 * size_m)
         self._parts["label"] = add_label(scene, f"{name}/label", "", np.zeros(3), 1.0, _ANCHORS[slot])
         for line, (colour, thickness) in _LINES.items():
-            self._parts[line] = add_lines(scene, f"{name}/{line}", np.zeros((1, 2, 3)), colour, thickness)
+            nowhere = np.zeros((1, 2, 3))
+            self._parts[line] = add_lines(scene, f"{name}/{line}", nowhere, colour, thickness)
 
     def _add_pattern(self, name: str, antenna: QuadraticAntenna, radius_m: float) -> None:
         """Draw the pattern: see-through bands of one gain each, or wires for the second."""

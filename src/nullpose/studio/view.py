@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics import from_db, to_db
-from nullpose.scenario import GroundPoint, Jammer, Scenario
+from nullpose.scenario import GroundPoint, Scenario
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 
 __all__ = ["POWER_DB", "Kind", "PointKey", "View"]
@@ -74,18 +74,12 @@ class View:
 
         None without jammers, or if either has no power.
         """
-        reference_w = self._reference_w
+        heard = self.scenario.nodes if self.scenario.transmitter is None else (self.scenario.transmitter,)
+        reference_w = max(one.transmit_power_w for one in heard)
         strongest_w = max((jammer.transmit_power_w for jammer in self.scenario.jammers), default=0.0)
         if strongest_w <= 0.0 or reference_w <= 0.0:
             return None
         return float(to_db(strongest_w / reference_w))
-
-    @property
-    def _reference_w(self) -> float:
-        transmitter = self.scenario.transmitter
-        if transmitter is not None:
-            return transmitter.transmit_power_w
-        return max(node.transmit_power_w for node in self.scenario.nodes)
 
     def with_power_db(self, power_db: float) -> View:
         """Return the view with all jammers' powers scaled alike, so that the strongest has this one.
@@ -100,7 +94,11 @@ class View:
         if now_db is None or math.isclose(now_db, power_db, abs_tol=1e-9):
             return self
         factor = float(from_db(power_db - now_db))
-        jammers = tuple(_scaled(jammer, factor) for jammer in self.scenario.jammers)
+        powers_w = (float(f"{one.transmit_power_w * factor:.12g}") for one in self.scenario.jammers)
+        jammers = tuple(
+            one.model_copy(update={"power_w": power_w, "power_dbm": None})
+            for one, power_w in zip(self.scenario.jammers, powers_w, strict=True)
+        )
         return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
 
     def with_scenario(self, scenario: Scenario) -> View:
@@ -129,8 +127,3 @@ class View:
             case: the second case; the chosen one counts as none.
         """
         return replace(self, compared=None if case == self.case else case)
-
-
-def _scaled(jammer: Jammer, factor: float) -> Jammer:
-    power_w = float(f"{jammer.transmit_power_w * factor:.12g}")
-    return jammer.model_copy(update={"power_w": power_w, "power_dbm": None})
