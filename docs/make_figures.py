@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import nullpose
 from nullpose.paper.reproduce import reproduce
-from nullpose.report.figures import draw_array, draw_robust
+from nullpose.report.figures.poses import draw_array, draw_robust
 from nullpose.report.figures.style import write_figure_file
 from nullpose.solve import solve_array
 from nullpose.solve.robust import solve_robust

@@ -14,8 +14,9 @@ from matplotlib.image import imread
 from nullpose import Scenario
 from nullpose.paper.figure2 import draw_figure2
 from nullpose.paper.pages import Reproduction
-from nullpose.report.figures import draw_poses, draw_sweep
+from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES, write_figure
+from nullpose.report.figures.sweep import draw_sweep
 from nullpose.solve import Objective
 from nullpose.study import SweepTable
 

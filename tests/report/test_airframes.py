@@ -10,7 +10,7 @@ from rich.console import Console
 
 from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
 from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
-from nullpose.report.figures import draw_airframes
+from nullpose.report.figures.airframes import draw_airframes
 from nullpose.report.numbers import share_text
 from nullpose.scenario import apply_overrides
 
@@ -33,7 +33,12 @@ def text_of(comparison: AirframeComparison, width: int = 200) -> str:
 def with_value(comparison: AirframeComparison, name: str, value: float) -> AirframeComparison:
     """Returns the comparison with one vehicle's value replaced."""
     results = tuple(
-        replace(result, objective=replace(result.objective, value=value, upper_bound=value))
+        replace(
+            result,
+            result=replace(
+                result.result, objective=replace(result.objective, value=value, upper_bound=value)
+            ),
+        )
         if result.case.name == name
         else result
         for result in comparison.results

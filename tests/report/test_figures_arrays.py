@@ -7,8 +7,8 @@ import pytest
 
 from nullpose import load
 from nullpose.physics.array import element_positions
-from nullpose.report.figures import draw_array
 from nullpose.report.figures.pattern import beam_surface_m
+from nullpose.report.figures.poses import draw_array
 from nullpose.report.figures.style import write_figure_file
 from nullpose.solve import ArraySolution, solve_array
 

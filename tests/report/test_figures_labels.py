@@ -7,8 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from nullpose import Scenario, load, solve
-from nullpose.report.figures import draw_pose
 from nullpose.report.figures.labels import Label, place_labels
+from nullpose.report.figures.poses import draw_pose
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from nullpose import Pose, Scenario, load, solve
 from nullpose.errors import UsageError
-from nullpose.report.figures import draw_pose
+from nullpose.report.figures.poses import draw_pose
 from nullpose.report.figures.scene import ALONE, Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure_file
 from nullpose.report.geometry import outline_m
@@ -84,4 +84,5 @@ def test_a_figure_is_named_by_its_kind(tmp_path: Path) -> None:
     """Other kinds than PNG and SVG are refused before any work; a folder is made."""
     with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png or \.svg"):
         prepare_figure_file(tmp_path / "figure.pdf")
-    assert prepare_figure_file(tmp_path / "new" / "figure.SVG").parent.is_dir()
+    prepare_figure_file(tmp_path / "new" / "figure.SVG")
+    assert (tmp_path / "new").is_dir()

@@ -9,8 +9,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from nullpose import Scenario, load
-from nullpose.report.figures import draw_robust
 from nullpose.report.figures.bodies import draw_set, set_box_m
+from nullpose.report.figures.poses import draw_robust
 from nullpose.report.geometry import distance_m
 from nullpose.solve.robust import RobustSolution, solve_robust
 

@@ -158,7 +158,7 @@ def test_a_requirement_beyond_reach_is_told(paper: Scenario) -> None:
 def test_a_sweep_of_rates_is_one_of_rates(tmp_path: Path) -> None:
     """Title, cells and file are in bits/s/Hz."""
     table = sweep(example("eavesdropper"), "eavesdroppers.E.position_m[0]", [17.0, 60.0])
-    text = text_of(sweep_view(table, []))
+    text = text_of(sweep_view(table))
     assert "Smallest secrecy rate over the nodes (bits/s/Hz)" in text
     assert "1.1603" in text
     head = table.write_csv(tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()[0]
@@ -174,7 +174,7 @@ def test_a_sweep_of_margins_keeps_sinr_and_margin_apart(tmp_path: Path) -> None:
     table = sweep(
         example("requirements"), "nodes.camera.min_sinr_db", [3.0], schemes=["optimum"], certify=False
     )
-    assert "Smallest margin over the nodes (dB)" in text_of(sweep_view(table, []))
+    assert "Smallest margin over the nodes (dB)" in text_of(sweep_view(table))
     (row,) = table.rows
     assert row.min_sinr_db == pytest.approx(-2.0357, abs=1e-3)
     assert row.objective.value_db == pytest.approx(3.9643, abs=1e-3)

@@ -13,7 +13,7 @@ from nullpose.study import SweepTable, spaced, sweep
 def shown(table: SweepTable) -> str:
     """Returns what a terminal shows of a sweep."""
     console = Console(width=200, file=io.StringIO())
-    console.print(sweep_view(table, []))
+    console.print(sweep_view(table))
     return console.file.getvalue()
 
 
@@ -39,9 +39,9 @@ def test_what_is_proved_is_shown(paper: Scenario) -> None:
 def test_long_sweeps_are_thinned_out_on_the_screen_only(paper: Scenario, tmp_path: Path) -> None:
     """A hundred values make a hundred rows in the file, and at most forty on the screen."""
     table = sweep(paper, "jammers.M.power_w", spaced(0.1, 10.0, 100, log=True), schemes=["vertical"])
-    files = write_sweep(table, tmp_path, log=True)
+    write_sweep(table, tmp_path, log=True)
     console = Console(width=200, file=io.StringIO())
-    console.print(sweep_view(table, files))
+    console.print(sweep_view(table))
     lines = console.file.getvalue().splitlines()
     assert "One row in 3 is shown." in " ".join(lines)
     assert len(lines) < 50

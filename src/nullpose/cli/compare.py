@@ -21,7 +21,7 @@ from nullpose.cli.options import (
     read_scenario,
     solve_options,
 )
-from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
+from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
 
 if TYPE_CHECKING:
@@ -76,10 +76,10 @@ def _compare_airframes(
 
     with compiling_announced(), Ticker("comparing vehicles") as ticker:
         vehicles = compare_airframes(scenario, on_progress=ticker, **options)
-    write_figure(figure, "draw_airframes", vehicles)
-    more: dict[str, Any] = {"answer": answer_lines(vehicles)}
     if figure is not None:
-        more["files"] = [str(figure)]
-    tell(vehicles, airframes_view, json_output, **more)
-    if figure is not None and not json_output:
-        typer.echo(f"Wrote {figure}")
+        from nullpose.report.figures.airframes import draw_airframes
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(draw_airframes(vehicles), figure)
+    files = [] if figure is None else [figure]
+    tell(vehicles, airframes_view, json_output, files=files, answer=answer_lines(vehicles))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,16 +13,17 @@ from nullpose.cli.faults import INTERRUPTED
 from nullpose.errors import SolveError
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from nullpose.report.document import View
 
-__all__ = ["compiling_announced", "prepare_outputs", "show", "show_json", "tell", "write_figure"]
+__all__ = ["compiling_announced", "prepare_outputs", "show", "show_json", "tell"]
 
 
 def tell(
     found: Any,
-    view: Callable[[Any], RenderableType],
+    view: Callable[[Any], View],
     json_output: bool,
     *,
+    files: Sequence[Path] = (),
     fault: str = "",
     **more: object,
 ) -> None:
@@ -30,8 +31,9 @@ def tell(
 
     Args:
         found: by the verb; has a ``to_dict``.
-        view: returns its tables.
+        view: returns its tables, or a text.
         json_output: whether JSON is wanted.
+        files: what was written, to be named.
         fault: what is wrong with it all the same; empty for nothing.
         more: what else the JSON object holds.
 
@@ -39,21 +41,27 @@ def tell(
         SolveError: there is a fault.
     """
     if json_output:
-        show_json(found.to_dict() | more)
+        paths = {"files": [str(path) for path in files]} if files else {}
+        show_json(found.to_dict() | more | paths)
     else:
         show(view(found))
+        for path in files:
+            typer.echo(f"Wrote {path}")
     if fault:
         raise SolveError(fault)
     if getattr(found, "interrupted", False):
         raise typer.Exit(INTERRUPTED)
 
 
-def show(view: RenderableType) -> None:
-    """Print a table, or several, on standard output.
+def show(view: View) -> None:
+    """Print a text as it is, or tables, on standard output.
 
     Args:
-        view: anything that rich can draw.
+        view: a text, or anything else that rich can draw.
     """
+    if isinstance(view, str):
+        typer.echo(view)
+        return
     from rich.console import Console
 
     class PlainConsole(Console):
@@ -105,21 +113,3 @@ def prepare_outputs(file: Path, *, figure: Path | None, **others: Path | None) -
 
         prepare_figure_file(figure)
     check_outputs(files_of(file), {f"--{name}": path for name, path in {**others, "figure": figure}.items()})
-
-
-def write_figure(path: Path | None, drawing: str, found: object) -> None:
-    """Draw and write a figure if one was asked for.
-
-    Args:
-        path: where to, or None.
-        drawing: the function of ``nullpose.report.figures`` that draws it.
-        found: what to draw.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    if path is not None:
-        from nullpose.report import figures
-        from nullpose.report.figures.style import write_figure_file
-
-        write_figure_file(getattr(figures, drawing)(found), path)

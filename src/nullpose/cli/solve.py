@@ -29,7 +29,7 @@ from nullpose.cli.options import (
     refuse,
     solve_options,
 )
-from nullpose.cli.output import compiling_announced, prepare_outputs, tell, write_figure
+from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import GapBar, Ticker
 from nullpose.schemes import Scheme
 
@@ -65,11 +65,12 @@ def solve(
 
     The proof bounds how far from the best of all it can be.
     """
-    from nullpose.report.results import array_view, robust_view, solution_view
+    from nullpose.report.results import result_view
 
     scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
+    checked = verify or certificate is not None
     of_one_dipole = {
         "scheme": scheme is not Scheme.OPTIMUM,
         "null_jammer": null_jammer,
@@ -79,24 +80,17 @@ def solve(
     }
     if robust:
         refuse("with --robust", combining=combining, **of_one_dipole)
-        guarded = _solve_robustly(scenario, options)
-        write_figure(figure, "draw_robust", guarded)
-        tell(guarded, robust_view, json_output)
+        found = _solve_robustly(scenario, options)
     elif scenario.array is not None:
         refuse("for a scenario with an [array]", **of_one_dipole)
-        beam = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
-        write_figure(figure, "draw_array", beam)
-        tell(beam, array_view, json_output)
+        found = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
     else:
         refuse("for a scenario without an [array]", combining=combining)
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
-        checked = verify or certificate is not None
-        solution = _solve_dipole(scenario, scheme, null_jammer, options, checked, geojson is not None)
-        rejected = checked and solution.rigour.value != "verified"
-        _write(solution, None if rejected else certificate, geojson)
-        write_figure(figure, "draw_pose", solution)
-        fault = _REJECTED.format(solution.reason) if rejected else ""
-        tell(solution, solution_view, json_output, fault=fault)
+        found = _solve_dipole(scenario, scheme, null_jammer, options, checked, geojson is not None)
+    rejected = checked and found.rigour.value != "verified"
+    _write(found, None if rejected else certificate, geojson, figure)
+    tell(found, result_view, json_output, fault=_REJECTED.format(found.reason) if rejected else "")
 
 
 def _solve_robustly(scenario: Scenario, options: dict[str, Any]) -> Result:
@@ -159,7 +153,7 @@ def _solve_dipole(
         return verified(solution, ticker)
 
 
-def _write(solution: Result, certificate: Path | None, geojson: Path | None) -> None:
+def _write(solution: Result, certificate: Path | None, geojson: Path | None, figure: Path | None) -> None:
     """Write the files that were asked for."""
     if certificate is not None:
         from nullpose.certificate import write_certificate
@@ -170,3 +164,8 @@ def _write(solution: Result, certificate: Path | None, geojson: Path | None) -> 
         from nullpose.report.geojson import write_geojson
 
         write_geojson(solution, geojson)
+    if figure is not None:
+        from nullpose.report.figures.poses import draw_result
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(draw_result(solution), figure)

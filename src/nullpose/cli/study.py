@@ -10,7 +10,7 @@ import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.options import AllowOutside, JsonOutput, OutFolder
-from nullpose.cli.output import show_json
+from nullpose.cli.output import tell
 from nullpose.cli.progress import StudyBar
 
 if TYPE_CHECKING:
@@ -76,10 +76,7 @@ def run(
             "interrupted; the parts so far are kept, and the same command goes on from there", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
-    if json_output:
-        show_json(found.to_dict())
-    else:
-        typer.echo(words_of(found))
+    tell(found, words_of, json_output)
 
 
 @study.command()
@@ -88,10 +85,7 @@ def status(folder: StudyFolder, json_output: JsonOutput = False) -> None:
     from nullpose.study.monte_carlo import study_status
 
     found = study_status(folder)
-    if json_output:
-        show_json(found.to_dict())
-    else:
-        typer.echo(words_of(found))
+    tell(found, words_of, json_output)
 
 
 @study.command()
@@ -125,10 +119,7 @@ def show(
         if case not in spec.case_names:
             raise UsageError(f"case: given {case!r}; allowed: {', '.join(spec.case_names)}")
         scenario = spec.cases[spec.case_names.index(case)].on(scenario)
-    if json_output:
-        show_json(scenario.to_dict())
-    else:
-        typer.echo(scenario.to_toml(), nl=False)
+    tell(scenario, lambda scene: scene.to_toml().removesuffix("\n"), json_output)
 
 
 def words_of(status: StudyStatus) -> str:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nullpose.cli.options import JsonOutput
-from nullpose.cli.output import show_json
+from nullpose.cli.output import tell
 from nullpose.cli.study import StudyFolder
+
+if TYPE_CHECKING:
+    from nullpose.report.study import StudyReport
 
 __all__ = ["report"]
 
@@ -62,9 +65,10 @@ def report(
         requirement_bps_hz=requirement_bps_hz,
         against=against,
     )
-    if json_output:
-        show_json(written.to_dict())
-        return
-    for line in (*written.notes[: not written.summary.is_complete], written.answer):
-        typer.echo(f"{line}\n")
-    typer.echo("\n".join(str(path) for path in written.files))
+    tell(written, _words, json_output)
+
+
+def _words(written: StudyReport) -> str:
+    """Return the answer, after a note if the study is not finished, and the paths of what was written."""
+    told = (*written.notes[: not written.summary.is_complete], written.answer)
+    return "\n".join([*(f"{line}\n" for line in told), *map(str, written.files)])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Annotated
 
 import typer
@@ -83,4 +82,4 @@ def sweep(
     from nullpose.report.sweep import sweep_view, write_sweep
 
     files = write_sweep(table, out, log=log)
-    tell(table, partial(sweep_view, files=files), json_output, files=[str(path) for path in files])
+    tell(table, sweep_view, json_output, files=files)

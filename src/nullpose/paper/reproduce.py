@@ -19,7 +19,7 @@ from nullpose.paper.scene import (
     paper_scenario,
 )
 from nullpose.paper.study import JammingStudy
-from nullpose.report.figures import draw_poses
+from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
 from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme, solve

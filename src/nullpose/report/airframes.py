@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import document, grouped, head, rows, table
+from nullpose.report.document import View, document, grouped, head, rows, table
 from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 __all__ = ["airframes_view", "answer_lines", "numbers_of", "proof_lines"]
 
@@ -29,7 +25,7 @@ _STATUS = {
 }
 
 
-def airframes_view(comparison: AirframeComparison) -> RenderableType:
+def airframes_view(comparison: AirframeComparison) -> View:
     """Return a table with a row for each vehicle, what is proved of it, and the answer in words.
 
     Args:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import beside, document, grouped, head, table
+from nullpose.report.document import View, beside, document, grouped, head, table
 from nullpose.report.geometry import null_angle_rad, tilt_rad
 from nullpose.report.numbers import bound_text, degrees_text, fixed
 from nullpose.report.results import azimuth_text, binding_nodes, work_words
@@ -17,9 +17,6 @@ from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import Result, compare
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 __all__ = ["Comparison", "compare_all", "comparison_view"]
 
@@ -71,7 +68,7 @@ def compare_all(scenario: Scenario, **options: Any) -> Comparison:
     return Comparison(scenario, tuple(compare(scenario, **options)), left_out)
 
 
-def comparison_view(comparison: Comparison) -> RenderableType:
+def comparison_view(comparison: Comparison) -> View:
     """Return several schemes' solutions side by side, one column each.
 
     Args:

@@ -6,19 +6,21 @@ Every text is shown as it is given: what looks like markup is none.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["beside", "document", "grouped", "head", "markdown_table", "pairs", "rows", "table"]
+__all__ = ["View", "beside", "document", "grouped", "head", "markdown_table", "pairs", "rows", "table"]
 
 Row = Mapping[str, str]
+View: TypeAlias = "RenderableType"
+"""What rich can print; rich is imported only when something is printed."""
 
 _LOOK: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "pad_edge": False}
 
 
-def document(*parts: RenderableType | None) -> RenderableType:
+def document(*parts: View | None) -> View:
     """Return parts one below the other, those that are nothing left out.
 
     Args:
@@ -30,7 +32,7 @@ def document(*parts: RenderableType | None) -> RenderableType:
     return Group(*(Text(part) if isinstance(part, str) else part for part in parts if part is not None))
 
 
-def head(name: str, label: str = "", value: str = "", lines: Sequence[str] = ()) -> RenderableType:
+def head(name: str, label: str = "", value: str = "", lines: Sequence[str] = ()) -> View:
     """Return what stands above a result: the scenario, what was asked for, the value, and lines on it.
 
     Args:
@@ -55,7 +57,7 @@ def table(
     bold: Collection[str] = (),
     left: Collection[str] = (),
     no_wrap: bool = False,
-) -> RenderableType | None:
+) -> View | None:
     """Return rows as a table in the house's look; None if there are none.
 
     Args:
@@ -137,7 +139,7 @@ def grouped(said: Iterable[tuple[str, str]]) -> list[str]:
     ]
 
 
-def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> RenderableType:
+def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> View:
     """Return names with their words beside them.
 
     Args:

@@ -44,7 +44,7 @@ def require_origin(scenario: Scenario) -> Origin:
     return scenario.origin
 
 
-def solution_geojson(solution: Result) -> dict[str, object]:
+def solution_geojson(solution: Result) -> dict[str, Any]:
     """Return a solution as a GeoJSON FeatureCollection, ready for JSON.
 
     Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid;
@@ -57,7 +57,10 @@ def solution_geojson(solution: Result) -> dict[str, object]:
     Raises:
         UsageError: the scenario has no origin.
     """
-    return {"type": "FeatureCollection", "features": _features(solution)}
+    origin = require_origin(solution.scenario)
+    points = (_point(origin, np.asarray(place_m), properties) for place_m, properties in _points(solution))
+    polygons = (_polygon(origin, *outline) for outline in _outlines(solution.scenario))
+    return {"type": "FeatureCollection", "features": [*points, *polygons]}
 
 
 def write_geojson(solution: Result, path: Path) -> Path:
@@ -71,16 +74,8 @@ def write_geojson(solution: Result, path: Path) -> Path:
         UsageError: the scenario has no origin.
         OutputError: the file cannot be written.
     """
-    lines = ",\n".join(json_text(feature, indent=None) for feature in _features(solution))
+    lines = ",\n".join(json_text(feature, indent=None) for feature in solution_geojson(solution)["features"])
     return write_text(path, f'{{"type": "FeatureCollection", "features": [\n{lines}\n]}}\n')
-
-
-def _features(solution: Result) -> list[_Feature]:
-    origin = require_origin(solution.scenario)
-    return [
-        *(_point(origin, np.asarray(place_m), properties) for place_m, properties in _points(solution)),
-        *(_polygon(origin, *outline) for outline in _outlines(solution.scenario)),
-    ]
 
 
 def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
@@ -94,12 +89,8 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
         reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
         yield jammer.position_m, {"kind": "jammer", "name": jammer.name, **reach}
     for each in scenario.eavesdroppers:
-        told: _Feature = {
-            "kind": "eavesdropper",
-            "name": each.name,
-            "uncertainty_m": each.uncertainty_reach_m,
-        }
-        yield each.position_m, told
+        reach = {"uncertainty_m": each.uncertainty_reach_m}
+        yield each.position_m, {"kind": "eavesdropper", "name": each.name, **reach}
 
 
 def _pose_properties(solution: Result) -> dict[str, object]:

@@ -30,6 +30,7 @@ __all__ = [
     "share_text",
     "short",
     "span",
+    "stated",
     "unit_of",
     "value_words",
     "with_interval",
@@ -58,6 +59,16 @@ def fixed(value: float, digits: int) -> str:
         digits: how many decimals.
     """
     return f"{value:z.{digits}f}"
+
+
+def stated(value: float | None, digits: str) -> str | None:
+    """Return a number as a cell of a table; None, which is no cell, if it is not stated.
+
+    Args:
+        value: the number.
+        digits: its format, as in ``.6g``.
+    """
+    return None if value is None else format(value, digits)
 
 
 def degrees_text(angle_rad: float, digits: int = 2) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from nullpose.physics import (
     FramePose,
@@ -14,16 +13,23 @@ from nullpose.physics import (
     received_power_w,
     to_db,
 )
-from nullpose.report.document import beside, document, head, pairs, rows, table
+from nullpose.report.document import View, beside, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
-from nullpose.report.numbers import begun, bound_words, count_of, degrees_text, fixed, value_words, with_unit
+from nullpose.report.numbers import (
+    begun,
+    bound_words,
+    count_of,
+    degrees_text,
+    fixed,
+    stated,
+    value_words,
+    with_unit,
+)
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Result
-from nullpose.solve.robust import GuardedPose
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
+from nullpose.solve.array import ArrayDetails
+from nullpose.solve.robust import GuardedPose, RobustDetails
 
 __all__ = [
     "BINDING_RTOL",
@@ -31,6 +37,7 @@ __all__ = [
     "azimuth_text",
     "binding_nodes",
     "frame_rows",
+    "result_view",
     "robust_view",
     "solution_view",
     "work_words",
@@ -73,7 +80,7 @@ def azimuth_text(pose: Pose) -> str:
     return "-" if tilt_rad(pose) < _UPRIGHT_RAD else degrees_text(azimuth_rad(pose))
 
 
-def _head(result: Result, label: str, *more: str) -> RenderableType:
+def _head(result: Result, label: str, *more: str) -> View:
     """Return what stands above any result: value, bound, how sure it is, the work behind it, and more."""
     objective = result.objective
     stats = result.stats
@@ -88,7 +95,7 @@ def _head(result: Result, label: str, *more: str) -> RenderableType:
     return head(result.scenario.name, label, value, lines)
 
 
-def solution_view(solution: Result) -> RenderableType:
+def solution_view(solution: Result) -> View:
     """Return one solution as tables: value, pose, links, jammers and eavesdroppers.
 
     Args:
@@ -115,7 +122,17 @@ def solution_view(solution: Result) -> RenderableType:
     )
 
 
-def array_view(solution: Result) -> RenderableType:
+def result_view(result: Result) -> View:
+    """Return what was found, as tables: with one dipole, with an array, or under errors.
+
+    Args:
+        result: of any kind.
+    """
+    views = {RobustDetails: robust_view, ArrayDetails: array_view}
+    return views.get(type(result.details), solution_view)(result)
+
+
+def array_view(solution: Result) -> View:
     """Return where an array hovers, its attitude, what nodes get, and the phases of a shared beam.
 
     Args:
@@ -136,7 +153,7 @@ def array_view(solution: Result) -> RenderableType:
     )
 
 
-def robust_view(solution: Result) -> RenderableType:
+def robust_view(solution: Result) -> View:
     """Return a robust solution as tables: the guarantee, its bound, and both poses side by side.
 
     Args:
@@ -212,7 +229,7 @@ def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str]]:
     ]
 
 
-def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> RenderableType | None:
+def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> View | None:
     """Return a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
     scenario, quantity, links = solution.scenario, solution.objective.quantity, solution.links
     binding = binding_nodes(solution)
@@ -220,8 +237,8 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> Rendera
     if quantity.noun != quantity.ratio:
         numbers = [quantity.in_unit(quantity.at(link)) for link in links]
         own[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
-        own[f"required {quantity.ratio} (dB)"] = [_stated(node.min_sinr_db) for node in scenario.nodes]
-        own["weight"] = [_stated(node.weight) for node in scenario.nodes]
+        own[f"required {quantity.ratio} (dB)"] = [stated(node.min_sinr_db, ".6g") for node in scenario.nodes]
+        own["weight"] = [stated(node.weight, ".6g") for node in scenario.nodes]
     if quantity.is_rate:
         own["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
     distances_m = [distance_m(solution.pose, point_m) for point_m in scenario.node_positions_m]
@@ -237,11 +254,7 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> Rendera
     return table("Links", rows(columns), bold=binding, left=[""])
 
 
-def _stated(number: float | None) -> str | None:
-    return None if number is None else f"{number:.6g}"
-
-
-def _nulls_table(scenario: Scenario, pose: Pose) -> RenderableType | None:
+def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     """Return how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
     noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
     names = scenario.eavesdropper_names

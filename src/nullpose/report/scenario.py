@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
-from nullpose.report.document import document, head, pairs, rows, table
+from nullpose.report.document import View, document, head, pairs, rows, table
+from nullpose.report.numbers import stated
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 __all__ = ["scenario_view", "summarise"]
 
@@ -86,7 +84,7 @@ def _nearest_m(scenario: Scenario, position_m: FloatArray) -> float:
     return max(float(np.linalg.norm(inside - position_m)), airspace.keep_out_m)
 
 
-def scenario_view(scenario: Scenario) -> RenderableType:
+def scenario_view(scenario: Scenario) -> View:
     """Return a scenario's points, airspace, vehicle and receiver, with what the links can carry at best.
 
     Args:
@@ -176,26 +174,22 @@ def _power_words(power_w: float) -> str:
 
 def _points_table(
     noun: str, points: Sequence[_Point], numbers: Sequence[Mapping[str, Any]], best: str
-) -> RenderableType | None:
+) -> View | None:
     """Return a row for each point: what points of its kind state, and what its link carries at best."""
     columns: dict[str, Sequence[str | None]] = {
         noun: [point.name for point in points],
         **{f"{axis} (m)": [f"{point.position_m[i]:g}" for point in points] for i, axis in enumerate("xyz")},
-        "noise (dBm)": [_cell(each.get("noise_dbm"), ".2f") for each in numbers],
-        "power (dBm)": [_cell(each["power_dbm"], ".2f") for each in numbers],
-        "power (W)": [_cell(each["power_w"], ".6g") for each in numbers],
-        "requires (dB)": [_cell(getattr(point, "min_sinr_db", None), ".6g") for point in points],
-        "weight": [_cell(getattr(point, "weight", None), ".6g") for point in points],
+        "noise (dBm)": [stated(each.get("noise_dbm"), ".2f") for each in numbers],
+        "power (dBm)": [stated(each["power_dbm"], ".2f") for each in numbers],
+        "power (W)": [stated(each["power_w"], ".6g") for each in numbers],
+        "requires (dB)": [stated(getattr(point, "min_sinr_db", None), ".6g") for point in points],
+        "weight": [stated(getattr(point, "weight", None), ".6g") for point in points],
         "uncertainty (m)": [_extents(point) for point in points],
     }
     if best:
-        columns["closest (m)"] = [_cell(each["nearest_m"], ".6g") for each in numbers]
-        columns[best] = [_cell(each["best_power_to_noise_db"], ".2f") for each in numbers]
+        columns["closest (m)"] = [stated(each["nearest_m"], ".6g") for each in numbers]
+        columns[best] = [stated(each["best_power_to_noise_db"], ".2f") for each in numbers]
     return table(f"{noun.capitalize()}s", rows(columns))
-
-
-def _cell(number: float | None, digits: str) -> str | None:
-    return None if number is None else format(number, digits)
 
 
 def _extents(point: _Point) -> str | None:

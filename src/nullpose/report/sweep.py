@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from nullpose.report.certainty import certainty_lines, rigour_lines
-from nullpose.report.document import document, grouped, table
+from nullpose.report.document import View, document, grouped, table
 from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.numbers import begun, bound_text
 from nullpose.schemes import Scheme
 from nullpose.solve import Status
 from nullpose.study import SweepRow, SweepTable
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 __all__ = ["sweep_view", "write_sweep"]
 
@@ -38,12 +33,11 @@ def write_sweep(sweep: SweepTable, folder: Path, *, log: bool = False) -> tuple[
     return (sweep.write_csv(folder / "sweep.csv"), *write_figure(figure, folder, "sweep"))
 
 
-def sweep_view(sweep: SweepTable, files: Sequence[Path]) -> RenderableType:
+def sweep_view(sweep: SweepTable) -> View:
     """Return a sweep as a table of the objective, one column per scheme, and what is proved of it.
 
     Args:
         sweep: what was found.
-        files: what was written.
     """
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
@@ -61,7 +55,6 @@ def sweep_view(sweep: SweepTable, files: Sequence[Path]) -> RenderableType:
         *(f"{line}." for line in certainty_lines(sweep)),
         *rigour_lines((label, row.objective.rigour) for label, row in labelled),
         *grouped((label, row.reason) for label, row in labelled),
-        *(f"Wrote {path}" for path in files),
     ]
     title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(table(title, list(rows.values())), "\n".join(lines))

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from nullpose.report.study.cases import report_cases
 from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather
 from nullpose.study.monte_carlo import StudySpec, read_study
@@ -109,7 +110,7 @@ def summed(make: Make) -> Callable[..., Summary]:
         cells: Any, *, requirement: float | None = None, against: str | None = None, **given: Any
     ) -> Summary:
         table = read_study(make(cells, **given))
-        return summarise(table, gather(table), requirement=requirement, against=against)
+        return summarise(table, gather(table), report_cases(table.spec, against), requirement)
 
     return summed_up
 

@@ -131,3 +131,11 @@ def test_curves_of_very_many_scenes_are_thin() -> None:
     assert (across[0], across[-1], shares[0], shares[-1]) == (numbers.min(), numbers.max(), 0.0, 1.0)
     assert list(across[1:6]) == list(np.sort(numbers)[:5])
     assert math.isclose(float(np.interp(0.0, across, shares)), 0.5, abs_tol=0.01)
+
+
+def test_an_odd_number_of_panels(summed: Summed, ladder: Ladder) -> None:
+    """Three combinations have a panel each, and the fourth place is empty."""
+    sweep = {"jammers.M.power_w": [0.2, 2.0, 200.0]}
+    figure = draw_distributions(summed(ladder(40, 1.0, 2.0, points=3), sweep=sweep))
+    assert figure is not None
+    assert len(figure.axes) == 3

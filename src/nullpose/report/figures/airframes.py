@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
@@ -14,10 +16,6 @@ from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import number, share_text
 from nullpose.study import AirframeComparison, AirframeResult
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 __all__ = ["draw_airframes"]
 
@@ -33,8 +31,6 @@ def draw_airframes(comparison: AirframeComparison) -> Figure:
     Args:
         comparison: what each vehicle makes of a scenario.
     """
-    from matplotlib.figure import Figure
-
     scenario, results = comparison.scenario, comparison.results
     quantity, lines = Quantity.of(scenario), answer_lines(comparison)
     places = np.arange(len(results)) + _GAP * (np.arange(len(results)) >= len(comparison.dipoles))

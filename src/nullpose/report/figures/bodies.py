@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.labels import Label
@@ -27,8 +28,6 @@ def draw_zone(axes: Any, zone: NoFlyZone | None, corners_m: FloatArray, colour: 
         corners_m: seen from above, shape ``(n, 2)``, metres.
         colour: of the zone.
     """
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
     bottom_m, top_m = axes.get_zlim()
     if zone is None:
         ring = np.vstack([corners_m, corners_m[:1]])

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.patheffects import withStroke
+from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d import proj3d
 
 from nullpose.physics.types import FloatArray
 
@@ -57,9 +60,6 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
         centre_m: of the ball to leave free, shape ``(3,)``, metres.
         radius_m: of the ball.
     """
-    from matplotlib.patheffects import withStroke
-    from matplotlib.transforms import Bbox
-
     axes.apply_aspect()
     pixels = axes.figure.dpi / 72.0
     spots = [_on_paper(axes, label.point_m)[1] for label in labels]
@@ -97,15 +97,11 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
 
 def _on_paper(axes: Any, point_m: FloatArray) -> tuple[tuple[float, float], FloatArray]:
     """Return where a point is in the plane that the axes project on, and on the paper, pixels."""
-    from mpl_toolkits.mplot3d import proj3d
-
     x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
     return (float(x), float(y)), np.asarray(axes.transData.transform((x, y)))
 
 
 def _square(at: FloatArray, half: float) -> Any:
-    from matplotlib.transforms import Bbox
-
     return Bbox([at - half, at + half])
 
 

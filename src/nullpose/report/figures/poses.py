@@ -6,9 +6,10 @@ import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from nullpose.objectives import Quantity
@@ -33,12 +34,11 @@ from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.words import error_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.solve import Objective, Result
+from nullpose.solve.array import ArrayDetails
+from nullpose.solve.robust import RobustDetails
 from nullpose.study import SweepRow
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-__all__ = ["draw_array", "draw_pose", "draw_poses", "draw_robust"]
+__all__ = ["draw_array", "draw_pose", "draw_poses", "draw_result", "draw_robust"]
 
 _LETTERS = 100  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
@@ -61,6 +61,16 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
     stage = Stage(scenario=scenario, poses=tuple(row.pose for row in rows), view=PANELS)
     return draw_panels(stage, _draw_dipole, surface=_SURFACE, titles=titles)
+
+
+def draw_result(result: Result) -> Figure:
+    """Return the figure of one result: of a dipole's pose, of an array, or of a robust pose.
+
+    Args:
+        result: of any kind.
+    """
+    drawings = {RobustDetails: draw_robust, ArrayDetails: draw_array}
+    return drawings.get(type(result.details), draw_pose)(result)
 
 
 def draw_pose(solution: Result) -> Figure:

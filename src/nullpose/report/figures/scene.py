@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
@@ -17,9 +20,6 @@ from nullpose.report.figures.labels import Label, place_labels
 from nullpose.report.figures.style import GREY, house_style
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 __all__ = ["ALONE", "AXIS", "DRONE", "PAIR", "PANELS", "SURFACE", "Stage", "View", "draw_line", "draw_panels"]
 
@@ -135,9 +135,6 @@ def draw_panels(
         head: title of the figure; empty for none.
         titles: of the panels; none for no titles.
     """
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
-
     view, count = stage.view, len(stage.poses)
     with house_style():
         figure = Figure(figsize=(view.inches[0] * count, view.inches[1]))
@@ -220,8 +217,6 @@ def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
 
 
 def _frame(axes: Any, stage: Stage) -> None:
-    from matplotlib.ticker import FixedLocator, MaxNLocator
-
     low, high = _limits(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=_ZOOM)  # one metre is as long along every axis

@@ -8,11 +8,16 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing
+from nullpose.physics.types import FloatArray
 from nullpose.schemes import Curve, Scheme
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = [
@@ -21,7 +26,9 @@ __all__ = [
     "INK",
     "VEHICLES",
     "Curve",
+    "draw_curve",
     "house_style",
+    "line_style",
     "prepare_figure_file",
     "write_figure",
     "write_figure_file",
@@ -80,6 +87,47 @@ def house_style() -> Iterator[None]:
         yield
 
 
+def line_style(look: Curve) -> dict[str, Any]:
+    """Return how a line with markers is drawn, as Matplotlib's arguments.
+
+    Args:
+        look: of the line.
+    """
+    line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}
+    return line | {"marker": look.marker, "markersize": 4.2, "markerfacecolor": "white", "zorder": look.order}
+
+
+def draw_curve(
+    axes: Axes,
+    look: Curve,
+    across: ArrayLike,
+    heights: ArrayLike,
+    band: tuple[FloatArray, FloatArray] | None = None,
+    *,
+    steps: bool = False,
+    every: Any = None,
+) -> None:
+    """Draw a curve, with a band where both of its ends are known.
+
+    Args:
+        axes: where to draw.
+        look: of the curve.
+        across: where.
+        heights: how high; infinite ones are left out.
+        band: lower and upper end.
+        steps: whether a height holds up to the next place.
+        every: which points have a marker, as Matplotlib has it; all without.
+    """
+    heights = np.where(np.isfinite(heights), heights, np.nan)
+    drawstyle = "steps-post" if steps else "default"
+    axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **line_style(look))
+    if band is not None:
+        known = np.isfinite(band[0]) & np.isfinite(band[1])
+        shade: dict[str, Any] = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}
+        if np.any(known):
+            axes.fill_between(across, *band, where=known, step="post" if steps else None, **shade)
+
+
 def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     """Return the paths of a PNG and an SVG of a figure after writing both.
 
@@ -95,8 +143,8 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     return write_figure_file(figure, png), write_figure_file(figure, svg)
 
 
-def prepare_figure_file(path: Path) -> Path:
-    """Return the path of a figure to be written later, its folder made if need be.
+def prepare_figure_file(path: Path) -> None:
+    """Make sure that a figure can be written later, its folder made if need be.
 
     Args:
         path: ends in .png or .svg.
@@ -108,7 +156,6 @@ def prepare_figure_file(path: Path) -> Path:
     if path.suffix.lower() not in _FORMATS:
         raise UsageError(f"figure: given {path}; allowed: a name that ends in {' or '.join(_FORMATS)}")
     prepare_folder(path.parent)
-    return path
 
 
 def write_figure_file(figure: Figure, path: Path) -> Path:

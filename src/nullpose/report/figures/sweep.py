@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, house_style
+from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style
 from nullpose.report.numbers import axis_label
 from nullpose.study import SweepRow, SweepTable
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 __all__ = ["draw_caption", "draw_curves", "draw_sweep", "quantity_of"]
 
@@ -56,51 +54,26 @@ def draw_curves(axes: Axes, table: SweepTable) -> bool:
     apart = _VISIBLE
     if quantity_of(table).is_rate:
         apart = 0.01 * float(np.max(_in_unit(table.rows, "value")))
-    for scheme in table.schemes:
-        _draw_curve(axes, table, scheme, apart)
-    return bool(np.any(_in_unit(table.rows, "upper_bound") - _in_unit(table.rows, "value") > apart))
+    seen = [_draw_scheme(axes, table, scheme, apart) for scheme in table.schemes]
+    return any(seen)
 
 
-def _draw_curve(axes: Axes, table: SweepTable, scheme: str, apart: float) -> None:
-    """Draw a curve, the band up to its bounds, and marks at bounds that lie apart."""
-    curve, rows = CURVES[scheme], table.of(scheme)
+def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bool:
+    """Return whether a curve has bounds that lie apart, after drawing it with a band up to them."""
+    look, rows = CURVES[scheme], table.of(scheme)
     levels, values, bounds = (
         [row.value for row in rows],
         _in_unit(rows, "value"),
         _in_unit(rows, "upper_bound"),
     )
     first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
-    axes.plot(
-        levels,
-        values,
-        color=curve.colour,
-        linestyle=curve.line,
-        linewidth=curve.width,
-        marker=curve.marker,
-        markersize=4.2,
-        markerfacecolor="white",
-        markevery=(first, max(1, len(CURVES), math.ceil(len(rows) / _MARKERS))),
-        zorder=curve.order,
-        label=curve.label,
-    )
-    if np.all(np.isnan(bounds)):
-        return
-    axes.fill_between(
-        levels, values, bounds, color=curve.colour, alpha=0.10, linewidth=0.0, zorder=curve.order - 2.0
-    )
-    seen = np.where(bounds - values > apart, bounds, math.nan)
-    if not np.all(np.isnan(seen)):
-        axes.plot(
-            levels,
-            seen,
-            color=curve.colour,
-            linestyle="",  # between two points nothing is proved
-            marker=_CARET_DOWN,
-            markersize=3.5,
-            alpha=0.7,
-            zorder=_ABOVE_CURVES,
-            label=f"_{scheme}: no pose is above",
-        )
+    every = (first, max(len(CURVES), math.ceil(len(rows) / _MARKERS)))
+    draw_curve(axes, look, levels, values, (values, bounds), every=every)
+    seen = bounds - values > apart
+    marks: dict[str, Any] = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
+    if np.any(seen):  # no line: between two points nothing is proved
+        axes.plot(levels, np.where(seen, bounds, math.nan), color=look.colour, linestyle="", **marks)
+    return bool(np.any(seen))
 
 
 def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
@@ -117,12 +90,10 @@ def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
 def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
     values, bounds = _in_unit(table.rows, "value"), _in_unit(table.rows, "upper_bound")
-    if np.all(np.isnan(values)) or np.all(np.isnan(bounds)):
-        return
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # unlike the maximum, they pass over NaN
     least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _ROOM
     room = max(least, high - low)
-    if np.nanmax(bounds) > high + room:
+    if np.fmax.reduce(bounds) > high + room:
         axes.set_ylim(low - 0.05 * room, high + room)
 
 
@@ -133,8 +104,6 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
         table: what the sweep found.
         log: draw the swept setting on a logarithmic axis.
     """
-    from matplotlib.figure import Figure
-
     quantity, lines = quantity_of(table), [f"{line}." for line in certainty_lines(table)]
     with house_style():
         figure = Figure(figsize=(7.0, 4.6), layout="constrained")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.report.document import markdown_table
 from nullpose.report.numbers import NONE, begun, count_of, escaped, number, percent, with_interval
@@ -234,29 +235,27 @@ def _status_rows(summary: Summary) -> Rows:
 
 
 def _effort_rows(summary: Summary) -> Rows:
-    rows = []
-    shares = {"median": 0.5, "95 %": 0.95, "worst": 1.0}
-    for case in summary.cases:
-        gap, seconds = (
-            each[:, :, case.place].astype(float).ravel()
-            for each in (summary.values.gap, summary.values.seconds)
-        )
-        row = {"case": escaped(case.name)}
-        row |= {f"gap: {name}": f"{quantile(gap, share):.1e}" for name, share in shares.items()}
-        row |= {f"seconds: {name}": f"{quantile(seconds, share):.3g}" for name, share in shares.items()}
-        row["seconds: sum"] = f"{np.nansum(seconds):.3g}"
-        rows.append({name: NONE if cell == "nan" else cell for name, cell in row.items()})
-    return rows
+    def cells(numbers: NDArray[np.float32], name: str, digits: str) -> dict[str, str]:
+        shares = {"median": 0.5, "95 %": 0.95, "worst": 1.0}
+        found = {words: quantile(numbers.astype(float).ravel(), share) for words, share in shares.items()}
+        return {f"{name}: {words}": format(one, digits).replace("nan", NONE) for words, one in found.items()}
+
+    gap, seconds = summary.values.gap, summary.values.seconds
+    return [
+        {"case": escaped(case.name)}
+        | cells(gap[:, :, case.place], "gap", ".1e")
+        | cells(seconds[:, :, case.place], "seconds", ".3g")
+        | {"seconds: sum": f"{np.nansum(seconds[:, :, case.place].astype(float)):.3g}"}
+        for case in summary.cases
+    ]
 
 
 def _reason_rows(summary: Summary) -> Rows:
     """Return why rows failed or were not certified, the most frequent first."""
-    reasons = summary.values.reasons
-    found = reasons.most_common(_MOST_REASONS)
-    told = [(*about, count) for about, count in found]
-    if len(reasons) > len(found):
-        others = f"{len(reasons) - len(found):,} other reasons"
-        told.append(("others", "", others, reasons.total() - sum(count for _, count in found)))
+    told = summary.values.reasons.most_common()
+    if others := told[_MOST_REASONS:]:
+        count = sum(count for _, count in others)
+        told[_MOST_REASONS:] = [(("others", "", f"{len(others):,} other reasons"), count)]
     return [
         {
             "case": escaped(case),
@@ -266,7 +265,7 @@ def _reason_rows(summary: Summary) -> Rows:
                 reason if len(reason) <= _LONGEST_REASON else f"{reason[:_LONGEST_REASON]} ..."
             ),
         }
-        for case, status, reason, count in told
+        for (case, status, reason), count in told
     ]
 
 

@@ -60,18 +60,13 @@ def quantile_interval(values: FloatArray, share: float) -> tuple[float, float]:
         values: numbers drawn independently, shape ``(n,)``; NaN are left out.
         share: between 0 and 1.
     """
-    from scipy.stats import binom
+    from scipy.stats import quantile_test
 
-    numbers = np.sort(values[~np.isnan(values)])
-    tail = (1.0 - CONFIDENCE) / 2.0
+    numbers = values[~np.isnan(values)]
     if not len(numbers):
         return math.nan, math.nan
-    low = int(binom.ppf(tail, len(numbers), share))
-    high = int(binom.ppf(1.0 - tail, len(numbers), share)) + 1
-    return (
-        float(numbers[low - 1]) if low >= 1 else math.nan,
-        float(numbers[high - 1]) if high <= len(numbers) else math.nan,
-    )
+    found = quantile_test(numbers, p=share).confidence_interval(CONFIDENCE)
+    return float(found.low), float(found.high)
 
 
 def band_half_width(count: int) -> float:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.study.cases import ReportCase, report_cases
+from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.points import SweptPoints
 from nullpose.report.study.statistics import (
     FEW_SCENES,
@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Summary", "summarise", "three_of"]
 
-Cells = dict[str, Any]
+Columns = dict[str, Any]  # numbers by case, or one for all
+Counts = NDArray[np.int64]
 
 _RESAMPLED = ("shift_worst_tenth", "share_of_median", "share_of_worst_tenth")
 
@@ -110,153 +111,144 @@ def three_of(row: Any, name: str) -> tuple[float, float, float]:
 def summarise(
     table: StudyTable,
     values: StudyValues,
-    *,
+    cases: tuple[ReportCase, ...],
     requirement: float | None = None,
-    against: str | None = None,
 ) -> Summary:
     """Return the statistics of a study.
 
     Args:
         table: the study.
         values: its values.
+        cases: of the study.
         requirement: what the smallest SINR, margin or rate has to reach, in its unit.
-        against: name of the case to measure gains against.
-
-    Raises:
-        UsageError: there is no case of that name.
     """
     import pandas as pd
 
-    spec, cases = table.spec, report_cases(table.spec, against)
-    rows: list[Cells] = []
-    for point, swept in enumerate(spec.points):
-        bootstrapped = _bootstrapped(cases, values.value[:, point])
-        rows += [
-            {"point": point, **swept, "case": case.name}
-            | _reached(values, point, case)
-            | _gained(cases, values, point, case)
-            | bootstrapped[case.place]
-            | _best(cases, values, point, case)
-            | ({} if requirement is None else _outage(values, point, case, requirement))
-            | (_cost(cases, values, point, case) if any(each.robust for each in cases) else {})
-            | _proofs(values, point, case)
-            for case in cases
-        ]
+    frames = []
+    for point, swept in enumerate(table.spec.points):
+        at = values.at(point)
+        columns = {"point": point, **swept, "case": [case.name for case in cases]}
+        columns |= _reached(at) | _gained(cases, at) | _bootstrapped(cases, at.value) | _best(cases, at)
+        columns |= {} if requirement is None else _outage(at, requirement)
+        columns |= _cost(cases, at) if any(case.robust for case in cases) else {}
+        frames.append(pd.DataFrame(columns | _proofs(at)))
     return Summary(
-        spec=spec,
+        spec=table.spec,
         values=values,
         quantity=table.quantity,
         cases=cases,
-        points=SweptPoints.of(spec),
+        points=SweptPoints.of(table.spec),
         requirement=requirement,
-        frame=pd.DataFrame(rows),
+        frame=pd.concat(frames, ignore_index=True),
     )
 
 
-def _with_ends(name: str, value: float, ends: tuple[float, float]) -> Cells:
-    return {name: value, f"{name}_low": ends[0], f"{name}_high": ends[1]}
+def _with_ends(name: str, found: ArrayLike, ends: Iterable[tuple[float, float]]) -> Columns:
+    low, high = zip(*ends, strict=True)
+    return {name: found, f"{name}_low": low, f"{name}_high": high}
 
 
-def _quantiles(name: str, numbers: FloatArray, share: float) -> Cells:
-    return _with_ends(name, quantile(numbers, share), quantile_interval(numbers, share))
+def _quantile(numbers: FloatArray, share: float) -> list[float]:
+    return [quantile(column, share) for column in numbers.T]
 
 
-def _shares(name: str, hits: int, count: int) -> Cells:
-    return _with_ends(name, hits / count if count else math.nan, share_interval(hits, count))
+def _quantiles(name: str, numbers: FloatArray, share: float) -> Columns:
+    ends = (quantile_interval(column, share) for column in numbers.T)
+    return _with_ends(name, _quantile(numbers, share), ends)
 
 
-def _reached(values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _shares(name: str, hits: Counts, counts: Counts) -> Columns:
+    return _with_ends(name, _divided(hits, counts), map(share_interval, hits, counts))
+
+
+def _divided(part: FloatArray | Counts, whole: FloatArray | Counts) -> FloatArray:
+    """Return shares of what there is; NaN where there is nothing, or no finite number."""
+    sound = np.isfinite(part) & np.isfinite(whole) & (whole > 0)
+    return np.asarray(np.divide(part, whole, out=np.full(part.shape, math.nan), where=sound))
+
+
+def _reached(at: StudyValues) -> Columns:
     """Return how many rows have which status, and the quantiles of what is reached."""
-    status, numbers = values.status[:, point, case.place], values.value[:, point, case.place]
-    counts = {name.replace("-", "_"): int(np.sum(status == code)) for code, name in enumerate(STATUSES)}
+    counts = {name.replace("-", "_"): np.sum(at.status == code, axis=0) for code, name in enumerate(STATUSES)}
     return {
-        "scenes": len(status),
+        "scenes": at.scenes,
         **counts,
-        **_quantiles("worst_tenth", numbers, WORST_TENTH),
-        **_quantiles("median", numbers, MEDIAN),
-        "best_tenth": quantile(numbers, 1.0 - WORST_TENTH),
+        **_quantiles("worst_tenth", at.value, WORST_TENTH),
+        **_quantiles("median", at.value, MEDIAN),
+        "best_tenth": _quantile(at.value, 1.0 - WORST_TENTH),
     }
 
 
-def _gained(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _gained(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
     """Return the statistics of the differences from the reference on the same scenes."""
-    gains = difference(values.value[:, point, case.place], values.value[:, point, case.reference])
+    references = [case.reference for case in cases]
+    gains = difference(at.value, at.value[:, references])
     return {
-        "against": cases[case.reference].name,
-        "pairs": int(np.sum(~np.isnan(gains))),
+        "against": [cases[reference].name for reference in references],
+        "pairs": np.sum(~np.isnan(gains), axis=0),
         **_quantiles("gain_worst_tenth", gains, WORST_TENTH),
         **_quantiles("gain_median", gains, MEDIAN),
-        "gain_best_tenth": quantile(gains, 1.0 - WORST_TENTH),
+        "gain_best_tenth": _quantile(gains, 1.0 - WORST_TENTH),
     }
 
 
-def _bootstrapped(cases: Sequence[ReportCase], value: FloatArray) -> list[Cells]:
+def _bootstrapped(cases: Sequence[ReportCase], value: FloatArray) -> Columns:
     """Return for each case what the worst tenth gains, and the shares of what is gained by all of tilt."""
     references = [case.reference for case in cases]
     wholes = [case.reference if case.whole is None else case.whole for case in cases]  # itself: no share
     tenths = resampled(value, WORST_TENTH)
     medians = resampled(difference(value, value[:, references]), MEDIAN)
 
-    def statistics(times: NDArray[np.int64]) -> FloatArray:
+    def statistics(times: Counts) -> FloatArray:
         tenth, median = tenths(times), medians(times)
         shift = difference(tenth, tenth[references])
-        return np.stack([shift, _ratio(median, median[wholes]), _ratio(shift, shift[wholes])])
+        return np.stack([shift, _divided(median, median[wholes]), _divided(shift, shift[wholes])])
 
-    count = value.shape[0]
+    count = len(value)
     found = statistics(np.ones(count, dtype=np.int64))
     drawn = draws(count) if count >= FEW_SCENES else ()
     many = np.array([statistics(times) for times in drawn]).reshape(-1, 3, len(cases))
-    rows: list[Cells] = [{} for _ in cases]
-    for place, row in enumerate(rows):
-        for kind, name in enumerate(_RESAMPLED):
-            row |= _with_ends(name, float(found[kind, place]), interval_of(many[:, kind, place]))
-    return rows
+    columns: Columns = {}
+    for kind, name in enumerate(_RESAMPLED):
+        columns |= _with_ends(name, found[kind], map(interval_of, many[:, kind].T))
+    return columns
 
 
-def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
-    """Return shares of what is gained; NaN where nothing is."""
-    sound = np.isfinite(part) & np.isfinite(whole) & (whole > 0.0)
-    return np.asarray(np.divide(part, whole, out=np.full_like(part, math.nan), where=sound))
-
-
-def _best(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _best(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
     """Return in how many scenes a case is as good as the best, as far as its proof tells."""
-    group = values.value[:, point, [each.place for each in cases if each.robust is case.robust]]
-    known = ~np.all(np.isnan(group), axis=1)
-    best = np.max(np.nan_to_num(group, nan=-np.inf, neginf=-np.inf), axis=1)
-    own, bound, status = (each[:, point, case.place] for each in (values.value, values.bound, values.status))
-    reach = np.where(status == STATUSES.index("certified"), np.fmax(bound, own), own)
-    hits = int(np.sum(known & (reach >= best)))
-    return {"best_in": hits, **_shares("best_share", hits, int(np.sum(known)))}
+    robust = np.array([case.robust for case in cases])
+    best = np.stack([np.fmax.reduce(at.value[:, robust == own], axis=1) for own in robust], axis=1)
+    reach = np.where(at.status == STATUSES.index("certified"), np.fmax(at.bound, at.value), at.value)
+    hits = np.sum(reach >= best, axis=0)
+    return {"best_in": hits, **_shares("best_share", hits, np.sum(~np.isnan(best), axis=0))}
 
 
-def _outage(values: StudyValues, point: int, case: ReportCase, requirement: float) -> Cells:
+def _outage(at: StudyValues, requirement: float) -> Columns:
     """Return in what share of scenes a requirement is missed, and is proved to be missed by any pose."""
-    value, bound = (each[:, point, case.place] for each in (values.value, values.bound))
-    known = ~np.isnan(value)
-    count, proved = int(np.sum(known)), int(np.sum(bound[known] < requirement))
-    missed = _shares("outage", int(np.sum(value[known] < requirement)), count)
-    return {**missed, "outage_proved": proved / count if count else math.nan}
+    counts = np.sum(~np.isnan(at.value), axis=0)
+    missed, proved = (np.sum(numbers < requirement, axis=0) for numbers in (at.value, at.bound))
+    return {**_shares("outage", missed, counts), "outage_proved": _divided(proved, counts)}
 
 
-def _cost(cases: Sequence[ReportCase], values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _cost(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
     """Return what a robust case gives up of what the same vehicle reaches if everything is as stated."""
-    robust = values.value[:, point, case.place]
-    unknown = np.full(len(robust), math.nan)
-    nominal = unknown if case.nominal is None else values.value[:, point, case.nominal]
-    costs = difference(nominal, robust)
+    nominal = np.full_like(at.value, math.nan)
+    for case in cases:
+        if case.nominal is not None:
+            nominal[:, case.place] = at.value[:, case.nominal]
+    costs = difference(nominal, at.value)
     return {
-        "nominal": "" if case.nominal is None else cases[case.nominal].name,
+        "nominal": ["" if case.nominal is None else cases[case.nominal].name for case in cases],
         **_quantiles("cost_median", costs, MEDIAN),
-        "cost_worst_tenth": quantile(costs, 1.0 - WORST_TENTH),
+        "cost_worst_tenth": _quantile(costs, 1.0 - WORST_TENTH),
     }
 
 
-def _proofs(values: StudyValues, point: int, case: ReportCase) -> Cells:
+def _proofs(at: StudyValues) -> Columns:
     """Return the gaps that were reached and the seconds that were needed, failures left out."""
-    gap, seconds = (each[:, point, case.place].astype(float) for each in (values.gap, values.seconds))
-    cells: Cells = {"proved": int(np.sum(~np.isnan(gap)))}
+    gap, seconds = at.gap.astype(float), at.seconds.astype(float)
+    columns: Columns = {"proved": np.sum(~np.isnan(gap), axis=0)}
     for name, numbers in (("gap", gap), ("seconds", seconds)):
         for suffix, share in (("median", 0.5), ("p95", 0.95), ("worst", 1.0)):
-            cells[f"{name}_{suffix}"] = quantile(numbers, share)
-    return {**cells, "seconds_total": float(np.nansum(seconds))}
+            columns[f"{name}_{suffix}"] = _quantile(numbers, share)
+    return {**columns, "seconds_total": np.nansum(seconds, axis=0)}

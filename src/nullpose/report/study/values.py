@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,6 +49,15 @@ class StudyValues:
     def scenes(self) -> int:
         """How many scenes there are rows of."""
         return int(self.value.shape[0])
+
+    def at(self, point: int) -> StudyValues:
+        """Return what is said at one combination of swept values, by scene and case: all of shape ``(n, c)``.
+
+        Args:
+            point: the combination's number.
+        """
+        names = ("value", "bound", "gap", "status", "seconds")
+        return replace(self, **{name: getattr(self, name)[:, point] for name in names})
 
     def counts(self) -> dict[str, int]:
         """Return how many rows have each status."""

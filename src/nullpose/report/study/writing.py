@@ -14,6 +14,7 @@ from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
 from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.cases import report_cases
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of
 from nullpose.report.study.summary import Summary, summarise
@@ -81,13 +82,12 @@ def report_study(
     """
     table = read_study(folder)
     requirement = _requirement(table.quantity, requirement_db, requirement_bps_hz)
-    if against is not None and against not in table.spec.case_names:
-        raise UsageError(f"against: given {against!r}; allowed: {', '.join(table.spec.case_names)}")
+    cases = report_cases(table.spec, against)
     target = prepare_folder(Path(folder) / "report" if out is None else Path(out))
     data = target / "study.csv"
     with _writing(data) as file:
         values = gather(table, lambda batch: _append(file, batch))
-    summary = summarise(table, values, requirement=requirement, against=against)
+    summary = summarise(table, values, cases, requirement)
     with _writing(target / "summary.csv") as file:
         _append(file, summary.table())
     figures = _write_figures(summary, prepare_folder(target / "figures"))

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
 
 from nullpose.report.study.figures.curves import draw_along, draw_distributions, draw_effort, draw_outage
 from nullpose.report.study.figures.intervals import draw_costs, draw_gains, draw_shares
 from nullpose.report.study.summary import Summary
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 __all__ = ["FIGURES", "figures_of"]
 

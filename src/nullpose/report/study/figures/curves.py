@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import INK
+from nullpose.report.figures.style import INK, draw_curve
 from nullpose.report.numbers import percent
 from nullpose.report.study.figures.panels import (
     QUARTERS,
-    draw_curve,
     handles_of,
     looks_of,
     panel_titles,
@@ -22,10 +22,6 @@ from nullpose.report.study.figures.panels import (
 from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
 from nullpose.report.study.summary import Summary, three_of
 from nullpose.report.study.values import FAILED
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 __all__ = ["draw_along", "draw_distributions", "draw_effort", "draw_outage", "step_curve"]
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from nullpose.report.figures.style import INK, Curve
 from nullpose.report.numbers import percent
@@ -18,10 +22,6 @@ from nullpose.report.study.figures.panels import (
 )
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary, three_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 __all__ = ["draw_costs", "draw_gains", "draw_shares"]
 
@@ -110,8 +110,6 @@ def _rows(
     marks: dict[str, dict[str, Any]],
 ) -> Figure | None:
     """Return panels with a row for each case, the first on top, or None if no case has a value."""
-    from matplotlib.lines import Line2D
-
     points = points_with(summary, cases)
     if not points:
         return None

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style
+from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style, line_style
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.summary import Summary
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 __all__ = [
     "QUARTERS",
-    "draw_curve",
     "handles_of",
     "looks_of",
     "panel_titles",
@@ -60,52 +57,13 @@ def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
     return looks
 
 
-def draw_curve(
-    axes: Axes,
-    look: Curve,
-    across: FloatArray,
-    heights: FloatArray,
-    band: tuple[FloatArray, FloatArray] | None = None,
-    *,
-    steps: bool = False,
-    every: Any = None,
-) -> None:
-    """Draw a case's curve, with a band where both of its ends are known.
-
-    Args:
-        axes: the panel.
-        look: of the case.
-        across: where.
-        heights: how high; infinite ones are left out.
-        band: lower and upper end.
-        steps: whether a height holds up to the next place.
-        every: which points have a marker, as Matplotlib has it; all without.
-    """
-    heights = np.where(np.isfinite(heights), heights, np.nan)
-    drawstyle = "steps-post" if steps else "default"
-    axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **_style(look))
-    if band is not None:
-        axes.fill_between(
-            across,
-            *band,
-            where=np.isfinite(band[0]) & np.isfinite(band[1]),
-            step="post" if steps else None,
-            color=look.colour,
-            alpha=0.12,
-            linewidth=0.0,
-            zorder=1.0,
-        )
-
-
 def handles_of(cases: Sequence[ReportCase]) -> list[Any]:
     """Return what stands for the cases' curves in a legend.
 
     Args:
         cases: of the study.
     """
-    from matplotlib.lines import Line2D
-
-    return [Line2D([], [], **_style(look)) for look in looks_of(cases).values()]
+    return [Line2D([], [], **line_style(look)) for look in looks_of(cases).values()]
 
 
 def points_with(summary: Summary, cases: Iterable[ReportCase]) -> tuple[int, ...]:
@@ -154,13 +112,11 @@ def side_by_side(
         height: of a panel, inches.
         share_x: whether all have the same horizontal axis.
     """
-    from matplotlib.figure import Figure
-
     columns = min(2, len(titles))
     down = -(-len(titles) // columns)
     with house_style():
         figure = Figure(figsize=(_WIDTH, (1.3 if down == 1 else 0.9) + height * down), layout="constrained")
-        panels = figure.subplots(down, columns, sharex=share_x, sharey=True, squeeze=False).flat
+        panels = list(figure.subplots(down, columns, sharex=share_x, sharey=True, squeeze=False).flat)
         for place, axes in enumerate(panels):
             if place < len(titles):
                 axes.set_title(titles[place], loc="left", fontsize=9.0)
@@ -188,9 +144,3 @@ def _add_legend(figure: Figure, handles: Sequence[Any]) -> None:
         handlelength=2.6,
         columnspacing=1.2,
     )
-
-
-def _style(look: Curve) -> dict[str, Any]:
-    """Return how a case's line is drawn, as Matplotlib's arguments."""
-    line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}
-    return line | {"marker": look.marker, "markersize": 4.2, "markerfacecolor": "white", "zorder": look.order}
