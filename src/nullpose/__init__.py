@@ -14,6 +14,8 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from nullpose.version import __version__
+
 if TYPE_CHECKING:
     from nullpose.errors import (
         Fault,
@@ -53,8 +55,6 @@ if TYPE_CHECKING:
     )
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
     from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Airframe",

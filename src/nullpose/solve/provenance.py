@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from nullpose import __version__
+from nullpose.version import __version__
 
 __all__ = ["provenance"]
 

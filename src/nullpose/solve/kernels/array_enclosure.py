@@ -20,7 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nullpose.solve.kernels.array_response import FloatArray, channels_at, node_power, nulls_towards
+from nullpose.objectives import FloatArray
+from nullpose.solve.kernels.array_response import channels_at, node_power, nulls_towards
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import along, dot, minus, over, row
 
