@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,6 @@ class Carpet:
 
     def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
-        self._parts: list[Any] = []
 
     def show(self, field: Field) -> tuple[float, float]:
         """Return the ends of the scale after drawing a field in place of the one before.
@@ -46,7 +45,7 @@ class Carpet:
         east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
         width = float(east[-1] + east[1] - 2.0 * east[0])
         height = float(north[-1] - north[0] + east[1] - east[0])
-        image = self._scene.add_image(
+        self._scene.add_image(
             "/map/colours",
             _image(field, low, high),
             width,
@@ -56,26 +55,22 @@ class Carpet:
             position=(0.5 * (east[0] + east[-1]), 0.5 * (north[0] + north[-1]), altitude_m),
             **FLAT,
         )
-        self._parts.append(image)
         contours = _contours(field, low, high)
         if contours:
             flat = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for _, line in contours])
             raised = np.insert(flat, 2, altitude_m + 1e-3 * width, axis=-1)
-            self._parts.append(add_lines(self._scene, "/map/contours", raised, _WHITE, 1.3))
+            add_lines(self._scene, "/map/contours", raised, _WHITE, 1.3)
         levels = sorted({level for level, _ in contours})
         for level in levels[:: max(1, len(levels) // _MOST_LABELS)]:
             points = np.concatenate([line for own, line in contours if own == level])
             x, y = points[np.argmin(points[:, 1])]  # southmost, out of the way of what is in the middle
             name, text = f"/map/level-{level:g}", f"{level:g} {field.unit}".replace("-", MINUS)
-            at = (x, y, altitude_m)
-            self._parts.append(add_label(self._scene, name, text, at, 0.7, "center-center"))
+            add_label(self._scene, name, text, (x, y, altitude_m), 0.7, "center-center")
         return low, high
 
     def hide(self) -> None:
         """Take the field out of the scene."""
-        for part in self._parts:
-            part.remove()
-        self._parts = []
+        self._scene.remove_by_name("/map")
 
 
 def _image(field: Field, low: float, high: float) -> NDArray[np.uint8]:

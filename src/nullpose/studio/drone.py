@@ -47,45 +47,46 @@ class Drone:
     Args:
         scene: the page's scene.
         slot: 0 for the chosen case, 1 for the compared one.
-        size_m: of the scene, from which the drone's drawn size follows.
     """
 
-    def __init__(self, scene: SceneApi, slot: int, size_m: float) -> None:
-        self._scene, self._slot, self._size_m = scene, slot, size_m
-        self._name = f"/drone-{'ab'[slot]}"
+    def __init__(self, scene: SceneApi, slot: int) -> None:
+        self._scene, self._slot, self._name = scene, slot, f"/drone-{'ab'[slot]}"
         self._parts: dict[str, Any] = {}
-        self._antenna: QuadraticAntenna | None = None
+        self._built: tuple[QuadraticAntenna, float] | None = None
 
-    def show(self, answer: Answer, text: str, link_range_db: tuple[float, float], *, pattern: bool) -> None:
+    def show(
+        self, answer: Answer, text: str, size_m: float, link_range_db: tuple[float, float], *, pattern: bool
+    ) -> None:
         """Put the drone where an answer has it.
 
         Args:
             answer: pose and links.
             text: its label.
+            size_m: of the scene, from which the drone's drawn size follows.
             link_range_db: ends of the links' colours, dB.
             pattern: whether the radiation pattern is shown.
         """
         from viser.transforms import SO3
 
         result, pose = answer.result, answer.result.pose
-        antenna = result.scenario.antenna_record
-        if antenna != self._antenna:
-            self.remove()
-            self._antenna = antenna
-            self._build(antenna)
+        wanted = (result.scenario.antenna_record, size_m)
+        if wanted != self._built:
+            self.hide()
+            self._built = wanted
+            self._build(*wanted)
         parts, here = self._parts, pose.position_m
         parts["body"].position = here
         parts["body"].wxyz = SO3.from_rpy_radians(pose.roll_rad, pose.pitch_rad, pose.yaw_rad).wxyz
         parts["antenna"].wxyz = SO3.from_y_radians(pose.mount_rad).wxyz
         parts["pattern"].visible = pattern
-        parts["label"].position = here + self._size_m * _LABEL_AT[self._slot]
+        parts["label"].position = here + size_m * _LABEL_AT[self._slot]
         parts["label"].text = text
         nodes = result.scenario.node_positions_m
         ends = np.stack([np.broadcast_to(here, nodes.shape), nodes], axis=1)
         decides = np.array([link.node == answer.binding_node for link in result.links])
         colours = scale_colours([link.sinr_db for link in result.links], *link_range_db)
         lines = {
-            "null": null_line_m(pose, 0.16 * self._size_m, most_m=1.5 * self._size_m)[None],
+            "null": null_line_m(pose, 0.16 * size_m, most_m=1.5 * size_m)[None],
             "drop": np.array([[here, [*here[:2], 0.0]]]),
             "links": ends,
             "binding": ends[decides],
@@ -94,23 +95,15 @@ class Drone:
             parts[name].points = segments.astype(np.float32)
         parts["links"].colors = np.repeat(colours[:, None], 2, axis=1)
         parts["binding"].colors = np.repeat(colours[decides][:, None], 2, axis=1)
-        parts["whole"].visible = True
 
     def hide(self) -> None:
-        """Take the drone out of sight."""
-        if self._parts:
-            self._parts["whole"].visible = False
-
-    def remove(self) -> None:
         """Take the drone out of the scene."""
-        if self._parts:
-            self._parts["whole"].remove()
-            self._parts, self._antenna = {}, None
+        self._scene.remove_by_name(self._name)
+        self._built = None
 
-    def _build(self, antenna: QuadraticAntenna) -> None:
-        scene, slot, size_m, name = self._scene, self._slot, self._size_m, self._name
+    def _build(self, antenna: QuadraticAntenna, size_m: float) -> None:
+        scene, slot, name = self._scene, self._slot, self._name
         frames = {
-            "whole": name,
             "body": f"{name}/body",
             "antenna": f"{name}/body/antenna",
             "pattern": f"{name}/body/antenna/pattern",
@@ -124,8 +117,7 @@ class Drone:
         self._add_pattern(frames["pattern"], antenna, 0.11 * size_m)
         self._parts["label"] = add_label(scene, f"{name}/label", "", np.zeros(3), 1.0, _ANCHORS[slot])
         for line, (colour, thickness) in _LINES.items():
-            nowhere = np.zeros((1, 2, 3))
-            self._parts[line] = add_lines(scene, f"{name}/{line}", nowhere, colour, thickness)
+            self._parts[line] = add_lines(scene, f"{name}/{line}", np.zeros((1, 2, 3)), colour, thickness)
 
     def _add_pattern(self, name: str, antenna: QuadraticAntenna, radius_m: float) -> None:
         """Draw the pattern: see-through bands of one gain each, or wires for the second."""

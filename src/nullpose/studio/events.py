@@ -9,33 +9,22 @@ from nullpose.studio.case import Case
 from nullpose.studio.field_map import FieldMap
 from nullpose.study import SweepTable
 
-__all__ = ["Compiling", "Event", "Failure", "PowerCurve"]
+__all__ = ["Event", "Notice", "PowerCurve"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Failure:
-    """A case that could not be solved.
+class Notice:
+    """Why there is no answer: a case that cannot be solved, or kernels that are being compiled.
 
     Args:
         version: the version of the scene.
-        case: the case.
-        message: what the solver said.
+        case: the case that cannot be solved; None while the kernels are compiled, once after an installation.
+        words: what to show.
     """
 
     version: int
-    case: Case
-    message: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Compiling:
-    """The kernels are being compiled, which happens once after an installation.
-
-    Args:
-        version: the version of the scene.
-    """
-
-    version: int
+    case: Case | None
+    words: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,4 +42,4 @@ class PowerCurve:
     complete: bool
 
 
-Event = Answer | Failure | Compiling | FieldMap | PowerCurve
+Event = Answer | Notice | FieldMap | PowerCurve

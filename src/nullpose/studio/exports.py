@@ -82,7 +82,7 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
         Ground(server.scene, None).show(view, size_m, freed=False)
         for slot, answer in enumerate(answers):
             text = drone_text(session, slot)
-            Drone(server.scene, slot, size_m).show(answer, text, link_range_db, pattern=True)
+            Drone(server.scene, slot).show(answer, text, size_m, link_range_db, pattern=True)
         if field is not None:
             Carpet(server.scene).show(field)
         return str(server.scene.as_html()).encode()

@@ -61,7 +61,7 @@ class Page:
         self._size_m = np.inf
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self._link_range_db = LINK_RANGE_DB
-        self._drones: list[Drone] = []
+        self._drones = [Drone(client.scene, slot) for slot in (0, 1)]
         self.session = Session(scenario, on_view=self._view_changed, on_event=self._refresh)
         self.panel = Panel(client.gui)
         self._ground = Ground(client.scene, self._dragged)
@@ -136,10 +136,8 @@ class Page:
             self._refresh()  # which puts a point back whose new place was refused
 
     def _load(self, file: Any) -> None:
-        taken = self._change(
-            lambda view: view.with_scenario(scenario_from_text(file.content, file.name)), name=file.name
-        )
-        if taken:
+        given = (file.content, file.name)
+        if self._change(lambda view: view.with_scenario(scenario_from_text(*given)), name=file.name):
             self._aim()
 
     def _send(self, name: str, make: Callable[[], bytes]) -> None:
@@ -180,13 +178,10 @@ class Page:
             self._late = None
 
     def _refresh_scene(self) -> None:
-        session, view, scene = self.session, self.session.view, self._client.scene
+        session, view = self.session, self.session.view
         size_m = scene_size_m(view.scenario)
         if not _OTHER_SIZE[0] < size_m / self._size_m < _OTHER_SIZE[1]:
-            for drone in self._drones:
-                drone.remove()
             self._size_m = size_m
-            self._drones = [Drone(scene, slot, size_m) for slot in (0, 1)]
         self._ground.show(view, self._size_m, freed=self.panel.freed.value)
         self._show_map()
         for slot, drone in enumerate(self._drones):
@@ -195,7 +190,7 @@ class Page:
                 drone.hide()
                 continue
             text, pattern = drone_text(session, slot), self.panel.pattern.value
-            drone.show(answer, text, self._link_range_db, pattern=pattern)
+            drone.show(answer, text, self._size_m, self._link_range_db, pattern=pattern)
 
     def _show_map(self) -> None:
         maps, name = self.session.field_map, self.panel.map.value

@@ -19,8 +19,6 @@ _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
 _MOST_SPAN = 30.0
 
-_Points = list[tuple[float, float]]
-
 
 class _Frame(NamedTuple):
     """The values at the lower and the upper edge of the drawing."""
@@ -72,8 +70,8 @@ def power_plot_svg(
     )
 
 
-def _lines(curve: PowerCurve) -> dict[str, _Points]:
-    lines: dict[str, _Points] = {}
+def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
+    lines: dict[str, list[tuple[float, float]]] = {}
     for row in curve.table.rows:
         value = row.objective.quantity.in_unit(row.objective.value)
         if math.isfinite(value):
@@ -82,10 +80,8 @@ def _lines(curve: PowerCurve) -> dict[str, _Points]:
 
 
 def _frame_around(values: list[float]) -> _Frame:
-    if not values:
-        return _Frame(-5.0, 5.0)
-    high = max(values)
-    low = max(min(values), high - _MOST_SPAN)
+    high = max(values, default=5.0)
+    low = max(min(values, default=-5.0), high - _MOST_SPAN)
     margin = max(0.5, 0.08 * (high - low))
     return _Frame(low - margin, high + margin)
 

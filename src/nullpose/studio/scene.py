@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -58,7 +58,6 @@ class Ground:
         self._scene, self._on_drag = scene, on_drag
         self._drawn: object = None
         self._handles: dict[PointKey, Any] = {}
-        self._around: list[Any] = []
         self.dragged: PointKey | None = None
 
     def show(self, view: View, size_m: float, *, freed: bool) -> None:
@@ -91,10 +90,11 @@ class Ground:
             handle.disable_axes = handle.disable_sliders = key not in (None, other)
 
     def _draw(self, view: View, size_m: float, freed: bool) -> None:
-        for part in (*self._handles.values(), *self._around):
-            part.remove()
+        for part in ("/points", "/ground", "/airspace"):
+            self._scene.remove_by_name(part)
         airspace, points = view.scenario.airspace, dict(view.points())
-        self._around = [*self._grid(view.scenario), *self._airspace(view.scenario)]
+        self._draw_grid(view.scenario)
+        self._draw_airspace(view.scenario)
         self._handles = {key: self._handle(key, one, size_m, freed) for key, one in points.items()}
         scale = 1.1 if len(points) <= _CROWD else 0.8
         for key, point in points.items():
@@ -128,14 +128,14 @@ class Ground:
         arrows.on_update(on_update)
         return arrows
 
-    def _grid(self, scenario: Scenario) -> Iterable[Any]:
+    def _draw_grid(self, scenario: Scenario) -> None:
         low, high = _extent_m(scenario)
         step_m = np.diff(round_steps(0.0, float(np.max(high - low)), 12))[0]
         low, high = step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m)
         east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
         lines = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
         lines += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
-        yield add_lines(self._scene, "/ground/grid", lines, _GRID, 1.2)
+        add_lines(self._scene, "/ground/grid", lines, _GRID, 1.2)
         every = max(1, (max(len(east), len(north)) + 2) // 4)
         middle = 0.5 * (low + high)
         ticks = [
@@ -146,9 +146,9 @@ class Ground:
         ticks += [(f"{y:g}", high[0] + 0.45 * step_m, y) for y in north[::every]]
         for i, (text, x, y) in enumerate(ticks):
             text = text.replace("-", MINUS)
-            yield add_label(self._scene, f"/ground/tick-{i}", text, (x, y, 0.0), 0.8, "center-center")
+            add_label(self._scene, f"/ground/tick-{i}", text, (x, y, 0.0), 0.8, "center-center")
 
-    def _airspace(self, scenario: Scenario) -> Iterable[Any]:
+    def _draw_airspace(self, scenario: Scenario) -> None:
         airspace = scenario.airspace
         low, high = _extent_m(scenario)
         west, south = np.maximum(low, airspace.lower_m[:2])
@@ -160,12 +160,12 @@ class Ground:
         loops = [np.insert(outline, 2, up, axis=1) for up in (floor_m, ceiling_m)]
         edges = [np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in loops]
         posts = np.stack(loops, axis=1)
-        yield add_lines(self._scene, "/airspace/edges", np.concatenate([*edges, posts]), _AIRSPACE, 1.4)
+        add_lines(self._scene, "/airspace/edges", np.concatenate([*edges, posts]), _AIRSPACE, 1.4)
         for i, zone in enumerate(airspace.no_fly):
             mesh = zone_mesh(zone, 0.0, ceiling_m)
             top = (*mesh.vertices[:, :2].mean(axis=0), mesh.vertices[:, 2].max())
-            yield add_mesh(self._scene, f"/airspace/zone-{i}", mesh, _ZONE, opacity=0.3, side="double")
-            yield add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, 0.9)
+            add_mesh(self._scene, f"/airspace/zone-{i}", mesh, _ZONE, opacity=0.3, side="double")
+            add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, 0.9)
 
 
 def _name(key: PointKey) -> str:

@@ -10,7 +10,7 @@ from typing import TypeVar
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer, status_words
 from nullpose.studio.case import Case, cases_of
-from nullpose.studio.events import Compiling, Event, Failure, PowerCurve
+from nullpose.studio.events import Event, Notice, PowerCurve
 from nullpose.studio.field_map import FieldMap
 from nullpose.studio.history import History
 from nullpose.studio.view import View
@@ -18,7 +18,7 @@ from nullpose.studio.worker import REST_S, Worker
 
 __all__ = ["Session"]
 
-_E = TypeVar("_E", Answer, Failure, FieldMap, PowerCurve, Compiling)
+_E = TypeVar("_E", Answer, Notice, FieldMap, PowerCurve)
 
 
 class Session:
@@ -103,12 +103,10 @@ class Session:
             case: which.
         """
         with self._lock:
-            failure, answer = self._last(Failure, case, current=True), self.current(case)
-            if failure is not None:
-                return f"no pose: {failure.message}"
-            if answer is None and self._last(Compiling) is not None:
-                return "compiling the solver, once, which takes half a minute"
-            return status_words(answer)
+            answer = self.current(case)
+            compiling = self._last(Notice) if answer is None else None
+            notice = self._last(Notice, case, current=True) or compiling
+            return status_words(answer) if notice is None else notice.words
 
     def change(self, change: Callable[[View], View], gesture: str = "") -> None:
         """Change the view.
@@ -151,5 +149,5 @@ class Session:
         with self._lock:
             self._found[type(event), getattr(event, "case", None)] = event
             if isinstance(event, Answer):
-                self._found.pop((Compiling, None), None)
+                self._found.pop((Notice, None), None)
         self._on_event(event)

@@ -12,7 +12,7 @@ from nullpose.errors import NullposeError
 from nullpose.solve import announce_compiling
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import Case
-from nullpose.studio.events import Compiling, Event, Failure
+from nullpose.studio.events import Event, Notice
 from nullpose.studio.field_map import field_map
 from nullpose.studio.map_kernel import map_kernel_is_ready
 from nullpose.studio.steps import power_curves, proved_answers, quick_answers
@@ -22,6 +22,8 @@ __all__ = ["REST_S", "Worker"]
 
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
+
+_COMPILING = "compiling the solver, once, which takes half a minute"
 
 _E = TypeVar("_E", bound=Event)
 
@@ -83,7 +85,8 @@ class Worker:
                     return
                 (version, view), self._pending = self._pending, None
             try:
-                with announce_compiling(partial(self._publish, Compiling(version=version))):
+                compiling = Notice(version=version, case=None, words=_COMPILING)
+                with announce_compiling(partial(self._publish, compiling)):
                     self._serve(version, view)
             except _SupersededError:
                 continue
@@ -116,7 +119,7 @@ class Worker:
                 self._publish(last)
         except NullposeError as error:
             self._go_on()
-            self._publish(Failure(version=version, case=case, message=str(error)))
+            self._publish(Notice(version=version, case=case, words=f"no pose: {error}"))
             return None
         return last
 
