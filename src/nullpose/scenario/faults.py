@@ -13,13 +13,24 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.wording import described, printable
 
-__all__ = ["Place", "collected", "path_of", "rejection", "reworded", "scenario_error"]
+__all__ = ["Place", "collected", "path_of", "refusal", "rejection", "reworded", "scenario_error"]
 
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
 
 _KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def refusal(path: str, message: str, source: str = "") -> ScenarioError:
+    """Returns the error of one fault.
+
+    Args:
+        path: its place in the input; empty for the input as a whole.
+        message: what was given, what is allowed and what to try.
+        source: the file or object at fault, as the user would name it.
+    """
+    return ScenarioError([Fault(path, message)], source)
 
 
 def rejection(message: str) -> PydanticCustomError:

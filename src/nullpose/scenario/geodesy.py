@@ -29,8 +29,8 @@ def enu_from_geodetic(geodetic: ArrayLike, origin: ArrayLike) -> NDArray[np.floa
     """
     from pymap3d.enu import geodetic2enu
 
-    places = np.asarray(geodetic, dtype=np.float64)
-    return np.stack(geodetic2enu(*np.moveaxis(places, -1, 0), *np.asarray(origin)), axis=-1)
+    places = np.moveaxis(np.asarray(geodetic, dtype=np.float64), -1, 0)
+    return np.stack(geodetic2enu(*places, *np.asarray(origin)), axis=-1)
 
 
 def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:

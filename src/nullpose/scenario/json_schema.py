@@ -14,8 +14,6 @@ from nullpose.scenario.transmitter import POWER
 
 __all__ = ["json_schema"]
 
-DIALECT = "https://json-schema.org/draft/2020-12/schema"
-
 
 def json_schema() -> dict[str, Any]:
     """Returns the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.
@@ -24,7 +22,7 @@ def json_schema() -> dict[str, Any]:
     """
     schema = Scenario.model_json_schema(schema_generator=_TomlSchema)
     heading = {
-        "$schema": DIALECT,
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "nullpose scenario",
         "description": "Nodes, jammers, a receiver and an airspace; positions in metres east, north and up.",
     }

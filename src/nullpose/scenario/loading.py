@@ -7,6 +7,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario.faults import refusal
 from nullpose.scenario.listed_nodes import ListedNode, retold
 from nullpose.scenario.nodes_csv import nodes_from_csv
 from nullpose.scenario.nodes_geojson import nodes_from_geojson
@@ -54,8 +55,9 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
     try:
         tables = tables_of(content)
         if _KEY in tables:
-            message = "only a file on this machine may name another; list the nodes here, under [[nodes]]"
-            raise ScenarioError([Fault(_KEY, message)])
+            raise refusal(
+                _KEY, "only a file on this machine may name another; list the nodes here, under [[nodes]]"
+            )
         return Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError(error.faults, name) from None
@@ -86,11 +88,11 @@ def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Pat
     # A null character, which no path may hold, is told of when the file is read.
     real, root = os.path.realpath(folder / file.replace("\0", "")), os.path.realpath(folder)
     if not allow_outside and not Path(real).is_relative_to(root):
-        message = (
+        raise refusal(
+            place,
             f"got {described(file)}, which is outside the folder of the file that names it; put it there, or "
-            "allow this by --allow-outside (in Python allow_outside=True)"
+            "allow this by --allow-outside (in Python allow_outside=True)",
         )
-        raise ScenarioError([Fault(place, message)])
     return folder / file
 
 
@@ -118,12 +120,12 @@ def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) 
 
 def _listed_nodes(file: object, folder: Path, allow_outside: bool) -> list[ListedNode]:
     if not isinstance(file, str) or not file.strip():
-        message = f'got {described(file)}, must be the name of a GeoJSON or CSV file, as in "nodes.geojson"'
-        raise ScenarioError([Fault(_KEY, message)])
+        raise refusal(
+            _KEY, f'got {described(file)}, must be the name of a GeoJSON or CSV file, as in "nodes.geojson"'
+        )
     read = _READERS.get(PurePath(file).suffix.lower())
     if read is None:
-        message = f"the name must end in one of {', '.join(_READERS)}, which tells the kind"
-        raise ScenarioError([Fault("", message)])
+        raise refusal("", f"the name must end in one of {', '.join(_READERS)}, which tells the kind")
     return read(file_text(inside(folder, file, allow_outside, _KEY), _NODES_FILE, folder, _KEY))
 
 

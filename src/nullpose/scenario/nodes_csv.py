@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario.faults import refusal
 from nullpose.scenario.ground_points import Node
 from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.origin import GEODETIC_KEYS
@@ -40,7 +41,7 @@ def nodes_from_csv(text: str) -> list[ListedNode]:
         line, header = next(lines, (1, []))
         rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
     except csv.Error as error:
-        raise ScenarioError([Fault("", f"this is not CSV: {error}; check the quotes")]) from None
+        raise refusal("", f"this is not CSV: {error}; check the quotes") from None
     faults = [Fault(f"line {line}", message) for message in _header_faults(header)]
     if not rows and not faults:
         faults.append(Fault("", "there is no line below the header, must be one for each node"))
@@ -66,8 +67,8 @@ def _header_faults(header: Sequence[str]) -> Iterator[str]:
 def _node(line: int, header: Sequence[str], row: Sequence[str]) -> ListedNode:
     where = f"line {line}"
     if len(row) != len(header):
-        message = f"got {len(row)} values, must be {len(header)}, as many as the header has"
-        return ListedNode(where, fault=Fault("", message))
+        fault = Fault("", f"got {len(row)} values, must be {len(header)}, as many as the header has")
+        return ListedNode(where, fault=fault)
     cells = {key: cell if key == "name" else _number(cell) for key, cell in zip(header, row, strict=True)}
     # A place is never left out, so its empty cells stay, to be refused.
     values = {key: cell for key, cell in cells.items() if cell != "" or key in GEODETIC_KEYS}

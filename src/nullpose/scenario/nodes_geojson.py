@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import ScenarioError
 from nullpose.files import parse_json
+from nullpose.scenario.faults import refusal
 from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.wording import described
 
 __all__ = ["nodes_from_geojson"]
 
+_NO_PLACE = "left out, for the place of a feature is its geometry's coordinates; remove this property"
 _COORDINATES = "[longitude, latitude, altitude] in degrees and in m over the WGS-84 ellipsoid"
 _ADD_HEIGHT = "add the altitude, or a property alt_m"
 _WGS84 = ("CRS84", "CRS84h", "EPSG::4326", "EPSG:4326", "EPSG::4979", "EPSG:4979")
@@ -44,7 +46,7 @@ def nodes_from_geojson(text: str) -> list[ListedNode]:
 
 def _require(fits: object, place: str, given: object, allowed: str) -> None:
     if not fits:
-        raise ScenarioError([Fault(place, f"got {described(given)}, must be {allowed}")])
+        raise refusal(place, f"got {described(given)}, must be {allowed}")
 
 
 def _type(value: Any) -> object:
@@ -77,7 +79,6 @@ def _values(feature: Any) -> tuple[dict[str, object], bool]:
     lon_deg, lat_deg, *height_m = coordinates
     _require(height_m or "alt_m" in values, here, coordinates, f"{_COORDINATES}; {_ADD_HEIGHT}")
     for key in ("position_m", "lat_deg", "lon_deg", *(["alt_m"] if height_m else [])):
-        allowed = "left out, for the place of a feature is its geometry's coordinates; remove this property"
-        _require(key not in values, f".properties.{key}", values.get(key), allowed)
+        _require(key not in values, f".properties.{key}", values.get(key), _NO_PLACE)
     alt_m = height_m[0] if height_m else values["alt_m"]
     return values | {"lat_deg": lat_deg, "lon_deg": lon_deg, "alt_m": alt_m}, bool(height_m)

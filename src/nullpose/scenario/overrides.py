@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.faults import path_of
+from nullpose.scenario.faults import path_of, refusal
 from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
@@ -54,8 +54,9 @@ def parse_override(text: str) -> Override:
     parts = _ASSIGNMENT.fullmatch(text)
     path, value = (part.strip() for part in parts.groups()) if parts else ("", "")
     if not path or not value:
-        message = "must be a path, an equals sign and a value, as in jammers.M.power_w=10"
-        raise ScenarioError([Fault(text, message)], "override")
+        raise refusal(
+            text, "must be a path, an equals sign and a value, as in jammers.M.power_w=10", "override"
+        )
     return Override(path, _value(path, value))
 
 
@@ -95,7 +96,7 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     """Sets one value of a raw scenario, and drops what it replaces."""
     path = override.path
     if not _PATH.fullmatch(path):
-        raise ScenarioError([Fault(path, "this is not a path")])
+        raise refusal(path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
     steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
@@ -114,8 +115,9 @@ def _value(path: str, text: str) -> object:
     with suppress(ValueError):
         return float(text)  # .5 and 5. are numbers to everyone but TOML
     if text[0] in "[{\"'" or "\n" in text:
-        message = f"the value {text} is not TOML; write as in 10, [5, 20] or a bare word"
-        raise ScenarioError([Fault(path, message)], "override")
+        raise refusal(
+            path, f"the value {text} is not TOML; write as in 10, [5, 20] or a bare word", "override"
+        )
     return text
 
 
@@ -133,7 +135,7 @@ def _assign(
     """
     members, (step, *rest) = _members(kind, holder), steps
     if step not in members:
-        raise ScenarioError([Fault(path, f"got {path_of((step,))}, {_instead(step, members, path)}")])
+        raise refusal(path, f"got {path_of((step,))}, {_instead(step, members, path)}")
     here = members[step]
     table = kind if isinstance(holder, dict) else None
     inner = kind if table is None else inner_section(table.model_fields[str(here)].annotation)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from nullpose.errors import Fault, ScenarioError
 from nullpose.files import MOST_BYTES, read_bytes
+from nullpose.scenario.faults import refusal
 from nullpose.scenario.wording import nearest
 
 __all__ = ["SCENARIO_FILE", "FileKind", "file_text", "tables_of"]
@@ -76,7 +76,7 @@ def tables_of(content: bytes | str) -> dict[str, Any]:
             message = "lists or tables are nested too deeply to be read"
         except ValueError:  # an integer beyond what Python converts
             message = "a number has too many digits; write it as in 1e-3"
-    raise ScenarioError([Fault(place, message)])
+    raise refusal(place, message)
 
 
 def _is_monstrous(text: str) -> bool:
@@ -110,18 +110,18 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
         message = "this cannot be the name of a file"
     else:
         return _decoded(content)
-    raise ScenarioError([Fault(place, message)])
+    raise refusal(place, message)
 
 
 def _decoded(content: bytes) -> str:
     if len(content) > MOST_BYTES:
-        raise ScenarioError([Fault("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")])
+        raise refusal("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        message = f"byte 0x{content[error.start]:02x} is not UTF-8 text; save the file as UTF-8"
-        raise ScenarioError([Fault(f"line {line}", message)]) from None
+        given = f"byte 0x{content[error.start]:02x}"
+        raise refusal(f"line {line}", f"{given} is not UTF-8 text; save the file as UTF-8") from None
 
 
 def _other_file(path: Path, kind: FileKind, base: Path) -> str:
