@@ -1,7 +1,22 @@
-"""The short dipole (paper eq. 1.2), whose null is perfect."""
+"""The short dipole (paper eq. 1.2), its null perfect or of finite depth."""
+
+from __future__ import annotations
 
 from nullpose.antenna.quadratic import QuadraticAntenna
 
-__all__ = ["SHORT_DIPOLE"]
+__all__ = ["SHORT_DIPOLE", "short_dipole"]
 
 SHORT_DIPOLE = QuadraticAntenna(name="dipole", label="short dipole", leak=0.0)
+
+
+def short_dipole(null_depth_db: float | None = None) -> QuadraticAntenna:
+    """Return a short dipole, with a perfect null or with one that an airframe fills.
+
+    Args:
+        null_depth_db: how far the gain along the axis is below that across it, dB, not negative; None for a
+            perfect null.
+    """
+    if null_depth_db is None:
+        return SHORT_DIPOLE
+    label = f"{SHORT_DIPOLE.label} with a null of {null_depth_db:g} dB"
+    return QuadraticAntenna(name=SHORT_DIPOLE.name, label=label, leak=10.0 ** (-null_depth_db / 10.0))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.physics.objective import margin
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -20,7 +21,7 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     The same numbers as those of :func:`margin`, scene by scene (paper eq. 2.1).
 
     Args:
-        scenarios: with as many nodes and as many jammers each, and the same antenna.
+        scenarios: with as many nodes and as many jammers each; their antennas may differ.
         position_m: the drone's position in each scene, shape ``(s, 3)``, metres.
         axis: unit antenna axis in each, shape ``(s, 3)``.
 
@@ -35,6 +36,9 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     node_w = np.array([one.node_powers_w for one in scenarios])
     jammer_w = np.array([one.jammer_powers_w for one in scenarios])
     antenna = scenarios[0].antenna_record
+    if any(one.antenna_record != antenna for one in scenarios):
+        poses = zip(scenarios, np.asarray(position_m), np.asarray(axis), strict=True)
+        return np.array([margin(*each) for each in poses])
     signal_w = received_power_w(position_m, axis, node_m, node_w, g0, antenna)
     jamming_w = received_power_w(position_m, axis, jammer_m, jammer_w, g0, antenna)
     interference_w = np.sum(jamming_w, axis=-1, keepdims=True)

@@ -17,6 +17,7 @@ __all__ = [
     "KeepOutMetres",
     "Metres",
     "MountDegrees",
+    "NullDepthDecibels",
     "PlanePoint",
     "Position",
     "RadiusMetres",
@@ -50,6 +51,10 @@ DecibelMilliwatts = Annotated[
     float, Quantity("a power in dBm", -270.0, 330.0, "a value in W belongs to the key that ends in _w")
 ]
 Decibels = Annotated[float, Quantity("a gain in dB", -300.0, 300.0, "0 dB is a gain of 1, 10 dB one of 10")]
+NullDepthDecibels = Annotated[
+    float,
+    Quantity("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),
+]
 Hertz = Annotated[float, Quantity("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
 Metres = Annotated[
     float, Quantity("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
