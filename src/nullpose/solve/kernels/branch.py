@@ -142,6 +142,15 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
 
 
 @inner_kernel
+def same_multipliers(row, other):
+    """Return whether two rows have the same multipliers."""
+    same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
+    for s in range(int(row[COUNT])):
+        same = same and row[INDEX + s] == other[INDEX + s] and row[WEIGHT + s] == other[WEIGHT + s]
+    return same
+
+
+@inner_kernel
 def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
     """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
@@ -159,11 +168,11 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
         rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, domain, axis_field, frame, row, below):
+    if excludes(family, domain, axis_field, frame, row, below, workspace):
         return _EXCLUDED, 0
-    if row[FACE] < 0.0:
+    if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
         copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
-        if excludes(family, domain, axis_field, frame, row, below):
+        if excludes(family, domain, axis_field, frame, row, below, workspace):
             return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached, followed = free_multipliers(
@@ -180,7 +189,7 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
-    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below):
+    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
@@ -234,6 +243,7 @@ def workspace_of(family):
     return Workspace(
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
         np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
+        np.empty(6), np.empty((3, 6)), np.empty(2),
     )  # fmt: skip
 
 

@@ -44,17 +44,9 @@ from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
-__all__ = ["excludes", "is_level", "out_of_reach"]
+__all__ = ["excludes", "is_level", "out_of_reach", "will_fail"]
 
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
-
-
-@inner_kernel
-def negative_definite(a0, a1, a2, a3, a4, a5):
-    """Return whether a form is negative definite, by the leading minors of its negative."""
-    minor = a0 * a1 - a3 * a3
-    det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
-    return a0 < 0.0 and minor > _DEFINITE * a0 * a1 and det > -_DEFINITE * a0 * a1 * a2
 
 
 @inner_kernel
@@ -64,41 +56,63 @@ def is_level(axis_field):
 
 
 @inner_kernel
-def negative_at_centre(matrix, level_axes):
-    """Return whether a matrix is negative definite, perhaps for level axes."""
+def negative_at(matrix, slopes, x, y, z, level_axes):
+    """Return whether the linear matrix is negative definite at a step from the centre, perhaps for level axes."""
+    a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
+    a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
+    a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+    minor = a0 * a1 - a3 * a3
+    if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
+        return False
     if level_axes:
-        return matrix[0] < 0.0 and matrix[0] * matrix[1] - matrix[3] ** 2 > 0.0
-    return negative_definite(matrix[0], matrix[1], matrix[2], matrix[3], matrix[4], matrix[5])
+        return True
+    a2 = matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2]
+    a4 = matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4]
+    a5 = matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5]
+    det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
+    return det > -_DEFINITE * a0 * a1 * a2
 
 
 @inner_kernel
-def negative_at_corners(matrix, slopes, half, level_axes):
-    """Return whether the linear matrix is negative definite at all eight corners, perhaps for level axes."""
-    if level_axes:
-        for corner in range(8):
-            x = half[0] if corner & 1 else -half[0]
-            y = half[1] if corner & 2 else -half[1]
-            z = half[2] if corner & 4 else -half[2]
-            a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
-            a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
-            a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
-            if not (a0 < 0.0 and a0 * a1 - a3 * a3 > _DEFINITE * a0 * a1):
-                return False
-        return True
+def failing_corner(matrix, slopes, middle, half, level_axes):
+    """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
     for corner in range(8):
-        x = half[0] if corner & 1 else -half[0]
-        y = half[1] if corner & 2 else -half[1]
-        z = half[2] if corner & 4 else -half[2]
-        if not negative_definite(
-            matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0],
-            matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1],
-            matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2],
-            matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3],
-            matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4],
-            matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5],
-        ):
-            return False
-    return True
+        x = middle[0] + (half[0] if corner & 1 else -half[0])
+        y = middle[1] + (half[1] if corner & 2 else -half[1])
+        z = middle[2] + (half[2] if corner & 4 else -half[2])
+        if not negative_at(matrix, slopes, x, y, z, level_axes):
+            return corner
+    return -1
+
+
+@inner_kernel
+def mended(matrix, slopes, half, corner, most, level_axes):
+    """Return whether a failing corner is negative once so much is taken off the diagonal."""
+    less = scratch(6)
+    copy_into(matrix, less)
+    for m in range(3):
+        less[m] -= most
+    x = half[0] if corner & 1 else -half[0]
+    y = half[1] if corner & 2 else -half[1]
+    z = half[2] if corner & 4 else -half[2]
+    return negative_at(less, slopes, x, y, z, level_axes)
+
+
+@inner_kernel
+def will_fail(forecast, row, part, level_axes):
+    """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
+    middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
+    whole = square = 0.0
+    for i in range(3):
+        middle[i] = part[CENTRE + i] - row[CENTRE + i]
+        whole += row[HALF + i] ** 2
+        square += half[i] ** 2
+    everywhere, across = forecast.rests[0] * square / whole, forecast.rests[1] * square / whole
+    copy_into(forecast.matrix, matrix)
+    matrix[0] += everywhere + across
+    matrix[1] += everywhere + across
+    matrix[2] += everywhere
+    return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
 
 
 @inner_kernel
@@ -165,7 +179,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
 
 
 @inner_kernel
-def excludes(family, domain, axis_field, frame, row, below):
+def excludes(family, domain, axis_field, frame, row, below, forecast):
     """Return whether the row's multipliers exclude its box and cell.
 
     Args:
@@ -179,28 +193,35 @@ def excludes(family, domain, axis_field, frame, row, below):
     """
     if not row[COUNT] > 0.0:
         return False
-    matrix, slopes = scratch(6), scratch(3, 6)
+    matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
     copy_into(below[0], matrix)
     copy_table(below[1], slopes)
-    everywhere, across = below[2]
+    below_rest, across = below[2]
     if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
-        everywhere, across = add_mixed_denominators(family, frame, row, matrix, slopes)
-    everywhere += add_numerators(family, axis_field, frame, row, matrix, slopes)
+        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
     row[NU] = 0.0
     half, level_axes = row[HALF:LEVEL], is_level(axis_field)
-    if row[BALL] < 0.0 and not negative_at_centre(matrix, level_axes):
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):
+        forecast.rests[0] = math.inf
         return False
+    copy_into(matrix, forecast.matrix)
+    forecast.rests[0], forecast.rests[1] = everywhere, across
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across
     matrix[2] += everywhere
-    if negative_at_corners(matrix, slopes, half, level_axes):
+    corner = failing_corner(matrix, slopes, still, half, level_axes)
+    if corner < 0:
         return True
-    if level_axes:  # what is off the level plane does not count
-        matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
-        matrix[4] = matrix[5] = 0.0
-    sharpen(family, frame, row, matrix, slopes)
-    if negative_at_corners(matrix, slopes, half, level_axes):
-        return True
+    if mended(matrix, slopes, half, corner, below_rest, level_axes):
+        if level_axes:  # what is off the level plane does not count
+            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+            matrix[4] = matrix[5] = 0.0
+        slopes = scratch(3, 6)
+        copy_table(forecast.slopes, slopes)
+        sharpen(family, frame, row, matrix, slopes)
+        if failing_corner(matrix, slopes, still, half, level_axes) < 0:
+            return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
 
@@ -235,7 +256,7 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
                 bent[m] += nu[c] * rest
                 for i in range(3):
                     bent_slopes[i, m] += nu[c] * ways[c, i]
-        if not negative_at_corners(bent, bent_slopes, half, level_axes):
+        if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
             return False
         row[NU] = nu[0]
     if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
