@@ -43,7 +43,7 @@ _FEW = 6  # and in each later round at most
 _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
-_LOOSE = 1e-3  # and in units of a box's size
+_LOOSE = 0.03  # and in units of a box's size
 _GRID = 9  # of lines across a cell
 
 
