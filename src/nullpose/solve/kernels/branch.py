@@ -16,7 +16,7 @@ from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, e
 from nullpose.solve.kernels.denominators import expand_denominator
 from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
-from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach
+from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
 from nullpose.solve.kernels.expansion import frame_at, min_distance
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
@@ -43,7 +43,7 @@ from nullpose.solve.kernels.node import (
     split_position,
 )
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
-from nullpose.solve.kernels.scratch import scratch, zeroed
+from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch"]
@@ -62,6 +62,8 @@ _EXCLUDED = 0
 _BY_POSITION = 1
 _BY_AXIS = 2
 _BETTER = 3
+_FORESEEN = 4
+_HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
@@ -195,7 +197,11 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or radius == 0.0  # one position has no halves
-    return (_BY_AXIS if split_axes and is_free else _BY_POSITION), 1
+    if split_axes and is_free:
+        return _BY_AXIS, 1
+    if primal >= 1.0:
+        workspace.rests[0] = math.inf
+    return _FORESEEN, 1
 
 
 @inner_kernel
@@ -247,6 +253,35 @@ def workspace_of(family):
     )  # fmt: skip
 
 
+@inner_kernel
+def split_foreseen(row, side, forecast, level_axes, stack, top):
+    """Push the parts of a box; halves of which it is foreseen that they fail are halved again unseen."""
+    halvings, place = scratch_int(9), top
+    top = split_position(row, side, stack, top)
+    halvings[0] = halvings[1] = 1
+    first = place
+    while place < top:
+        done = halvings[place - first]
+        if done < _HALVINGS and will_fail(forecast, row, stack[place], level_axes):
+            halve(stack, place, top)
+            halvings[place - first] = halvings[top - first] = done + 1
+            top += 1
+        else:
+            place += 1
+    return top
+
+
+@inner_kernel
+def halve(stack, place, top):
+    """Halve a box of the stack across its longest side: one half in its place, the other on the top."""
+    side = longest_side(stack[place])
+    copy_into(stack[place], stack[top])
+    half = 0.5 * stack[place, HALF + side]
+    stack[place, HALF + side] = stack[top, HALF + side] = half
+    stack[place, CENTRE + side] -= half
+    stack[top, CENTRE + side] += half
+
+
 @heap_kernel
 def branch(
     family, domain, axis_field, level, goal, stack, top, leaves, filled, most, better_p, better_u
@@ -275,7 +310,7 @@ def branch(
     while top > 0:
         if boxes >= most:
             return LIMIT, top, filled, boxes, sought
-        if top + 3 > stack.shape[0] or filled >= leaves.shape[0]:
+        if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
             return FULL, top, filled, boxes, sought
         boxes += 1
         top -= 1
@@ -292,6 +327,8 @@ def branch(
             return BETTER, top + 1, filled, boxes, sought
         elif verdict == _BY_AXIS:
             top = split_axis(row, is_level(axis_field), stack, top)
+        elif verdict == _FORESEEN:
+            top = split_foreseen(row, side, workspace, is_level(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
     return DONE, top, filled, boxes, sought

@@ -102,6 +102,8 @@ def mended(matrix, slopes, half, corner, most, level_axes):
 def will_fail(forecast, row, part, level_axes):
     """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
     middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
+    if forecast.rests[0] == math.inf:
+        return True
     whole = square = 0.0
     for i in range(3):
         middle[i] = part[CENTRE + i] - row[CENTRE + i]
