@@ -46,6 +46,7 @@ from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["excludes", "is_level", "out_of_reach", "will_fail"]
 
+_HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
@@ -109,7 +110,8 @@ def will_fail(forecast, row, part, level_axes):
         middle[i] = part[CENTRE + i] - row[CENTRE + i]
         whole += row[HALF + i] ** 2
         square += half[i] ** 2
-    everywhere, across = forecast.rests[0] * square / whole, forecast.rests[1] * square / whole
+    share = _HOPED * square / whole
+    everywhere, across = share * forecast.rests[0], share * forecast.rests[1]
     copy_into(forecast.matrix, matrix)
     matrix[0] += everywhere + across
     matrix[1] += everywhere + across

@@ -44,7 +44,7 @@ _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
 _LOOSE = 0.03  # and in units of a box's size
-ACC = 0.01
+_INTERIOR = 0.01  # and of an interior point's, likewise
 _GRID = 9  # of lines across a cell
 
 
@@ -171,7 +171,7 @@ def interior_multipliers(
         return math.inf
     for k in range(ratios):
         ratio_form(family, is_level(axis_field), basis, row, whitening, k, forms[k])
-    accuracy = max(1e-5, ACC * coarseness) if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
+    accuracy = max(1e-5, _INTERIOR * coarseness) if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
     primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
     top_eigenvector(matrix, v)
     reached = math.inf
