@@ -57,9 +57,8 @@ class Workspace(NamedTuple):
         jets: (denominators, JET).
         denominators: (denominators, 6) forms.
         log_denominators: (denominators,).
-        matrix: (6,) the last sum of forms at a box's centre.
-        slopes: (3, 6) its slopes.
-        rests: (2,) its remainders over the box: of the second order, and that on the first two axes alone.
+        linear: (4, 6) the last sum of forms at a box's centre, and its slopes.
+        rests: (2,) its remainders over the box: of the second order, and that on the first two axes besides.
     """
 
     weights: FloatArray
@@ -68,6 +67,5 @@ class Workspace(NamedTuple):
     jets: FloatArray
     denominators: FloatArray
     log_denominators: FloatArray
-    matrix: FloatArray
-    slopes: FloatArray
+    linear: FloatArray
     rests: FloatArray
