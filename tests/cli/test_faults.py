@@ -15,6 +15,7 @@ import nullpose.cli.check
 from nullpose.cli.app import app
 from nullpose.cli.faults import BAD_INPUT, INTERNAL, INTERRUPTED, PIPE_CLOSED
 from nullpose.errors import SolveError
+from nullpose.study import SweepPlan
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
@@ -233,7 +234,7 @@ def test_output_folder_that_cannot_be_written(
     run: Run, good: Path, inside: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A file where the folder should be, or above it, is refused before any work."""
-    monkeypatch.setattr("nullpose.study.plan.SweepPlan.run", None)
+    monkeypatch.setattr(SweepPlan, "run", None)
     out = good / "deeper" if inside else good
     arguments = ("--from", 1, "--to", 2, "--out", out)
     assert_refused(run("sweep", good, "--set", "jammers.M.power_w", *arguments), "cannot write", str(out))

@@ -11,9 +11,10 @@ from nullpose import Scenario
 from nullpose.paper.claim import Claim
 from nullpose.paper.claims import CLAIMS
 from nullpose.paper.pages import Reproduction, claims_markdown
-from nullpose.paper.scene import with_jamming
+from nullpose.paper.scene import JAMMER_POWER
 from nullpose.paper.study import JammingStudy
 from nullpose.physics import maximum_gain_sinr, min_sinr, to_db
+from nullpose.scenario import Override, apply_overrides
 from nullpose.solve import Objective
 from nullpose.study import SweepTable
 
@@ -27,6 +28,11 @@ VERDICTS = {
     "pose-optimisation-wins": "holds",
     "saturation-of-all-solutions": "holds",
 }
+
+
+def with_jamming(scenario: Scenario, level: float) -> Scenario:
+    """Returns the scenario with its jammer's power set."""
+    return apply_overrides(scenario, [Override(JAMMER_POWER, level)])
 
 
 @pytest.fixture(scope="module")

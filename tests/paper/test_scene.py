@@ -4,12 +4,13 @@ import pytest
 
 from nullpose import Scenario
 from nullpose.paper.scene import (
+    JAMMER_POWER,
     JAMMING_LEVELS,
     POSE_LEVELS,
     PRINTED_LEVELS,
     paper_scenario,
-    with_jamming,
 )
+from nullpose.scenario import Override, apply_overrides
 
 
 def test_it_is_the_example(paper: Scenario) -> None:
@@ -19,7 +20,7 @@ def test_it_is_the_example(paper: Scenario) -> None:
 
 def test_jamming_level_is_the_power_ratio(paper: Scenario) -> None:
     """With nodes of 1 W, P_M/P is the jammer's power in watts."""
-    assert with_jamming(paper, 0.3).jammer_powers_w == pytest.approx([0.3])
+    assert apply_overrides(paper, [Override(JAMMER_POWER, 0.3)]).jammer_powers_w == pytest.approx([0.3])
 
 
 def test_levels_cover_the_figure() -> None:

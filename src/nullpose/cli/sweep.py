@@ -61,7 +61,7 @@ def sweep(
     """
     from nullpose.files import check_outputs
     from nullpose.scenario.loading import files_of, load
-    from nullpose.study.plan import plan_sweep
+    from nullpose.study import plan_sweep
 
     plan = plan_sweep(
         load(file, allow_outside=allow_outside),

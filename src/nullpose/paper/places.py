@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from nullpose.paper.scene import with_jamming
 from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
 from nullpose.physics import received_power_w, to_db
 from nullpose.report.geometry import distance_m, null_angle_rad
@@ -71,17 +70,17 @@ def above_jammer(study: JammingStudy) -> Measured:
 
 def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     """Return where a scheme's pose is at a level, seen from the jammer, and what it receives of it."""
-    scenario, row = with_jamming(study.scenario, level), study.at(scheme, level)
-    (jammer_m,), position_m, receiver = scenario.jammer_positions_m, row.pose.position_m, scenario.receiver
-    place = (position_m, row.pose.antenna_axis, scenario.jammer_positions_m)
+    row = study.at(scheme, level)
+    scenario, position_m = row.scenario, row.pose.position_m
+    places_m, gain = scenario.jammer_positions_m, scenario.receiver.reference_gain
     received_w = received_power_w(
-        *place, scenario.jammer_powers_w, receiver.reference_gain, scenario.antenna_record
+        position_m, row.pose.antenna_axis, places_m, scenario.jammer_powers_w, gain, scenario.antenna_record
     )
     return {
         RATIO: level,
-        _ANGLE: math.degrees(null_angle_rad(row.pose, jammer_m)),
-        _AWAY: math.hypot(*(position_m - jammer_m)[:2]),
-        "jamming_to_noise_db": float(to_db(received_w.sum() / receiver.noise_power_w)),
+        _ANGLE: math.degrees(null_angle_rad(row.pose, places_m[0])),
+        _AWAY: math.hypot(*(position_m - places_m[0])[:2]),
+        "jamming_to_noise_db": float(to_db(received_w.sum() / scenario.receiver.noise_power_w)),
         "position_m": position_m.tolist(),
         "value_db": row.min_sinr_db,
     }

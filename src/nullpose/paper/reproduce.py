@@ -22,7 +22,7 @@ from nullpose.paper.study import JammingStudy
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
 from nullpose.report.plain import json_text
-from nullpose.solve import PAPER_SCHEMES, Scheme, solve
+from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import sweep
 
 __all__ = ["reproduce"]
@@ -78,8 +78,7 @@ def reproduce(
         claims.append(claim.checked(study))
         told(solves + len(claims) * _CLAIM_STEPS)
     poses = [study.at(Scheme.OPTIMUM, level) for level in POSE_LEVELS]
-    provenance = dict(solve(scenario, Scheme.ZERO_INTERFERENCE, seed=seed).provenance)
-    found = Reproduction(table, tuple(claims), provenance)
+    found = Reproduction(table, tuple(claims), table.of(Scheme.ZERO_INTERFERENCE)[0].provenance)
     files = (
         *write_figure(draw_figure2(table), folder, "figure2"),
         table.write_csv(folder / "figure2.csv"),

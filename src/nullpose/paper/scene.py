@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario import Scenario
 from nullpose.study import spaced
 
-__all__ = [
-    "JAMMER_POWER",
-    "JAMMING_LEVELS",
-    "POSE_LEVELS",
-    "PRINTED_LEVELS",
-    "paper_scenario",
-    "with_jamming",
-]
+__all__ = ["JAMMER_POWER", "JAMMING_LEVELS", "POSE_LEVELS", "PRINTED_LEVELS", "paper_scenario"]
 
 JAMMER_POWER = "jammers.M.power_w"
 """The swept setting: with nodes of 1 W it equals the paper's ratio P_M/P."""
@@ -44,13 +37,3 @@ def paper_scenario() -> Scenario:
             "jammers": [{"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": 1.0}],
         }
     )
-
-
-def with_jamming(scenario: Scenario, level: float) -> Scenario:
-    """Return the scenario with its jammer's power set.
-
-    Args:
-        scenario: the paper's scenario.
-        level: P_M/P, a power ratio above 0.
-    """
-    return apply_overrides(scenario, [Override(JAMMER_POWER, float(level))])

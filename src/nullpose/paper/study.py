@@ -98,16 +98,24 @@ class JammingStudy:
         """
         return lead_of(self.at(scheme, level), self.at(other, level))
 
-    def holds_up_to(self, condition: Callable[[float], bool]) -> float | None:
-        """Return the largest level up to which a condition holds, nothing if it fails at the first.
+    def holds_up_to(
+        self, condition: Callable[[float], bool], levels: Sequence[float] | None = None
+    ) -> float | None:
+        """Return the last level up to which a condition holds, nothing if it fails at the first.
 
-        Every swept level below it was looked at; between the last that holds and the first that fails the
-        level is bisected.
+        Every level before it was looked at; between the last that holds and the first that fails the level is
+        bisected.
 
         Args:
             condition: what is asked of a level.
+            levels: those to look at, in order; without them the swept ones, ascending.
         """
-        return _last_holding(condition, self.levels)
+        holding = None
+        for level in self.levels if levels is None else levels:
+            if not condition(level):
+                return holding and _bisected(condition, holding, level)
+            holding = level
+        return holding
 
     def holds_from(self, condition: Callable[[float], bool]) -> float | None:
         """Return the smallest level from which a condition holds, nothing if it fails at the last.
@@ -115,7 +123,7 @@ class JammingStudy:
         Args:
             condition: what is asked of a level.
         """
-        return _last_holding(condition, self.levels[::-1])
+        return self.holds_up_to(condition, self.levels[::-1])
 
 
 def bound_db(row: SweepRow) -> float:
@@ -136,16 +144,6 @@ def lead_of(row: SweepRow, other: SweepRow) -> Lead:
     """
     found_db = row.min_sinr_db - other.min_sinr_db
     return Lead(row.min_sinr_db - bound_db(other), found_db, bound_db(row) - other.min_sinr_db)
-
-
-def _last_holding(condition: Callable[[float], bool], levels: Sequence[float]) -> float | None:
-    """Return the last level, bisected, up to which a condition was seen to hold from the first of some on."""
-    holding = None
-    for level in levels:
-        if not condition(level):
-            return holding and _bisected(condition, holding, level)
-        holding = level
-    return holding
 
 
 def _bisected(condition: Callable[[float], bool], holding: float, failing: float) -> float:

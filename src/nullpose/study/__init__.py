@@ -7,9 +7,8 @@ from nullpose.study.airframe_comparison import (
     Guaranteed,
     compare_airframes,
 )
-from nullpose.study.plan import SweepPlan, plan_sweep
 from nullpose.study.spacing import spaced
-from nullpose.study.sweep import sweep
+from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
 from nullpose.study.table import SweepRow, SweepTable
 
 __all__ = [

@@ -104,9 +104,6 @@ class AirframeComparison:
     interrupted: bool
     provenance: Mapping[str, Any]
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
-
     def of(self, name: str) -> AirframeResult:
         """Return what one vehicle gives.
 
@@ -240,7 +237,7 @@ def compare_airframes(
         scenario=scenario,
         results=tuple(solved_grid([scenario], vehicles, solved, on_progress)),
         interrupted=any(interrupted),
-        provenance=provenance(asked.seed) | ({"gap": asked.target} if asked.certify else {}),
+        provenance=MappingProxyType(provenance(asked.seed) | asked.settings),
     )
 
 

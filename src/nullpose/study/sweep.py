@@ -1,20 +1,22 @@
-"""Many solves along one setting of a scenario."""
+"""Many solves along one setting of a scenario, as asked for in Python or on the command line."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Unpack
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.schemes import PAPER_SCHEMES, Scheme
-from nullpose.solve import SolveKeywords, solve
+from nullpose.solve import SolveKeywords, SolveOptions, solve
 from nullpose.study.grid import solved_grid
+from nullpose.study.spacing import spaced
 from nullpose.study.table import SweepRow, SweepTable
 
-__all__ = ["scenarios_along", "sweep"]
+__all__ = ["SweepPlan", "plan_sweep", "sweep"]
 
 
 def sweep(
@@ -44,7 +46,7 @@ def sweep(
         UsageError: no scheme applies, or a bad limit.
         KeyboardInterrupt: Ctrl-C ended a proof.
     """
-    scenarios = scenarios_along(scenario, path, values)
+    scenarios = _scenarios_along(scenario, path, values)
     reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in map(Scheme, schemes)}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
     applicable = [scheme for scheme, reason in reasons.items() if not reason]
@@ -62,7 +64,7 @@ def sweep(
     return SweepTable(path, rows, MappingProxyType(left_out))
 
 
-def scenarios_along(
+def _scenarios_along(
     scenario: Scenario, path: str, values: Sequence[float]
 ) -> tuple[tuple[float, Scenario], ...]:
     """Return each value of a setting with the scenario that has it.
@@ -101,3 +103,80 @@ def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
     others = len(found) - 1
     more = f" and {others} other value{'s' * (others > 1)}" if others else ""
     return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
+
+
+@dataclass(frozen=True, slots=True)
+class SweepPlan:
+    """A sweep that can be run.
+
+    Args:
+        scenario: the scenario, fixed settings applied.
+        path: the setting that is varied.
+        values: what it is set to.
+        schemes: the cases to solve.
+        options: of every solve.
+    """
+
+    scenario: Scenario
+    path: str
+    values: tuple[float, ...]
+    schemes: tuple[Scheme, ...]
+    options: SolveKeywords
+
+    def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
+        """Return what the sweep finds.
+
+        Args:
+            on_progress: called after each solve with how many are done and how many there are.
+        """
+        return sweep(
+            self.scenario,
+            self.path,
+            self.values,
+            schemes=self.schemes,
+            on_progress=on_progress,
+            **self.options,
+        )
+
+
+def plan_sweep(
+    scenario: Scenario,
+    settings: Sequence[str],
+    *,
+    start: float,
+    stop: float,
+    points: int,
+    log: bool = False,
+    schemes: Sequence[str] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> SweepPlan:
+    """Return the plan of a sweep, in which every value and scheme was looked at.
+
+    Args:
+        scenario: the scenario to start from.
+        settings: one path to vary, and any number of ``path=value`` to fix.
+        start: the first value.
+        stop: the last value.
+        points: how many values.
+        log: space the values by a constant ratio.
+        schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
+        options: as for :func:`nullpose.solve`.
+
+    Raises:
+        UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.
+        ScenarioError: a fixed setting is at fault.
+    """
+    varied = [setting.strip() for setting in settings if "=" not in setting]
+    if len(varied) != 1:
+        raise UsageError(
+            f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
+        )
+    SolveOptions(**options)
+    values = spaced(start, stop, points, log=log)
+    base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
+    wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
+    scenarios = _scenarios_along(base, varied[0], values)
+    for scheme in wanted if schemes is not None else ():
+        for _, at_value in scenarios:
+            scheme.require_applicable(at_value)
+    return SweepPlan(base, varied[0], values, wanted, options)

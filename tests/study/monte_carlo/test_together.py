@@ -7,7 +7,7 @@ import pytest
 
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.solve import solve_many
-from nullpose.study.monte_carlo import StudySpec, together
+from nullpose.study.monte_carlo import StudySpec, solving
 from nullpose.study.monte_carlo.chunk import rows_of
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.solving import solved_row
@@ -52,7 +52,7 @@ def test_one_at_fault(spec: Spec, monkeypatch: pytest.MonkeyPatch) -> None:
             raise RuntimeError("broken here")
         return solve_many(scenarios, **options)
 
-    monkeypatch.setattr(together, "solve_many", broken)
+    monkeypatch.setattr(solving, "solve_many", broken)
     monkeypatch.setattr("nullpose.study.monte_carlo.solving.solve", lambda *_, **__: 1 / 0)
     rows = _without_time(rows_of(study, 0, 7))
     for before, after in zip(whole, rows, strict=True):

@@ -18,9 +18,8 @@ from nullpose.study.grid import solved_grid
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, row_of
-from nullpose.study.monte_carlo.solving import reason_of, solved_row
+from nullpose.study.monte_carlo.solving import At, reason_of, solved_row, solved_together
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.together import At, solved_together
 from nullpose.study.monte_carlo.versions import fingerprint
 
 __all__ = ["KILLED", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
@@ -30,7 +29,7 @@ KILLED = "every worker that took this scene died; it may need more memory than t
 
 _TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
 _CALIBRATED_S = 0.3  # so much work tells how long a scene takes
-_MOST_CALIBRATED = 1000
+_CALIBRATING = tuple(2**doubled for doubled in range(10))  # scenes, until they take so long
 
 # Below 10^15, which is above all counts that there are, and below what a float cannot hold.
 Count = Annotated[int, Field(ge=0, lt=10**15)]
@@ -166,15 +165,12 @@ def seconds_per_scene(spec_json: str, expected: str) -> float:
     Raises:
         ClusterError: another nullpose is here.
     """
-    spec, scenes = _spec(spec_json, expected), 1
-    list(rows_of(spec, 0, 0))
-    while True:
-        began = time.perf_counter()
-        list(rows_of(spec, 0, scenes - 1))
-        spent = time.perf_counter() - began
-        if spent >= _CALIBRATED_S or 2 * scenes > min(spec.n_scenes, _MOST_CALIBRATED):
-            return spent / scenes
-        scenes *= 2
+    solve_chunk(spec_json, expected, 0, 0)
+    for scenes in _CALIBRATING:
+        part, _ = solve_chunk(spec_json, expected, 0, scenes - 1)
+        if part.seconds >= _CALIBRATED_S:
+            break
+    return part.seconds / part.scenes
 
 
 @lru_cache(maxsize=4)

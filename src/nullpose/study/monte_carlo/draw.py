@@ -164,7 +164,9 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
         try:
             return Scenario.from_dict({**kept, "name": f"scene {index}", **points})
         except ScenarioError as error:
-            again = _at_fault(error.faults, attempts)
+            # The kind to draw again: the last that a fault is about, or else the least often drawn.
+            blamed = [kind for kind in attempts if any(each.path.startswith(kind) for each in error.faults)]
+            again = next(reversed(blamed), min(attempts, key=lambda kind: attempts[kind], default=None))
             if again is None or attempts[again] + 1 >= MOST_DRAWS:
                 if not any(attempts.values()):
                     raise
@@ -172,12 +174,6 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
                 raise ScenarioError([Fault(error.faults[0].path, message)]) from None
             attempts[again] += 1
             points[again] = _draw(spec.seed, index, again, drawn[again], attempts[again])
-
-
-def _at_fault(faults: tuple[Fault, ...], attempts: Mapping[str, int]) -> str | None:
-    """Return the kind to draw again: the last that a fault is about, or else the least often drawn."""
-    blamed = [kind for kind in attempts if any(fault.path.startswith(kind) for fault in faults)]
-    return blamed[-1] if blamed else min(attempts, key=lambda kind: attempts[kind], default=None)
 
 
 def _draw(seed: int, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:

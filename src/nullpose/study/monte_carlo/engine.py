@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 from nullpose.errors import ClusterError
 from nullpose.study.monte_carlo.chunk import Part, seconds_per_scene, solve_chunk
 from nullpose.study.monte_carlo.cluster import connected
-from nullpose.study.monte_carlo.ledger import Ledger
 from nullpose.study.monte_carlo.versions import fingerprint
 
 if TYPE_CHECKING:
     from distributed import Client, Future
+
+    from nullpose.study.monte_carlo.run import Ledger
 
 __all__ = ["solver_of"]
 

@@ -1,4 +1,4 @@
-"""From a file to the spec of a study, with every fault that it has."""
+"""From a file to the spec of a study, with every fault: of its parts, and between them on scenes drawn."""
 
 from __future__ import annotations
 
@@ -7,16 +7,28 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario import load
+from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.scenario import Scenario, load
+from nullpose.scenario.faults import path_of
 from nullpose.scenario.loading import inside
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
-from nullpose.study.monte_carlo.checking import require_sound
+from nullpose.schemes import Scheme
+from nullpose.study.monte_carlo.case import StudyCase
+from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["load_spec"]
+__all__ = ["load_spec", "require_sound"]
 
 _SPEC_FILE = FileKind("the spec of a study", "study.toml")
+# In place of a scenario file that is faulty.
+_STAND_IN: dict[str, Any] = {
+    "airspace": {"altitude_m": [10.0, 20.0]},
+    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+    "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
+}
+
+_TRIED_SCENES = 5  # one that cannot be drawn may be bad luck, so many cannot
+_TRIED_VALUES = 50  # of each swept path, both ends among them
 
 
 def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> StudySpec:
@@ -71,8 +83,70 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
     return faults
 
 
-_STAND_IN: dict[str, Any] = {
-    "airspace": {"altitude_m": [10.0, 20.0]},
-    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-    "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
-}
+def require_sound(spec: StudySpec, source: str = "study") -> None:
+    """Raise a ScenarioError with what is wrong between the parts of a spec, each of which is sound by itself.
+
+    Args:
+        spec: the study.
+        source: what to call it in messages.
+
+    Raises:
+        ScenarioError: with every fault.
+    """
+    draws = Draws(spec)
+    unsound = {index: _faults_at(draws, index, {}) for index in range(min(_TRIED_SCENES, spec.n_scenes))}
+    sound = [index for index, found in unsound.items() if not found]
+    if sound:
+        faults = _sweep_faults(draws, spec, sound[0])
+        faults = faults or _cases_faults(spec, [draws.at(sound[0], 0), draws.at(sound[0], -1)])
+    else:
+        faults = [Fault(f"scene 0: {each.path}", each.message) for each in unsound[0]]
+    if faults:
+        raise ScenarioError(faults, source)
+
+
+def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> tuple[Fault, ...]:
+    try:
+        draws.base(index, values)
+    except ScenarioError as error:
+        return error.faults
+    return ()
+
+
+def _sweep_faults(draws: Draws, spec: StudySpec, index: int) -> list[Fault]:
+    """Return the faults that the values of each path lead to, each once."""
+    told: dict[tuple[str, str], Fault] = {}
+    for path, values in spec.sweep:
+        step = max(1, len(values) // _TRIED_VALUES)
+        for value in dict.fromkeys((*values[::step], values[-1])):
+            for fault in _faults_at(draws, index, {path: value}):
+                message = f"{fault.message} (at {value:g})"
+                told.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
+    return list(told.values())
+
+
+def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
+    """Return why cases have no meaning in some scenes."""
+    found = {
+        place: list(filter(None, (_meaningless(case, scene) for scene in scenes)))
+        for place, case in enumerate(spec.cases)
+    }
+    return [Fault(path_of(("cases", place)), reasons[0]) for place, reasons in found.items() if reasons]
+
+
+def _meaningless(case: StudyCase, scene: Scenario) -> str:
+    """Return why a case has no meaning in a scene; empty if it has."""
+    try:
+        vehicle = case.on(scene)
+        if case.robust and not vehicle.is_uncertain:
+            raise UsageError(
+                "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
+                "receiver.attitude_error_deg or receiver.position_error_m to the scene"
+            )
+        if case.array is not None and vehicle.objective_record.transmits:
+            raise UsageError("an array is for a drone that receives, not for this objective")
+        if not (case.robust or case.array or case.pose):
+            (case.scheme or Scheme.OPTIMUM).require_applicable(vehicle)
+    except (ScenarioError, UsageError) as error:
+        return str(error)
+    return ""

@@ -1,25 +1,36 @@
-"""One case in one scene, as a row."""
+"""Cases in scenes as rows: one by one, or those of many scenes together in one compiled loop."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
 from nullpose.physics import evaluate
-from nullpose.scenario import Scenario
+from nullpose.scenario import Airframe, Scenario
 from nullpose.schemes import Scheme
-from nullpose.solve import NODE_LIMIT, SolveKeywords, Status, solve, solve_array
+from nullpose.solve import (
+    NODE_LIMIT,
+    ManySolutions,
+    SolveKeywords,
+    Status,
+    solve,
+    solve_array,
+    solve_many,
+)
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.robust import solve_robust
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["GIVEN_POSE", "found", "options_of", "reason_of", "solved_row"]
+__all__ = ["GIVEN_POSE", "At", "reason_of", "solved_row", "solved_together"]
+
+At = tuple[int, int]  # a scene's number and that of a combination of swept values
 
 _PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
 
@@ -41,7 +52,7 @@ def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: S
     """
     began = time.perf_counter()
     try:
-        known = _solved(case, case.on(scene), options_of(spec, case))
+        known = _solved(case, case.on(scene), _options_of(spec, case))
     except Exception as error:  # whatever goes wrong in one scene is no reason to lose the others
         known = {"status": FAILED, "reason": reason_of(error)}
     if known["reason"] == INTERRUPT:
@@ -59,7 +70,7 @@ def reason_of(error: Exception) -> str:
     return words if isinstance(error, NullposeError) else f"{type(error).__name__}: {words}"
 
 
-def options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
+def _options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
     """Return what a solve of a case is asked for.
 
     Args:
@@ -75,7 +86,7 @@ def options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
     }
 
 
-def found(
+def _found(
     status: Status, place: Iterable[float], value: float, bound: float | None, gap: float | None
 ) -> dict[str, Any]:
     """Return the columns of a pose with what is proved of it; a bound or gap that is not finite is none.
@@ -100,7 +111,7 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         weakest = min(evaluate(scene, pose), key=quantity.at)
-        columns = found(
+        columns = _found(
             Status.BEST_FOUND,
             (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
             quantity.at(weakest),
@@ -115,7 +126,7 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
     else:
         result = solve(scene, case.scheme or Scheme.OPTIMUM, **options)
     objective, pose = result.objective, result.pose
-    columns = found(
+    columns = _found(
         result.status,
         (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
         objective.value,
@@ -124,3 +135,62 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
     )
     node = result.details.robust.binding_node if case.robust else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
+
+
+def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:
+    """Return the rows of those cases that can be solved together, by scene, combination and case.
+
+    A row is the same whatever is solved beside it. What cannot be solved so is left out.
+
+    Args:
+        spec: the study.
+        scenes: by number and combination.
+    """
+    alike: dict[str, list[StudyCase]] = defaultdict(list)  # by target and limits
+    for case in spec.cases:
+        if case.is_best_pose:
+            alike[repr(_options_of(spec, case))].append(case)
+    vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
+    for at, scene in scenes.items():
+        if not scene.objective_record.transmits:
+            plain = scene if scene.array is None else scene.model_copy(update={"array": None})
+            vehicles[scene.airframe][at] = plain
+    rows = (
+        row
+        for cases in alike.values()
+        for own, some in vehicles.items()
+        for row in _rows(spec, cases, own, some)
+    )
+    return {(row["scene"], row["point"], row["case"]): row for row in rows}
+
+
+def _rows(
+    spec: StudySpec, cases: Sequence[StudyCase], own: Airframe | None, scenes: Mapping[At, Scenario]
+) -> Iterator[Row]:
+    """Yield the rows of cases with the same target and limits in scenes with the same vehicle."""
+    began, places = time.perf_counter(), list(scenes.items())
+    try:
+        many = solve_many(
+            list(scenes.values()),
+            airframes=[case.airframe or own for case in cases],
+            **_options_of(spec, cases[0]),
+        )
+    except Exception:  # one of them is at fault: the others are not lost, nor solved in another way
+        middle = len(places) // 2
+        for some in (places[:middle], places[middle:]) if middle else ():
+            yield from _rows(spec, cases, own, dict(some))
+        return
+    seconds = (time.perf_counter() - began) / (len(scenes) * len(cases))
+    for number, (at, scene) in enumerate(places):
+        for column, case in enumerate(cases):
+            yield row_of(*at, case.name, seconds=seconds, **_known(many, (number, column), scene))
+
+
+def _known(many: ManySolutions, at: tuple[int, int], scene: Scenario) -> dict[str, Any]:
+    status, reason = many.status[at], str(many.reason[at])
+    if status is None:
+        return {"status": FAILED, "reason": reason}
+    place = (*many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at])
+    columns = _found(status, place, many.value[at], float(many.upper_bound[at]), float(many.relative_gap[at]))
+    node = scene.node_names[int(many.binding_node[at])]
+    return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}
