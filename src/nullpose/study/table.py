@@ -127,8 +127,7 @@ class SweepTable:
         if other.path != self.path:
             raise ValueError(f"a sweep of {other.path} cannot join one of {self.path}")
         rows = sorted((*self.rows, *other.rows), key=lambda row: row.value)
-        left_out = MappingProxyType({**self.left_out, **other.left_out})
-        return SweepTable(path=self.path, rows=tuple(rows), left_out=left_out)
+        return SweepTable(self.path, tuple(rows), MappingProxyType({**self.left_out, **other.left_out}))
 
     def to_dict(self) -> dict[str, object]:
         """Return the table as plain data."""

@@ -76,19 +76,12 @@ class StudyTable:
         Raises:
             UsageError: a part is damaged.
         """
-        import xarray as xr
-
-        frame, spec = self.frame(), self.spec
-        scenes = frame["scene"].to_numpy()[:: spec.rows_per_scene]
+        spec = self.spec
+        frame = self.frame().drop(columns="point").astype({"case": object})
+        arrays = frame.set_index(["scene", *spec.swept, "case"]).to_xarray()
         swept = {path: list(values) for path, values in spec.sweep}
-        coordinates = {"scene": scenes, **swept, "case": list(spec.case_names)}
-        shape = [len(values) for values in coordinates.values()]
-        columns = [name for name in frame.columns if name not in {"point", *coordinates}]
-        return xr.Dataset(
-            {name: (list(coordinates), frame[name].to_numpy().reshape(shape)) for name in columns},
-            coords=coordinates,
-            attrs={"name": spec.name, "objective": self.manifest["objective"]},
-        )
+        in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
+        return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
 
     def _read(self, part: Part) -> pd.DataFrame:
         import pyarrow as pa
