@@ -49,7 +49,7 @@ class Claim:
     holds_up_to: float | None = None
     holds_from: float | None = None
     fails_from: float | None = None
-    certainty: Certainty | None = None
+    certainty: Certainty = field(default_factory=lambda: Certainty.of(()))
 
     def checked(self, study: JammingStudy) -> Claim:
         """Return the claim with its verdict, and what it rests on.
@@ -70,7 +70,7 @@ class Claim:
     @property
     def proved_words(self) -> str:
         """What is proved of the claim, which is nothing if one of its values is not certified."""
-        if self.certainty is None or not self.certainty.complete:
+        if not self.certainty.complete:
             return "Nothing: not every value that it rests on is certified."
         return self.proved
 
@@ -87,7 +87,7 @@ class Claim:
             "holds_from": self.holds_from,
             "fails_from": self.fails_from,
             "method": self.method,
-            "certainty": None if self.certainty is None else self.certainty.to_dict(),
+            "certainty": self.certainty.to_dict(),
             "proved": self.proved_words,
             "unproved": self.unproved,
         }

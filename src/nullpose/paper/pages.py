@@ -77,14 +77,13 @@ def claims_markdown(reproduction: Reproduction) -> str:
         markdown_table(verdicts),
     ]
     for claim in claims:
-        certainty = "nothing" if claim.certainty is None else claim.certainty.words()
         single = {name: value for name, value in claim.evidence.items() if name != "levels"}
         blocks += [
             f"## {claim.claim}",
             f"*{claim.verdict.capitalize()}.* {claim.finding}",
             f"- Claimed in: {claim.source} (`{claim.id}`).\n"
             f"- How it was decided: {claim.method}\n"
-            f"- It rests on {certainty}.\n"
+            f"- It rests on {claim.certainty.words()}.\n"
             f"- Proved: {claim.proved_words}\n"
             f"- Not proved: {claim.unproved}",
             "\n".join(f"- {_words(name)}: {_cell(value)}" for name, value in single.items()),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
+import re
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -18,6 +18,7 @@ __all__ = ["LOCK", "holder", "locked"]
 LOCK = "lock"
 
 _LONGEST = 4096  # characters that are read: a lock names a process and a machine
+_OWNER = re.compile(r"process (\d{1,9}) on (.+)\n", re.ASCII)
 
 
 @contextmanager
@@ -33,7 +34,7 @@ def locked(folder: Path) -> Iterator[None]:
     Raises:
         OutputError: another client holds it.
     """
-    path = folder / LOCK
+    path, own = folder / LOCK, f"process {os.getpid()} on {socket.gethostname()}\n"
     check_outputs({}, {"the study's lock": path})
     with path.open("a+", encoding="utf-8") as file:
         if other := _other(file):
@@ -42,7 +43,7 @@ def locked(folder: Path) -> Iterator[None]:
                 f"if it is gone, remove {path} and try again"
             )
         file.truncate(0)
-        json.dump({"pid": os.getpid(), "host": socket.gethostname()}, file)
+        file.write(own)
         file.flush()
         yield
         file.truncate(0)
@@ -64,10 +65,10 @@ def holder(folder: Path) -> str:
 def _other(file: IO[str]) -> str:
     """Take the system's lock on a file; return who holds it if somebody else does."""
     file.seek(0)
-    here, pid, host = socket.gethostname(), -1, None
-    with suppress(ValueError, RecursionError, TypeError, KeyError):
-        content = json.loads(file.read(_LONGEST))
-        pid, host = int(content["pid"]), str(content["host"])
+    here = socket.gethostname()
+    # Half a line from a killed client names nobody.
+    found = _OWNER.fullmatch(file.read(_LONGEST))
+    pid, host = found.groups() if found else ("-1", here)
     try:
         import fcntl
 
@@ -78,7 +79,7 @@ def _other(file: IO[str]) -> str:
     except (ImportError, OSError):  # Windows, or a file system that knows no locks: the file has to do
         import psutil
 
-        taken = not psutil.pid_exists(pid)
-    if taken and host in (None, here):  # the locks of another machine may not be seen from here
+        taken = not psutil.pid_exists(int(pid))
+    if taken and host == here:  # the locks of another machine may not be seen from here
         return ""
-    return f"process {pid} on {host or here}"
+    return f"process {pid} on {host}"
