@@ -15,13 +15,11 @@ from nullpose.solve import (
     Result,
     SolveKeywords,
     SolveOptions,
-    solve,
-    solve_array,
 )
 from nullpose.solve.provenance import provenance
 from nullpose.solve.robust import guarantee, solve_robust
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
-from nullpose.study.grid import solved_grid
+from nullpose.study.grid import solved_case, solved_grid
 
 __all__ = ["TOLERANCE", "AirframeComparison", "AirframeResult", "Guaranteed", "compare_airframes"]
 
@@ -216,9 +214,9 @@ def compare_airframes(
     interrupted: list[bool] = []
 
     def solved(own: Scenario, case: AirframeCase) -> AirframeResult:
-        certify = asked.certify and not any(interrupted)
+        now = options | {"certify": asked.certify and not any(interrupted)}
         try:
-            result = _solved(case, own, options | {"certify": certify})
+            result = solved_case(case.on(own), combining=case.combining, **now)
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
@@ -239,12 +237,6 @@ def compare_airframes(
         interrupted=any(interrupted),
         provenance=MappingProxyType(provenance(asked.seed) | asked.settings),
     )
-
-
-def _solved(case: AirframeCase, scenario: Scenario, options: SolveKeywords) -> Result:
-    if case.array is None:
-        return solve(case.on(scenario), **options)
-    return solve_array(case.on(scenario), case.combining, **options)
 
 
 def _guaranteed(result: Result, options: SolveKeywords | None) -> Guaranteed:

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
-from typing import Any, TypeVar
+from typing import Any, TypeVar, Unpack
 
-__all__ = ["solved_grid"]
+from nullpose.scenario import Scenario
+from nullpose.schemes import Scheme
+from nullpose.solve import Result, SolveKeywords, solve, solve_array
+from nullpose.solve.robust import solve_robust
+
+__all__ = ["solved_case", "solved_grid"]
 
 Row = TypeVar("Row")
 
@@ -29,3 +34,27 @@ def solved_grid(
         yield solved(point, case)
         if on_progress is not None:
             on_progress(done, len(points) * len(cases))
+
+
+def solved_case(
+    scenario: Scenario,
+    scheme: Scheme = Scheme.OPTIMUM,
+    *,
+    combining: str = "",
+    robust: bool = False,
+    **options: Unpack[SolveKeywords],
+) -> Result:
+    """Return the best pose of a case: of a vehicle with one dipole, with an array, or under errors.
+
+    Args:
+        scenario: with the case's vehicle.
+        scheme: how the pose of one dipole is chosen.
+        combining: of the scenario's array: ``"digital"`` or ``"analogue"``; empty for one dipole.
+        robust: whether the pose is asked for that guarantees most under the scenario's errors.
+        options: as for :func:`nullpose.solve`.
+    """
+    if robust:
+        return solve_robust(scenario, **options)
+    if combining:
+        return solve_array(scenario, combining, **options)
+    return solve(scenario, scheme, **options)

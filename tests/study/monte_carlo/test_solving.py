@@ -90,7 +90,7 @@ def test_what_goes_wrong_is_a_row(spec: Spec, monkeypatch: pytest.MonkeyPatch) -
     def broken(*_: Any, **__: Any) -> None:
         raise ArithmeticError("first line\n  second line")
 
-    monkeypatch.setattr("nullpose.study.monte_carlo.solving.solve", broken)
+    monkeypatch.setattr("nullpose.study.grid.solve", broken)
     row, _ = _row(spec())
     assert (row["status"], row["reason"]) == ("failed", "ArithmeticError: first line; second line")
     assert not {"value", "bound", "x_m"} & set(row)

@@ -18,12 +18,10 @@ from nullpose.solve import (
     ManySolutions,
     SolveKeywords,
     Status,
-    solve,
-    solve_array,
     solve_many,
 )
 from nullpose.solve.proof import INTERRUPT
-from nullpose.solve.robust import solve_robust
+from nullpose.study.grid import solved_case
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -119,12 +117,13 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
             None,
         )
         return columns | {"reason": GIVEN_POSE, "binding_node": weakest.node}
-    if case.robust:
-        result = solve_robust(scene, **options)
-    elif case.array is not None:
-        result = solve_array(scene, case.array.combining, **options)
-    else:
-        result = solve(scene, case.scheme or Scheme.OPTIMUM, **options)
+    result = solved_case(
+        scene,
+        case.scheme or Scheme.OPTIMUM,
+        combining="" if case.array is None else case.array.combining,
+        robust=bool(case.robust),
+        **options,
+    )
     objective, pose = result.objective, result.pose
     columns = _found(
         result.status,
