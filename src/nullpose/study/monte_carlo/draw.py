@@ -166,7 +166,8 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
         except ScenarioError as error:
             # The kind to draw again: the last that a fault is about, or else the least often drawn.
             blamed = [kind for kind in attempts if any(each.path.startswith(kind) for each in error.faults)]
-            again = next(reversed(blamed), min(attempts, key=lambda kind: attempts[kind], default=None))
+            rarest = min(attempts, key=lambda kind: attempts[kind], default=None)
+            again = blamed[-1] if blamed else rarest
             if again is None or attempts[again] + 1 >= MOST_DRAWS:
                 if not any(attempts.values()):
                     raise

@@ -180,7 +180,7 @@ def run_study(
         to_do = ledger.open(int(store.require_same(spec)["chunk"])) if begun else iter(())
         if begun and ledger.is_complete:
             ledger.tell()
-            return study_status(out)
+            return study_status(store.folder)
         with solver_of(ledger, scheduler, workers) as solver:
             if not begun:
                 size = _size(spec, solver.seconds_per_scene()) if chunk is None else chunk
@@ -188,7 +188,7 @@ def run_study(
                 to_do = ledger.open(size)
             for part, content in solver.solved(to_do):
                 ledger.add(part, content)
-    return study_status(out)
+    return study_status(store.folder)
 
 
 def _size(spec: StudySpec, seconds: float) -> int:
