@@ -14,6 +14,7 @@ from nullpose.paper.pages import Reproduction, claims_markdown
 from nullpose.paper.scene import JAMMER_POWER
 from nullpose.paper.study import JammingStudy
 from nullpose.physics import maximum_gain_sinr, min_sinr, to_db
+from nullpose.report.certainty import Certainty
 from nullpose.scenario import Override, apply_overrides
 from nullpose.solve import Objective
 from nullpose.study import SweepTable
@@ -202,7 +203,7 @@ def test_nothing_is_called_proved_if_a_value_is_not_certified(claims: dict[str, 
     doubtful = dataclasses.replace(claim, certainty=searched)
     assert doubtful.proved_words.startswith("Nothing")
     assert doubtful.to_dict()["proved"] == doubtful.proved_words
-    assert dataclasses.replace(claim, certainty=None).proved_words.startswith("Nothing")
+    assert dataclasses.replace(claim, certainty=Certainty.of(())).proved_words.startswith("Nothing")
 
 
 def test_bounds_of_the_leads(claims: dict[str, Claim], reproduction: Reproduction, paper: Scenario) -> None:
