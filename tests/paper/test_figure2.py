@@ -94,7 +94,7 @@ def test_a_node_in_the_null_leaves_a_gap(reproduction: Reproduction) -> None:
     """A value of minus infinity is drawn as a gap and does not spoil the axis."""
     row = reproduction.table.rows[0]
     nothing = Objective(name="min_sinr", value=0.0, value_db=-np.inf)
-    silent = type(row)(2.0, row.scheme, row.status, nothing, row.pose, row.links)
+    silent = replace(row, value=2.0, objective=nothing)
     figure = draw_sweep(SweepTable("jammers.M.power_w", (row, silent)))
     assert np.all(np.isfinite(figure.axes[0].get_ylim()))
 
