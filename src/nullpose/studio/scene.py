@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.report.numbers import MINUS
-from nullpose.scenario import Airspace, GroundPoint, Scenario
-from nullpose.studio.colours import KIND_COLOURS, Rgb, round_steps
+from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
+from nullpose.studio.colours import KIND_COLOURS, round_steps
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
 from nullpose.studio.field_map import map_extent_m
-from nullpose.studio.meshes import MARKS, Mesh, ellipsoid_mesh, zone_mesh
+from nullpose.studio.meshes import MARKS, ellipsoid_mesh, zone_mesh
 from nullpose.studio.view import PointKey, View
 
 if TYPE_CHECKING:
@@ -97,10 +97,16 @@ class Ground:
         self._draw_airspace(view.scenario)
         self._handles = {key: self._handle(key, one, size_m, freed) for key, one in points.items()}
         scale = 1.1 if len(points) <= _CROWD else 0.8
+        keep_out = ellipsoid_mesh(airspace.keep_out_m * np.eye(3), 6, 10)
         for key, point in points.items():
-            name = _name(key)
-            for part, (mesh, colour, style) in _shapes(key, point, size_m, airspace).items():
-                add_mesh(self._scene, f"{name}/{part}", mesh, colour, **style)
+            name, colour = _name(key), KIND_COLOURS[key[0]]
+            mark = MARKS[key[0]].placed(0.022 * size_m)
+            add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
+            # wires: what is see-through below the map would be hidden by it
+            add_mesh(self._scene, f"{name}/keep-out", keep_out, _WIRE, wireframe=True)
+            if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
+                near = ellipsoid_mesh(point.uncertainty_matrix_m, 10, 16)
+                add_mesh(self._scene, f"{name}/uncertainty", near, colour, wireframe=True)
             add_label(self._scene, f"{name}/label", point.name, (0.0, 0.0, 0.062 * size_m), scale)
 
     def _handle(self, key: PointKey, point: GroundPoint, size_m: float, freed: bool) -> Any:
@@ -171,20 +177,3 @@ class Ground:
 def _name(key: PointKey) -> str:
     kind, index = key
     return f"/points/{kind}-{index}"
-
-
-def _shapes(
-    key: PointKey, point: GroundPoint, size_m: float, airspace: Airspace
-) -> dict[str, tuple[Mesh, Rgb, dict[str, Any]]]:
-    """Return what stands at a point: shape, colour and style, by name."""
-    colour = KIND_COLOURS[key[0]]
-    wires = {"wireframe": True}  # what is see-through below the map would be hidden by it
-    keep_out = ellipsoid_mesh(airspace.keep_out_m * np.eye(3), 6, 10)
-    shapes = {
-        "mark": (MARKS[key[0]].placed(0.022 * size_m), colour, {"flat_shading": True}),
-        "keep-out": (keep_out, _WIRE, wires),
-    }
-    matrix_m = getattr(point, "uncertainty_matrix_m", None)
-    if matrix_m is not None and np.any(matrix_m):
-        shapes["uncertainty"] = (ellipsoid_mesh(matrix_m, 10, 16), colour, wires)
-    return shapes
