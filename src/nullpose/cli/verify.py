@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -11,9 +11,6 @@ from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
 from nullpose.cli.output import show, show_json
 from nullpose.cli.progress import Ticker
-
-if TYPE_CHECKING:
-    from nullpose.certificate import Certificate, Verdict
 
 __all__ = ["verify"]
 
@@ -40,6 +37,7 @@ def verify(
     """
     from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
+    from nullpose.report.scenario import scenario_view
     from nullpose.scenario import load
 
     certificate = read_certificate(file)
@@ -51,19 +49,13 @@ def verify(
         checked = {"proved": verdict.proved, "message": verdict.message, "leaves": verdict.leaves}
         show_json(checked | about | subject(certificate))
     else:
-        _show(verdict, certificate)
+        typer.echo(verdict.message, err=not verdict.proved)
+        if verdict.proved:
+            digest = subject(certificate)["scenario_sha256"]
+            typer.echo(f"case {certificate.scheme}, scenario SHA-256 {digest}\n")
+            show(scenario_view(certificate.scenario))
         if scenario is not None:
             told = f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"
             typer.echo("\n  ".join([told, *unlike]), err=bool(unlike))
     if unlike or not verdict.proved:
         raise typer.Exit(INTERNAL)
-
-
-def _show(verdict: Verdict, certificate: Certificate) -> None:
-    from nullpose.certificate import subject
-    from nullpose.report.scenario import scenario_view
-
-    typer.echo(verdict.message, err=not verdict.proved)
-    if verdict.proved:
-        typer.echo(f"case {certificate.scheme}, scenario SHA-256 {subject(certificate)['scenario_sha256']}\n")
-        show(scenario_view(certificate.scenario))

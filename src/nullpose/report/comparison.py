@@ -42,16 +42,14 @@ class Comparison:
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""
-        cases = [solution.to_dict() for solution in self.solutions]
-        for case in cases:
-            del case["scenario"]
-        cases += [
+        found = [solution.to_dict().items() for solution in self.solutions]
+        left_out = [
             {"scheme": scheme.value, "status": "not-applicable", "reason": reason}
             for scheme, reason in self.left_out
         ]
         return {
             "scenario": self.scenario.to_dict(),
-            "cases": cases,
+            "cases": [{key: value for key, value in case if key != "scenario"} for case in found] + left_out,
             "provenance": dict(self.solutions[0].provenance) if self.solutions else {},
         }
 

@@ -75,9 +75,13 @@ def table(
         return None
     view = Table(title=title or None, box=box.SIMPLE_HEAD, **_LOOK)
     for place, heading in enumerate(rows[0]):
-        view.add_column(Text(heading), no_wrap=no_wrap and place > 0, overflow="fold")
-        if place and heading not in left:
-            view.columns[place].justify = "right"
+        words = place == 0 or heading in left
+        view.add_column(
+            Text(heading),
+            justify="left" if words else "right",
+            no_wrap=no_wrap and place > 0,
+            overflow="fold",
+        )
     for row in rows:
         if row:
             cells = list(map(Text, row.values()))
@@ -127,15 +131,14 @@ def grouped(said: Iterable[tuple[str, str]]) -> list[str]:
     Args:
         said: names and sentences; an empty one says nothing of its name.
     """
-    names: dict[str, dict[str, None]] = {}
-    everyone = set()
+    said = list(said)
+    everyone = {name for name, _ in said}
+    names: dict[str, dict[str, None]] = {sentence: {} for _, sentence in said if sentence}
     for name, sentence in said:
-        everyone.add(name)
-        names.setdefault(sentence, {})[name] = None
+        names.get(sentence, {})[name] = None
     return [
         sentence if len(of) == len(everyone) else f"{'; '.join(of)}: {sentence}"
         for sentence, of in names.items()
-        if sentence
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,11 +89,12 @@ class Stage:
     uncertain: bool = False
 
     @property
-    def points(self) -> Iterator[tuple[str, Node | Jammer | Eavesdropper]]:
+    def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
         """All points with their kinds, those that a null is for before the nodes."""
-        yield from (("jammer", jammer) for jammer in self.scenario.jammers)
-        yield from (("eavesdropper", eavesdropper) for eavesdropper in self.scenario.eavesdroppers)
-        yield from (("node", node) for node in self.scenario.nodes)
+        scene = self.scenario
+        kinds: dict[str, Sequence[Node | Jammer | Eavesdropper]]
+        kinds = {"jammer": scene.jammers, "eavesdropper": scene.eavesdroppers, "node": scene.nodes}
+        return [(kind, point) for kind, points in kinds.items() for point in points]
 
     @property
     def places_m(self) -> FloatArray:

@@ -64,7 +64,7 @@ class StudyValues:
         return {name: int(np.sum(self.status == code)) for code, name in enumerate(STATUSES)}
 
 
-def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], None] | None = None) -> StudyValues:
+def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], object] | None = None) -> StudyValues:
     """Return the values of all rows that are done, reading them once, part by part.
 
     Args:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
@@ -85,18 +83,16 @@ def report_study(
     cases = report_cases(table.spec, against)
     target = prepare_folder(Path(folder) / "report" if out is None else Path(out))
     data = target / "study.csv"
-    with _writing(data) as file:
-        values = gather(table, lambda batch: _append(file, batch))
+    with replacing(data) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        values = gather(table, lambda batch: file.write(_csv(batch, header=file.tell() == 0)))
     summary = summarise(table, values, cases, requirement)
-    with _writing(target / "summary.csv") as file:
-        _append(file, summary.table())
     figures = _write_figures(summary, prepare_folder(target / "figures"))
     text = report_text(summary, list(figures))
     page = report_page(text, title_of(summary), {name: svg for name, (_, svg) in figures.items()})
     files = [
         write_text(target / "report.md", text),
         write_text(target / "report.html", page),
-        target / "summary.csv",
+        write_text(target / "summary.csv", _csv(summary.table(), header=True)),
         data,
         *(path for pair in figures.values() for path in pair),
     ]
@@ -132,13 +128,5 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, Path
     return written
 
 
-@contextmanager
-def _writing(path: Path) -> Iterator[TextIO]:
-    """Yield a text file that takes the place of another once it is whole."""
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        yield file
-
-
-def _append(file: TextIO, frame: pd.DataFrame) -> None:
-    """Write rows to a file, with a header if they are its first."""
-    frame.to_csv(file, index=False, header=file.tell() == 0, lineterminator="\n")
+def _csv(rows: pd.DataFrame, *, header: bool) -> str:
+    return str(rows.to_csv(index=False, header=header, lineterminator="\n"))

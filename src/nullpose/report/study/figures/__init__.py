@@ -25,12 +25,10 @@ FIGURES: dict[str, Callable[[Summary], Figure | None]] = {
 
 
 def figures_of(summary: Summary) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures that a study has something for, each with the name of its file.
+    """Return the figures, drawn one by one, that a study has something for, each with the name of its file.
 
     Args:
         summary: of a study.
     """
-    for name, draw in FIGURES.items():
-        figure = draw(summary)
-        if figure is not None:
-            yield name, figure
+    drawn = ((name, draw(summary)) for name, draw in FIGURES.items())
+    return ((name, figure) for name, figure in drawn if figure is not None)

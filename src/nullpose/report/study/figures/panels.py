@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -41,19 +42,17 @@ def looks_of(cases: Sequence[ReportCase]) -> dict[str, Curve]:
         cases: of the study.
     """
     looks: dict[str, Curve] = {}
+    others = zip(cycle(_FALLBACK), cycle(_LINES), cycle(_MARKERS), strict=False)
     taken: set[tuple[str, bool]] = set()
-    others = 0
     for case in cases:
         if case.role in VEHICLES and (case.role, case.robust) not in taken:
             taken.add((case.role, case.robust))
-            look = replace(VEHICLES[case.role], label=case.name)
+            look = VEHICLES[case.role]
             if case.robust:
                 look = replace(look, line=(0, (1.0, 1.2)), width=look.width + 0.3, order=look.order + 0.5)
         else:
-            colour, marker = (each[others % len(each)] for each in (_FALLBACK, _MARKERS))
-            look = Curve(case.name, colour, _LINES[others % len(_LINES)], marker, 1.6, 3.5)
-            others += 1
-        looks[case.name] = look
+            look = Curve("", *next(others), width=1.6, order=3.5)
+        looks[case.name] = replace(look, label=case.name)
     return looks
 
 
