@@ -108,8 +108,8 @@ def _range(summary: Summary, points: tuple[int, ...]) -> Ends:
         return -1.0, 1.0
     low, high = float(np.min(finite)), float(np.max(finite))
     medians = summary.frame.loc[summary.frame["point"].isin(points), "median"]
-    if not summary.quantity.is_rate:
-        low = max(low, float(np.min(medians[np.isfinite(medians)], initial=high)) - _DEEPEST)
+    if not summary.quantity.is_rate and np.any(np.isfinite(medians)):
+        low = max(low, float(np.min(medians[np.isfinite(medians)])) - _DEEPEST)
     margin = 0.03 * (high - low) or 0.5
     return low - margin, high + margin
 
