@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,16 +15,13 @@ from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import inner_section
 
-if TYPE_CHECKING:
-    from nullpose.scenario.scenario import Scenario
-
 __all__ = ["scenario_faults", "shared_names"]
 
 SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
 
 
-def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
+def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
     """Yields the faults between the values of a scenario, each with its place.
 
     Two nodes or jammers may be as close as they like, within the keep-out radius too, but not at the
@@ -69,7 +66,7 @@ def scenario_faults(scenario: Scenario, stated: Mapping[str, object]) -> Iterato
         yield from airspace_faults(airspace, placed, error_m)
 
 
-def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+def _objective_faults(scenario: Any, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     """Yields what the objective needs and is not given, and what is given and has no meaning under it."""
     record = RECORDS.get(scenario.objective)
     if record is None:
@@ -88,7 +85,7 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
 
 
 def _stated(
-    what: str, scenario: Scenario, points: Mapping[Place, GroundPoint]
+    what: str, scenario: Any, points: Mapping[Place, GroundPoint]
 ) -> Iterator[tuple[Place, Sequence[str], list[Place]]]:
     """Yields each place at which something may be stated, what may state it there, and the places that do.
 

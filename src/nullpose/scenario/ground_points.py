@@ -8,12 +8,15 @@ from typing import Any, ClassVar, Self
 from pydantic import Field
 
 from nullpose.scenario.names import Label
-from nullpose.scenario.origin import GEODETIC_KEYS, Altitude, Latitude, Longitude
 from nullpose.scenario.section import Section
 from nullpose.scenario.transmitter import POWER, Powered
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
+    GEODETIC_KEYS,
+    Altitude,
     DecibelMilliwatts,
+    Latitude,
+    Longitude,
     Position,
     RatioDecibels,
     Watts,

@@ -11,8 +11,8 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.ground_points import Node
 from nullpose.scenario.listed_nodes import ListedNode
-from nullpose.scenario.origin import GEODETIC_KEYS
 from nullpose.scenario.rules import MOST_MEMBERS
+from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import listed, printable, unknown
 

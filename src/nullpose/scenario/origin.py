@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,27 +13,18 @@ from pydantic import Field, ValidationError
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.geodesy import enu_from_geodetic
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.section import Section
-
-if TYPE_CHECKING:
-    from nullpose.scenario.ground_points import GroundPoint
+from nullpose.scenario.units import GEODETIC_KEYS, Altitude, Latitude, Longitude
 
 __all__ = [
     "FARTHEST_M",
-    "GEODETIC_KEYS",
     "POINT_LISTS",
-    "Altitude",
-    "Latitude",
-    "Longitude",
     "Origin",
     "is_placed",
     "located",
     "origin_faults",
 ]
-
-GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
-"""The keys that state a place on the Earth: all three, or none."""
 
 FARTHEST_M = 1e5
 """A point farther from the origin than this is taken for a mistake [m]."""
@@ -42,17 +33,6 @@ _SAME_M = 1e-3  # position_m and the geodetic keys may be given together if they
 POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
 """The keys of a scenario's points."""
 _WORDS = "lat_deg, lon_deg and alt_m"
-
-Latitude = Annotated[
-    float, Quantity("a latitude in degrees", -90.0, 90.0, "north of the equator is positive")
-]
-Longitude = Annotated[
-    float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
-]
-Altitude = Annotated[
-    float,
-    Quantity("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
-]
 
 
 class Origin(Section):

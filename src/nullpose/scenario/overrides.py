@@ -12,9 +12,10 @@ from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import path_of, refusal
-from nullpose.scenario.origin import GEODETIC_KEYS, POINT_LISTS
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, inner_section
+from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.wording import listed, nearest, plain
 
 __all__ = ["Override", "apply_overrides", "parse_override"]

@@ -7,7 +7,9 @@ from typing import Annotated
 from nullpose.scenario.rules import Ascending, ListOf, Quantity
 
 __all__ = [
+    "GEODETIC_KEYS",
     "SPEED_OF_LIGHT_M_PER_S",
+    "Altitude",
     "AttitudeDegrees",
     "DecibelMilliwatts",
     "Decibels",
@@ -15,6 +17,8 @@ __all__ = [
     "ErrorMetres",
     "Hertz",
     "KeepOutMetres",
+    "Latitude",
+    "Longitude",
     "Metres",
     "MountDegrees",
     "NullDepthDecibels",
@@ -33,6 +37,9 @@ __all__ = [
     "ratio_from_db",
     "watts_from_dbm",
 ]
+
+GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
+"""The keys that state a place on the Earth: all three, or none."""
 
 SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
@@ -85,6 +92,17 @@ Weight = Annotated[
     float, Quantity("a weight", 1e-30, 1e30, "a weight is never zero or negative; 1 is the one of the others")
 ]
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
+
+Latitude = Annotated[
+    float, Quantity("a latitude in degrees", -90.0, 90.0, "north of the equator is positive")
+]
+Longitude = Annotated[
+    float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
+]
+Altitude = Annotated[
+    float,
+    Quantity("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
+]
 
 
 Position = Annotated[

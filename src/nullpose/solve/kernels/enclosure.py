@@ -91,6 +91,24 @@ def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
 
 
 @inner_kernel
+def enclose_entries(count, half, c, dc, hc, boxed):
+    """Fill bounds on each entry and on its gradient over the box; return n at the centre, and its bounds."""
+    n_low = n_high = n = 0.0
+    for m in range(count):
+        swing = 0.0
+        for i in range(3):
+            bend = 0.0
+            for k in range(3):
+                bend += abs(hc[m, i, k]) * half[k]
+            boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
+            swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
+        boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
+        low, high = square((boxed[m, 0, 0], boxed[m, 0, 1]))
+        n, n_low, n_high = n + c[m] * c[m], n_low + low, n_high + high
+    return n, n_low, n_high
+
+
+@inner_kernel
 def relative_slopes(value, slope, swing, low, high):
     """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity in [low, high]."""
     bottom, top = slope - swing, slope + swing
@@ -161,19 +179,8 @@ def link_jet(family, j, axis_field, centre, half, jet):
         low, high = square((u[m] - swing, u[m] + swing))
         b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
     sigma, beta, dn = scratch(3, 2), scratch(3, 2), scratch(3, 2)
-    boxed = scratch(4, 4, 2)  # of each entry: bounds on the value and on the gradient
-    n_low = n_high = n = 0.0
-    for m in range(count):
-        swing = 0.0
-        for i in range(3):
-            bend = 0.0
-            for k in range(3):
-                bend += abs(hc[m, i, k]) * half[k]
-            boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
-            swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
-        boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
-        low, high = square((boxed[m, 0, 0], boxed[m, 0, 1]))
-        n, n_low, n_high = n + c[m] * c[m], n_low + low, n_high + high
+    boxed = scratch(4, 4, 2)
+    n, n_low, n_high = enclose_entries(count, half, c, dc, hc, boxed)
     w = 1.0 / (b * s * s)
     jet[0] = n * w
     for i in range(3):
