@@ -57,16 +57,26 @@ class Exchange:
         inner: the scenario, prepared.
         axis_field: the axes that the airframe reaches.
         limits: the gap between bound and guarantee that is aimed at, and what all proofs may cost.
+        position_m: (3,) position of the pose to begin with.
+        axis: (3,) its axis, of any length.
     """
 
-    def __init__(self, inner: Inner, axis_field: AxisField, limits: SolveOptions) -> None:
+    def __init__(
+        self,
+        inner: Inner,
+        axis_field: AxisField,
+        limits: SolveOptions,
+        position_m: FloatArray,
+        axis: FloatArray,
+    ) -> None:
         self.inner, self.axis_field, self.limits = inner, axis_field, limits
         blank = ErrorCase.none(inner.scenario)
         self.cases: list[BindingCase] = []
+        self.best = Visited(position_m, axis, -math.inf)
         self.add([BindingCase(ratio, blank) for ratio in range(inner.n_ratios)])
-        self.best: Visited | None = None
+        self.add(self.visit(position_m, axis))
         self.incumbent: Incumbent | None = None
-        self.starts = self.evaluations = self.boxes = self.rounds = 0
+        self.starts = self.evaluations = self.boxes = 0
         self.upper_bound: float | None = None
         self.reason = ""
 
@@ -82,7 +92,6 @@ class Exchange:
 
     def accuracy(self) -> float:
         """Return how close the guarantee of the best pose has to be to its worst case."""
-        assert self.best is not None
         finest, coarsest = _ACCURACIES
         return min(coarsest, max(finest, _FINER * self.limits.ratio_gap(self.best.worst)))
 
@@ -113,7 +122,7 @@ class Exchange:
         unit = axis / np.linalg.norm(axis)
         worst = self.inner.worst(position_m, unit)
         value = min(one.worst for one in worst)
-        if self.best is None or value > self.best.worst:
+        if value > self.best.worst:
             self.best = Visited(position_m.copy(), unit, value)
         return [one.binding for one in worst if one.worst < level * (1.0 - _SAME)]
 
@@ -131,7 +140,6 @@ class Exchange:
             found = self._search_once(settings)
             self.incumbent, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
-            assert self.best is not None
             close = promised <= self.level(self.best.worst, _SHARE)
             if time.perf_counter() > deadline or (close and settings is thorough):
                 return  # the family stays the one that was searched
@@ -143,15 +151,11 @@ class Exchange:
     def _search_once(self, settings: SearchSettings) -> Incumbent:
         """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
         family, field = self.family, self.axis_field
-        self.rounds += 1
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
-            ends = [multistart(family, field, seed=self.limits.seed, settings=settings)]
-        self.starts += ends[0].starts
-        if self.best is not None:
-            ends.append(
-                climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
-            )
-            self.starts += 1
+            anywhere = multistart(family, field, seed=self.limits.seed, settings=settings)
+        near = climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
+        ends = anywhere, near
+        self.starts += anywhere.starts + 1
         self.evaluations += sum(end.evaluations for end in ends)
         return max(ends, key=lambda end: end.log_value)
 

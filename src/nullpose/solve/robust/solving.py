@@ -15,7 +15,7 @@ from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Objective, Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.exchange import Exchange
 from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
@@ -55,8 +55,7 @@ def solve_robust(
     began = time.perf_counter()
     nominal = solve(scenario, certify=False, seed=limits.seed).pose
     field = AxisField.within(*scenario.axis_band)
-    exchange = Exchange(inner, field, limits)
-    exchange.add(exchange.visit(nominal.position_m, nominal.antenna_axis))
+    exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
         precompile()  # compiling must not count against the time limit
     clock = time.perf_counter()
@@ -70,11 +69,13 @@ def solve_robust(
         exchange.reason = INTERRUPT
     robust = _best(exchange)
     status, reason = _status(exchange, robust.guarantee.lower)
+    objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
     return Result(
         scenario=scenario,
         scheme="robust",
         status=status,
-        objective=_objective(scenario, robust.guaranteed, exchange.upper_bound),
+        # what is guaranteed rests on a floating-point proof, whether a bound is asked for or not
+        objective=replace(objective, rigour=Rigour.FLOATING_POINT),
         pose=robust.pose,
         links=evaluate(scenario, robust.pose),
         reason=reason,
@@ -89,13 +90,7 @@ def solve_robust(
     )
 
 
-def _objective(scenario: Scenario, guaranteed: float, ratio_bound: float | None) -> Objective:
-    """Return what is guaranteed and the bound on it, both of which rest on floating-point proofs."""
-    return replace(objective_of(scenario, guaranteed, ratio_bound), rigour=Rigour.FLOATING_POINT)
-
-
 def _best(exchange: Exchange) -> GuardedPose:
-    assert exchange.best is not None, "the nominal pose was visited"
     pose = Pose.of_airframe(exchange.inner.scenario, exchange.best.position_m, exchange.best.axis)
     return _guarded(exchange, pose)
 
