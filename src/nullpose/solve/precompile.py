@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +19,7 @@ from nullpose.family import AxisField, Family
 __all__ = ["compile_proof", "compile_search", "precompile"]
 
 _WAIT_S = 300.0  # the other process is ended then, and what it compiled is compiled again
+_ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
 _PROGRAM = "from nullpose.solve.precompile import compile_proof as c; c()"
 
 
@@ -30,6 +32,12 @@ def precompile() -> None:
 
     if _is_compiled(branch):
         return
+    with _ONE_AT_A_TIME:
+        if not _is_compiled(branch):
+            _compile_both(branch)
+
+
+def _compile_both(branch: Any) -> None:
     cache_path = branch.stats.cache_path
     cached = cache_path is None or any(Path(cache_path).glob("branch.branch-*.nbi"))
     other = None if cached else _started()

@@ -3,7 +3,7 @@
 As numba has it, every function is optimised and turned into machine code by itself, and again in whatever
 calls it, so that what lies ten calls deep is done ten times. Here a kernel is compiled as a *whole* where
 Python calls it, and as a *part* where kernels do: a part is lowered and no more, and is optimised within the
-whole.
+whole. Of the compiler's passes only those are run that a kernel can need.
 """
 
 from __future__ import annotations
@@ -14,11 +14,42 @@ from typing import Any
 from llvmlite import binding
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, Flags
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
+from numba.core.typed_passes import (
+    AnnotateTypes,
+    IRLegalization,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    DeadBranchPrune,
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    RewriteSemanticConstants,
+    TranslateByteCode,
+)
 
 __all__ = ["LinkedDispatcher", "Part", "entry_of"]
+
+_PASSES = (
+    TranslateByteCode,
+    FixupArgs,
+    IRProcessing,
+    RewriteSemanticConstants,
+    DeadBranchPrune,
+    GenericRewrites,
+    ReconstructSSA,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+    IRLegalization,
+    AnnotateTypes,
+)
 
 
 class _Whole(JITCodeLibrary):
@@ -50,14 +81,36 @@ class _Part(_Whole):
         """Do nothing: an environment belongs to machine code."""
 
 
+class _Flags(Flags):
+    """Options of the compiler, which it compares half a million times: here by what was stated of them."""
+
+    __slots__ = ()
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._values))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Flags) and self._values == other._values
+
+
 class _Compiler(CompilerBase):
     library: Any = _Whole
 
+    def __init__(
+        self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Flags, variables: Any
+    ) -> None:
+        super().__init__(typing, target, library, args, result, _Flags(flags), variables)
+
     def define_pipelines(self) -> list[Any]:
-        state = self.state
+        from nullpose.solve.kernels.lowering import KernelLowering  # import a part of the compiler
+
+        state, passes = self.state, PassManager("kernel")
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        return [DefaultPassBuilder.define_nopython_pipeline(state)]
+        for each in (*_PASSES, KernelLowering, NoPythonBackend):
+            passes.add_pass(each, each._name)
+        passes.finalize()
+        return [passes]
 
 
 class _PartCompiler(_Compiler):

@@ -23,24 +23,16 @@ _MOST = 4096  # of them in one array: a thread's stack is small
 
 def _allocate(context: Any, builder: Any, kind: Any, shape: list[int], fill: bool) -> Any:
     """Return the value of an array in the calling kernel's own frame."""
-    from numba.np.arrayobj import make_array, populate_array  # a part of the compiler
+    from nullpose.solve.kernels.lowering import array_value  # imports a part of the compiler
 
     count = math.prod(shape)
     # in the entry block: one place however often the line is passed
     data = cgutils.alloca_once(builder, context.get_value_type(kind.dtype), size=count)
     if fill:
         cgutils.memset(builder, data, context.get_constant(types.intp, _ITEM * count), 0)
-    array = make_array(kind)(context, builder)
-    strides = [_ITEM * math.prod(shape[i + 1 :]) for i in range(len(shape))]
-    populate_array(
-        array,
-        data=data,
-        shape=[context.get_constant(types.intp, n) for n in shape],
-        strides=[context.get_constant(types.intp, n) for n in strides],
-        itemsize=context.get_constant(types.intp, _ITEM),
-        meminfo=None,
-    )
-    return array._getvalue()
+    lengths = [context.get_constant(types.intp, n) for n in shape]
+    strides = [context.get_constant(types.intp, _ITEM * math.prod(shape[i + 1 :])) for i in range(len(shape))]
+    return array_value(builder, data, lengths, strides)
 
 
 def _maker(item: Any, fill: bool) -> Any:
