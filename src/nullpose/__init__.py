@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from nullpose.scenario import (
         Airframe,
         Airspace,
+        Antenna,
         Array,
         Eavesdropper,
         Jammer,
@@ -60,6 +61,7 @@ __all__ = [
     "Airframe",
     "AirframeComparison",
     "Airspace",
+    "Antenna",
     "Array",
     "ArraySolution",
     "Eavesdropper",
@@ -124,6 +126,7 @@ _ROOMS = {
     "nullpose.scenario": (
         "Airframe",
         "Airspace",
+        "Antenna",
         "Array",
         "Eavesdropper",
         "Jammer",

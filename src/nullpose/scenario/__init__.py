@@ -2,6 +2,7 @@
 
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.antenna import Antenna
 from nullpose.scenario.array import Array
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.json_schema import json_schema
@@ -16,6 +17,7 @@ from nullpose.scenario.transmitter import Transmitter
 __all__ = [
     "Airframe",
     "Airspace",
+    "Antenna",
     "Array",
     "Eavesdropper",
     "GroundPoint",

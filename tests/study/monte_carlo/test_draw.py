@@ -179,6 +179,16 @@ def test_files_take_turns(spec: Spec, paper: Scenario) -> None:
     assert draw_scene(drawn, 0).jammers[0].position_m != draw_scene(drawn, 2).jammers[0].position_m
 
 
+def test_what_is_not_drawn_stays(spec: Spec, paper: Scenario) -> None:
+    """Every table of a file is kept in its scenes, the antenna too; so is one stated in the spec."""
+    stated = paper.to_dict() | {"antenna": {"null_depth_db": 30.0}, "airframe": {"tilt_max_deg": 10.0}}
+    tables = {key: stated[key] for key in ("airspace", "receiver", "antenna", "airframe")}
+    for scene in ({"scenarios": [stated]}, tables):
+        drawn = draw_scene(spec(scene=scene), 0)
+        assert drawn.antenna_record.leak == pytest.approx(1e-3)
+        assert drawn.airframe.tilt_max_deg == 10.0
+
+
 @pytest.mark.parametrize("index", [-1, 12, 1.5, True])
 def test_a_scene_that_is_not_there(spec: Spec, index: Any) -> None:
     """Numbers outside the study are refused, with those that are in it."""

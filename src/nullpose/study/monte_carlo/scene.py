@@ -11,6 +11,7 @@ from nullpose.objectives import RECORDS, USUAL
 from nullpose.scenario import (
     Airframe,
     Airspace,
+    Antenna,
     Array,
     Eavesdropper,
     GroundPoint,
@@ -41,7 +42,7 @@ class SceneBase(Section):
         file: a scenario file.
         files: several, which are the scenes in turn.
         scenarios: what the files hold; read together with the spec.
-        objective, origin, airspace, airframe, array, receiver, transmitter: as in a scenario file.
+        objective, origin, airspace, airframe, antenna, array, receiver, transmitter: as in a scenario file.
         nodes, jammers, eavesdroppers: points that are not drawn, as in a scenario file.
     """
 
@@ -68,6 +69,7 @@ class SceneBase(Section):
     origin: Origin | None = Field(default=None, description="A table headed [scene.origin].")
     airspace: Airspace | None = Field(default=None, description="A table headed [scene.airspace].")
     airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
+    antenna: Antenna | None = Field(default=None, description="A table headed [scene.antenna].")
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
     receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
     transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
@@ -122,13 +124,4 @@ def _in_metres(point: GroundPoint) -> GroundPoint:
     return point if point.lat_deg is None else point.model_copy(update={"position_m": point.position_m})
 
 
-_TABLES = (
-    "objective",
-    "origin",
-    "airspace",
-    "airframe",
-    "array",
-    "receiver",
-    "transmitter",
-    *POINT_LISTS,
-)
+_TABLES = tuple(key for key in Scenario.model_fields if key not in ("name", "nodes_from"))
