@@ -2,6 +2,7 @@
 
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import draw_scene, scene_at
+from nullpose.study.monte_carlo.ledger import StudyProgress
 from nullpose.study.monte_carlo.loading import load_spec
 from nullpose.study.monte_carlo.reading import (
     StudyStatus,
@@ -10,7 +11,7 @@ from nullpose.study.monte_carlo.reading import (
     study_spec,
     study_status,
 )
-from nullpose.study.monte_carlo.run import StudyProgress, run_study
+from nullpose.study.monte_carlo.run import run_study
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = [

@@ -17,7 +17,7 @@ from nullpose.study.monte_carlo.versions import fingerprint
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-    from nullpose.study.monte_carlo.run import Ledger
+    from nullpose.study.monte_carlo.ledger import Ledger
 
 __all__ = ["solver_of"]
 
