@@ -110,7 +110,7 @@ class _Lower(Lower):
             return [_constant(part) for part in (index if isinstance(index, tuple) else (index,))]
         kind: Any = self.typeof(index.name)
         value = self.loadvar(index.name)
-        if not isinstance(kind, types.BaseTuple):
+        if not isinstance(kind, types.Tuple | types.UniTuple):
             return [self._place(kind, value)]
         parts = cgutils.unpack_tuple(self.builder, value)
         return [self._place(each, parts[i]) for i, each in enumerate(kind.types)]
