@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -63,13 +64,16 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any], kind: Any =
 
 @cache
 def _drop_outdated(cache_path: str) -> None:
-    """Delete cached kernels older than the newest source of a kernel or of what kernels take.
+    """Delete the cached kernels unless they were made of the present sources of kernels and what these take.
 
     A cached kernel holds the code of those it calls, but numba compares only the file of the kernel itself.
     """
-    sources = [*Path(__file__).parent.glob("*.py"), Path(records.__file__), Path(ratios.__file__)]
-    newest = max(source.stat().st_mtime for source in sources)
-    for index in Path(cache_path).glob("*.nbi"):
-        with contextlib.suppress(OSError):
-            if index.stat().st_mtime < newest:
-                index.unlink()
+    sources = [*sorted(Path(__file__).parent.glob("*.py")), Path(records.__file__), Path(ratios.__file__)]
+    present = sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+    stamp = Path(cache_path) / "kernels.sha256"
+    with contextlib.suppress(OSError):
+        if stamp.exists() and stamp.read_text() == present:
+            return
+        for index in Path(cache_path).glob("*.nbi"):
+            index.unlink(missing_ok=True)
+        stamp.write_text(present)
