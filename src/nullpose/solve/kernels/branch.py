@@ -37,12 +37,11 @@ from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, out_of_reach, will_fail
 from nullpose.solve.kernels.expansion import frame_at, min_distance
-from nullpose.solve.kernels.frames import best_frame
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.local_coordinates import axis_at
 from nullpose.solve.kernels.multipliers import free_multipliers
-from nullpose.solve.kernels.records import Workspace
+from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
 
@@ -71,6 +70,49 @@ _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axe
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
+
+
+@inner_kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
+    strongest = 0.0
+    anchor = -1
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        d = 0.0
+        for i in range(3):
+            d += (family.points_m[j, i] - centre[i]) ** 2
+        if weight > strongest * d:
+            strongest, anchor = weight / d, j
+    return anchor
+
+
+@inner_kernel
+def best_frame(family, axis_field, row):
+    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+
+    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
+    larger: worth it where one interferer outweighs the rest.
+    """
+    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
+    anchor = strongest_point(family, centre)
+    if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
+        return WORLD, anchor
+    rho = min_distance(points, anchor, centre, half)
+    still = turning = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        a = min_distance(points, family.numerator_point[k], centre, half)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (a * a * a * a)
+        still += 6.0 * scale
+        turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
+    for e in range(family.denominator_weight.shape[0]):
+        a = min_distance(points, family.denominator_point[e], centre, half)
+        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
+        still += 4.0 * scale
+        if family.denominator_point[e] != anchor:
+            turning += scale * (4.0 + a / rho * (12.0 + 6.31 * a / rho))
+    return (TOWARDS_POINT if turning < still else WORLD), anchor
 
 
 @inner_kernel
