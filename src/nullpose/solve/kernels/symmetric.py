@@ -12,6 +12,7 @@ from nullpose.solve.kernels.vectors import cross, dot, perpendicular, store, uni
 
 __all__ = [
     "add_scaled",
+    "add_square",
     "adjugate",
     "cholesky_factor",
     "cholesky_solve",
@@ -105,6 +106,14 @@ def matrix_of(form, matrix):
 def form_product(a, b):
     """Return the trace of the product of two forms."""
     return dot(a, b) + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+
+
+@inner_kernel
+def add_square(factor, v, form):
+    """Add a multiple of ``v v^T`` to a form."""
+    for i in range(3):
+        for j in range(i, 3):
+            form[_PLACE[i, j]] += factor * v[i] * v[j]
 
 
 @inner_kernel

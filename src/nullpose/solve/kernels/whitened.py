@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solve.kernels.box import CELL, CENTRE, HALF, LEVEL
+from nullpose.solve.kernels.box import CENTRE, HALF, LEVEL
 from nullpose.solve.kernels.cells import CONSTRAINTS, constraint, is_level
 from nullpose.solve.kernels.forms import add_form, congruence, inverse_factor, seen_from
 from nullpose.solve.kernels.jit import inner_kernel
@@ -67,8 +67,7 @@ def constraint_forms(axis_field, basis, row, back, forms, numbers, scales):
 
     A constraint ``Q >= 0`` at a level t is the form ``t I + s Q``: it is at least t where Q is not negative,
     and there are multipliers with it that bring the largest eigenvalue below t whatever the scale s > 0 is
-    if there are any. The scale makes s Q about t in the middle of a cell: were it small there, a duality gap
-    would not show.
+    if there are any. The scale makes the entries of s Q up to t.
     """
     raw, turned = scratch(6), scratch(6)
     sides, level = np.int64(0), row[LEVEL]
@@ -83,14 +82,12 @@ def constraint_forms(axis_field, basis, row, back, forms, numbers, scales):
         congruence(turned, back, form)
         if is_level(axis_field):
             form[2] = form[4] = form[5] = 0.0
-        size = 0.0
+        largest = 0.0
         for m in range(6):
-            size = max(size, abs(form[m]))
-        if q < 2:
-            size *= 0.25 * (row[CELL + 2 * q + 1] - row[CELL + 2 * q]) ** 2
+            largest = max(largest, abs(form[m]))
         for m in range(6):
-            form[m] = level * (form[m] / size + (1.0 if m < 3 else 0.0))
-        numbers[sides], scales[sides] = q, level / size
+            form[m] = level * (form[m] / largest + (1.0 if m < 3 else 0.0))
+        numbers[sides], scales[sides] = q, level / largest
         sides += 1
     return sides
 
