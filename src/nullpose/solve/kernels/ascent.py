@@ -28,7 +28,6 @@ POOL = 36
 _MOST = 20  # of them in an ascent
 _STEPS = 7
 _PIVOTS = 12
-_NEGATIVE = -1e-12  # a multiplier below it is
 _ADDED = 3  # forms taken in at a step
 _GOOD_ENOUGH = 0.95  # of the level: multipliers below it may be kept although they are not the best
 
@@ -104,26 +103,45 @@ def most_violated(pool, m, total, answer, slack):
 
 
 @inner_kernel
+def exchange(pool, enter, answer):
+    """Put a form into a full active set for the one that leaves the multipliers least negative."""
+    active = pool.active
+    best, leave = -math.inf, -1
+    for i in range(3):
+        kept, active[i] = active[i], enter
+        if solve_active(pool, np.int64(3), answer):
+            least = min(answer[0], min(answer[1], answer[2]))
+            if least > best:
+                best, leave = least, i
+        active[i] = kept
+    if leave >= 0:
+        active[leave] = enter
+    return leave >= 0
+
+
+@inner_kernel
 def model_optimum(pool, m, total, slack, answer):
     """Return how many forms are active where the model is best, filling them and their multipliers; or 0."""
     active = pool.active
     for _ in range(_PIVOTS):
         if not solve_active(pool, m, answer):
             return 0
-        least = 0
-        for i in range(1, m):
-            least = i if answer[i] < answer[least] else least
-        if answer[least] < _NEGATIVE:
+        drop, lowest = -1, -1e-12
+        for i in range(m):
+            if answer[i] < lowest:
+                lowest, drop = answer[i], i
+        if drop >= 0:
             m -= 1
-            active[least] = active[m]
+            active[drop] = active[m]
             continue
         enter = most_violated(pool, m, total, answer, slack)
         if enter < 0:
             return m
         if m < 3:
+            active[m] = enter
             m += 1
-            least = m - 1
-        active[least] = enter
+        elif not exchange(pool, enter, answer):
+            return 0
     return 0
 
 
