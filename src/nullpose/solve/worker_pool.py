@@ -68,7 +68,7 @@ class _Worker:
             if self.filled == len(self.leaves):
                 _make_room(self.leaves, self.filled + min(self.filled, _BLOCK))
             stacks = self.stack, self.top, self.leaves, self.filled
-            code, self.top, self.filled, done = kernel(*stacks, budget - total, self.position_m, self.axis)
+            code, self.top, self.filled, done, _ = kernel(*stacks, budget - total, self.position_m, self.axis)
             total += done
             self.better = code == BETTER
         return total

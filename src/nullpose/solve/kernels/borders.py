@@ -20,7 +20,7 @@ from nullpose.solve.kernels.zones import (
     zone_alternatives,
 )
 
-__all__ = ["border_multipliers", "border_sum", "borders", "choose_border", "slope_and_rest"]
+__all__ = ["border_multipliers", "borders", "choose_border", "slope_and_rest"]
 
 
 @inner_kernel
@@ -117,26 +117,3 @@ def border_multipliers(slopes, count, gradient, nu):
         return nu[lead] > 0.0
     nu[0] = max(0.0, pull[0] / gram[0])
     return nu[0] > 0.0
-
-
-@inner_kernel
-def border_sum(domain, row, sides, count, gradient, total):
-    """Fill the sum of constraints whose multipliers cancel a gradient best; return whether there is one.
-
-    Its value at the box's centre, its gradient, and its second derivative along each axis. The row is given
-    the multiplier of a ball; a zone's multipliers are found again by whoever checks.
-    """
-    nu, ways, values = scratch(2), scratch(2, 3), scratch(2)
-    bends, axes = scratch(2), scratch_int(2)
-    for c in range(count):
-        values[c], bends[c], axes[c] = slope_and_rest(sides[c], row, ways[c])
-    if not border_multipliers(ways, count, gradient, nu):
-        return False
-    total[:] = 0.0
-    for c in range(count):
-        total[0] += nu[c] * values[c]
-        for i in range(3):
-            total[1 + i] += nu[c] * ways[c, i]
-            total[4 + i] += nu[c] * bends[c] if i < axes[c] else 0.0
-    row[NU] = nu[0] if row[BALL] < domain.keep_out_points_m.shape[0] else 1.0
-    return True

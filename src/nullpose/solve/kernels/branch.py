@@ -1,8 +1,8 @@
 """Branch and bound: boxes of positions, and where multipliers alone cannot decide, cells of axes.
 
-Depth first at one fixed level: a box is excluded (see ``exclusion`` and ``curved``), or it is halved, or,
-where the gap between the dual and what one axis reaches outweighs the size of the box, it is split into cells
-of axes.
+Depth first at one fixed level: a node is excluded (see ``exclusion`` and ``curved``), or its box is halved,
+or, where the gap between the dual and what one axis reaches outweighs the size of the box, it is split into
+cells of axes.
 """
 
 from __future__ import annotations
@@ -39,32 +39,29 @@ from nullpose.solve.kernels.exclusion import excludes, out_of_reach, will_fail
 from nullpose.solve.kernels.expansion import frame_at, min_distance
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
-from nullpose.solve.kernels.local_coordinates import axis_at
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
 
-__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "PARTS", "branch"]
+__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch"]
 
 DONE = 0
 LIMIT = 1
 FULL = 2
 BETTER = 3
 
-PARTS = 10
-"""Rows that a stack is to have free: for the parts of a box and one more."""
 EARLY = 0.0
 """Split axes wherever there is a duality gap that outweighs the box."""
 LATE = 1.0
-"""Split axes only where no multipliers exclude even the box's centre: mostly far fewer boxes, or far more."""
+"""Split axes only where no multipliers exclude even the box's centre: mostly far fewer nodes, or far more."""
 
 _EXCLUDED = 0
 _BY_POSITION = 1
 _BY_AXIS = 2
 _BETTER = 3
 _FORESEEN = 4
-_HALVINGS = 3  # of a box that failed, its parts unseen: as many as it has sides
+_HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
@@ -117,33 +114,35 @@ def best_frame(family, axis_field, row):
 
 @inner_kernel
 def examine(family, domain, axis_field, goal, row, workspace, axis):
-    """Return what becomes of a box, and the side to halve.
+    """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
-    Fills the box's kind, its multipliers, and an axis if it beats the best.
+    Fills the node's kind, its multipliers, and an axis if it beats the best.
     """
     side = longest_side(row)
     kind = out_of_reach(family, domain, row)
     if kind >= 0:
         row[KIND] = kind
-        return _EXCLUDED, side
-    radius = math.sqrt(row[HALF] ** 2 + row[HALF + 1] ** 2 + row[HALF + 2] ** 2)
+        return _EXCLUDED, side, 0
+    half = row[HALF:LEVEL]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     nearest = math.inf
     for j in range(family.points_m.shape[0]):
-        nearest = min(nearest, min_distance(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL]))
+        nearest = min(nearest, min_distance(family.points_m, j, row[CENTRE:HALF], half))
     if not nearest > _CLOSE * radius:
-        return _BY_POSITION, side
+        return _BY_POSITION, side, 0
     if axis_field.kind == 1:
-        length, change = axis_clearance(axis_field, row[CENTRE:HALF], row[HALF:LEVEL])
+        length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
     if axis_field.kind >= 2 and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
-        return _EXCLUDED, side
-    return examine_free(family, domain, axis_field, goal, row, radius, nearest, workspace, axis), side
+        return _EXCLUDED, side, 0
+    verdict, sought = examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis)
+    return verdict, side, sought
 
 
 @inner_kernel
-def has_multipliers(row, other):
+def same_multipliers(row, other):
     """Return whether two rows have the same multipliers."""
     same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
     for s in range(int(row[COUNT])):
@@ -152,30 +151,32 @@ def has_multipliers(row, other):
 
 
 @inner_kernel
-def examine_free(family, domain, axis_field, goal, row, radius, nearest, workspace, axis):
-    """Return what becomes of a box whose axis is free."""
-    centre, half, basis = row[CENTRE:HALF], row[HALF:LEVEL], scratch(3, 3)
+def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
+    """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    basis = scratch(3, 3)
     is_free, is_band = axis_field.kind != 1, axis_field.kind >= 2
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
-    row[KIND], row[ANCHOR] = kind, anchor = best_frame(family, axis_field, row)
+    kind, anchor = best_frame(family, axis_field, row)
     frame = frame_at(family.points_m, kind, anchor, centre, half, basis)
-    denominator, rests = zeroed(4, 6), (0.0, 0.0)
+    denominator, slopes = zeroed(6), zeroed(3, 6)
+    rests = (0.0, 0.0)
     if family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)
-        rests = expand_denominator(
-            family, first, row[LEVEL], frame, centre, half, denominator[0], denominator[1:]
-        )
-    below = (denominator, rests)
+        rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
+    row[KIND], row[ANCHOR] = kind, anchor
+    below = (denominator, slopes, rests)
     if excludes(family, domain, axis_field, frame, row, below, workspace):
-        return _EXCLUDED
-    if row[FACE] < 0.0 and not has_multipliers(row, goal.multipliers):
+        return _EXCLUDED, 0
+    if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
         copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
         if excludes(family, domain, axis_field, frame, row, below, workspace):
-            return _EXCLUDED
+            return _EXCLUDED, 0
     coarseness = _COARSENESS * radius / nearest
     primal, reached, followed = free_multipliers(
-        family, axis_field, basis, row, denominator[0], coarseness, workspace, axis
+        family, axis_field, basis, row, denominator, coarseness, workspace, axis
     )
     if is_free and followed and contains(domain, centre):
         value = reached * row[LEVEL]
@@ -184,17 +185,18 @@ def examine_free(family, domain, axis_field, goal, row, radius, nearest, workspa
                 min_log_ratio(family, centre, axis, workspace.log_denominators, workspace.values)
             )
         if value > goal.best * (1.0 + _BEATS):
-            return _BETTER
+            return _BETTER, 1
     if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
-        return _EXCLUDED
+        return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
-    may_gap = family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band
-    split_axes = may_gap and followed and primal - reached > coarseness and primal > goal.axes_above
-    if is_free and (split_axes or radius == 0.0):  # one position has no halves
-        return _BY_AXIS
-    if primal >= 1.0:  # no part with the centre can be excluded
+    split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
+    split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = split_axes or radius == 0.0  # one position has no halves
+    if split_axes and is_free:
+        return _BY_AXIS, 1
+    if primal >= 1.0:
         workspace.rests[0] = math.inf
-    return _FORESEEN
+    return _FORESEEN, 1
 
 
 @inner_kernel
@@ -211,25 +213,28 @@ def lone_ratio(family, row, below):
 
 @inner_kernel
 def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
-    """Return what becomes of a box in which the position gives the axis, and the side to halve."""
-    half, jet, below, total = row[HALF:LEVEL], scratch(JET), workspace.jets, scratch(JET)
+    """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
+    half = row[HALF:LEVEL]
+    jet, below, total = scratch(JET), workspace.jets, scratch(JET)
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
     if lone_ratio(family, row, below):
-        return _EXCLUDED, 0
+        return _EXCLUDED, 0, 0
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return _EXCLUDED, 0
-    if not has_multipliers(row, goal.multipliers):
-        copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
-        if excludes_curved(family, domain, axis_field, row, below, jet, total):
-            return _EXCLUDED, 0
+        return _EXCLUDED, 0, 0
+    copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return _EXCLUDED, 0, 0
     reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
     if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
-        axis_at(axis_field, row[CENTRE:HALF], axis)
-        return _BETTER, 0
+        for m in range(3):
+            axis[m] = axis_field.offset[m]
+            for i in range(3):
+                axis[m] += axis_field.matrix[m, i] * row[CENTRE + i]
+        return _BETTER, 0, 1
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return _EXCLUDED, 0
-    return _BY_POSITION, impact(total, half)
+        return _EXCLUDED, 0, 1
+    return _BY_POSITION, impact(total, half), 1
 
 
 @inner_heap_kernel
@@ -239,26 +244,37 @@ def workspace_of(family):
     return Workspace(
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
         np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
-        np.empty((4, 6)), np.empty(2),
+        np.empty(6), np.empty((3, 6)), np.empty(2),
     )  # fmt: skip
 
 
 @inner_kernel
 def split_foreseen(row, side, forecast, level_axes, stack, top):
     """Push the parts of a box; halves of which it is foreseen that they fail are halved again unseen."""
-    halvings, first, place = scratch_int(PARTS), top, top
+    halvings, place = scratch_int(9), top
     top = split_position(row, side, stack, top)
     halvings[0] = halvings[1] = 1
+    first = place
     while place < top:
-        done = halvings[place - first] + 1
-        if done <= _HALVINGS and will_fail(forecast, row, stack[place], level_axes):
-            halves = split_position(stack[place], longest_side(stack[place]), stack, top)
-            copy_into(stack[halves - 1], stack[place])
-            halvings[place - first] = halvings[top - first] = done
-            top = halves - 1
+        done = halvings[place - first]
+        if done < _HALVINGS and will_fail(forecast, row, stack[place], level_axes):
+            halve(stack, place, top)
+            halvings[place - first] = halvings[top - first] = done + 1
+            top += 1
         else:
             place += 1
     return top
+
+
+@inner_kernel
+def halve(stack, place, top):
+    """Halve a box of the stack across its longest side: one half in its place, the other on the top."""
+    side = longest_side(stack[place])
+    copy_into(stack[place], stack[top])
+    half = 0.5 * stack[place, HALF + side]
+    stack[place, HALF + side] = stack[top, HALF + side] = half
+    stack[place, CENTRE + side] -= half
+    stack[top, CENTRE + side] += half
 
 
 @heap_kernel
@@ -282,31 +298,32 @@ def branch(
         better_u: output, (3,): its axis.
 
     Returns:
-        (code, top, filled, boxes worked off).
+        (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
     """
     workspace, row, axis = workspace_of(family), scratch(COLUMNS), scratch(3)
-    boxes = 0
+    boxes = sought = 0
     while top > 0:
         if boxes >= most:
-            return LIMIT, top, filled, boxes
-        if top + PARTS > stack.shape[0] or filled >= leaves.shape[0]:
-            return FULL, top, filled, boxes
+            return LIMIT, top, filled, boxes, sought
+        if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
+            return FULL, top, filled, boxes, sought
         boxes += 1
         top -= 1
         copy_into(stack[top], row)
         row[LEVEL] = level
-        verdict, side = examine(family, domain, axis_field, goal, row, workspace, axis)
+        verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
+        sought += new
         if verdict == _EXCLUDED:
             copy_into(row, leaves[filled])
             filled += 1
         elif verdict == _BETTER:
             copy_into(row[CENTRE:HALF], better_p)
             copy_into(axis, better_u)
-            return BETTER, top + 1, filled, boxes
+            return BETTER, top + 1, filled, boxes, sought
         elif verdict == _BY_AXIS:
             top = split_axis(row, is_level(axis_field), stack, top)
         elif verdict == _FORESEEN:
             top = split_foreseen(row, side, workspace, is_level(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
-    return DONE, top, filled, boxes
+    return DONE, top, filled, boxes, sought

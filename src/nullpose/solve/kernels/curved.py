@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.borders import border_sum, borders
+from nullpose.solve.kernels.borders import border_multipliers, borders, slope_and_rest
 from nullpose.solve.kernels.box import (
     BALL,
     CENTRE,
@@ -29,7 +29,7 @@ from nullpose.solve.kernels.enclosure import JET, link_jet
 from nullpose.solve.kernels.forms import entry
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solve.kernels.symmetric import add_scaled, copy_into, eigen3
+from nullpose.solve.kernels.symmetric import copy_into, eigen3
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["curved_multipliers", "denominator_jet", "excludes_curved", "impact"]
@@ -138,7 +138,7 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
         family: arrays of the family.
         domain: box, keep-out balls, forbidden pieces and zones.
         axis_field: (1, offset, matrix).
-        row: the box; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: (groups, JET) the jets of ``-t D_g``.
         jet: room for a jet.
         total: output, (JET,).
@@ -169,14 +169,25 @@ def excludes_allowed(domain, row, total):
     """Return whether a jet is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
-    border, bent = scratch(7), scratch(JET)
+    nu, ways, bent = scratch(2), scratch(2, 3), scratch(JET)
+    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
     for a in range(alternatives):
-        if not border_sum(domain, row, sides[a], counts[a], total[1:4], border):
+        for c in range(counts[a]):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
+        if not border_multipliers(ways, counts[a], total[1:4], nu):
             return False
         copy_into(total, bent)
-        add_scaled(1.0, border, bent)
+        for c in range(counts[a]):
+            bent[0] += nu[c] * values[c]
+            for i in range(3):
+                bent[1 + i] += nu[c] * ways[c, i]
+                if i < axes[c]:
+                    bent[4 + i] += nu[c] * bends[c]
         if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:
             return False
+        row[NU] = nu[0]
+    if alternatives > 0 and int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
     return alternatives > 0
 
 

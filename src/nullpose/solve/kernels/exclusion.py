@@ -1,4 +1,4 @@
-"""The test that excludes a box of a free axis: a weighted sum of forms that is negative all over its box.
+"""The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
 
 Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell, one for the band)
 exclude a box at a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.borders import border_sum, borders, choose_border
+from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
 from nullpose.solve.kernels.box import (
     ANCHOR,
     BALL,
@@ -37,58 +37,76 @@ from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.records import WORLD
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solve.kernels.symmetric import copy_table, top_eigenvector
+from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 __all__ = ["excludes", "out_of_reach", "will_fail"]
 
-_HOPED = 0.7  # of a remainder: a part with multipliers of its own does better than is foreseen
+_HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
 @inner_kernel
-def negative_over(linear, everywhere, across, middle, half, level_axes):
-    """Return whether a linear matrix and its remainder are negative definite at all corners of a box.
+def negative_at(matrix, slopes, x, y, z, level_axes):
+    """Return whether the linear matrix is negative definite at a step away, perhaps for level axes."""
+    a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
+    a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
+    a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+    minor = a0 * a1 - a3 * a3
+    if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
+        return False
+    if level_axes:
+        return True
+    a2 = matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2]
+    a4 = matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4]
+    a5 = matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5]
+    det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
+    return det > -_DEFINITE * a0 * a1 * a2
 
-    Args:
-        linear: (4, 6) a form at a point, and its slopes.
-        everywhere: isotropic remainder.
-        across: remainder on the first two axes besides.
-        middle: (3,) the box's centre, from that point.
-        half: (3,) its half sides.
-        level_axes: whether only horizontal axes count.
-    """
+
+@inner_kernel
+def failing_corner(matrix, slopes, middle, half, level_axes):
+    """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
     for corner in range(8):
         x = middle[0] + (half[0] if corner & 1 else -half[0])
         y = middle[1] + (half[1] if corner & 2 else -half[1])
         z = middle[2] + (half[2] if corner & 4 else -half[2])
-        a0 = everywhere + across + linear[0, 0] + x * linear[1, 0] + y * linear[2, 0] + z * linear[3, 0]
-        a1 = everywhere + across + linear[0, 1] + x * linear[1, 1] + y * linear[2, 1] + z * linear[3, 1]
-        a3 = linear[0, 3] + x * linear[1, 3] + y * linear[2, 3] + z * linear[3, 3]
-        minor = a0 * a1 - a3 * a3
-        if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
-            return False
-        if not level_axes:
-            a2 = everywhere + linear[0, 2] + x * linear[1, 2] + y * linear[2, 2] + z * linear[3, 2]
-            a4 = linear[0, 4] + x * linear[1, 4] + y * linear[2, 4] + z * linear[3, 4]
-            a5 = linear[0, 5] + x * linear[1, 5] + y * linear[2, 5] + z * linear[3, 5]
-            det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
-            if not det > -_DEFINITE * a0 * a1 * a2:
-                return False
-    return True
+        if not negative_at(matrix, slopes, x, y, z, level_axes):
+            return corner
+    return -1
+
+
+@inner_kernel
+def mended(matrix, slopes, half, corner, most, level_axes):
+    """Return whether a failing corner is negative once so much is taken off the diagonal."""
+    less = scratch(6)
+    copy_into(matrix, less)
+    for m in range(3):
+        less[m] -= most
+    x = half[0] if corner & 1 else -half[0]
+    y = half[1] if corner & 2 else -half[1]
+    z = half[2] if corner & 4 else -half[2]
+    return negative_at(less, slopes, x, y, z, level_axes)
 
 
 @inner_kernel
 def will_fail(forecast, row, part, level_axes):
-    """Return whether a part of a row's box will fail, by what the row's multipliers come to there."""
-    middle, half = scratch(3), part[HALF:LEVEL]
+    """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
+    middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
+    if forecast.rests[0] == math.inf:
+        return True
     whole = square = 0.0
     for i in range(3):
         middle[i] = part[CENTRE + i] - row[CENTRE + i]
         whole += row[HALF + i] ** 2
         square += half[i] ** 2
-    share, rests = _HOPED * square / whole, forecast.rests
-    return not negative_over(forecast.linear, share * rests[0], share * rests[1], middle, half, level_axes)
+    share = _HOPED * square / whole
+    everywhere, across = share * forecast.rests[0], share * forecast.rests[1]
+    copy_into(forecast.matrix, matrix)
+    matrix[0] += everywhere + across
+    matrix[1] += everywhere + across
+    matrix[2] += everywhere
+    return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
 
 
 @inner_kernel
@@ -150,61 +168,82 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
         domain: box, keep-out balls, forbidden pieces and zones.
         axis_field: kind, offset and matrix; a free axis, perhaps within a band.
         frame: at the box's centre.
-        row: the box; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: ``-t D`` with its slopes, (4, 6), and its remainders, from ``expand_denominator``, if there is
-            one denominator for all.
-        forecast: output: ``linear`` and ``rests`` of the sum, for ``will_fail``.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
+        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
+            denominator for all.
+        forecast: output: ``matrix``, ``slopes`` and ``rests`` of the sum, for ``will_fail``.
     """
     if not row[COUNT] > 0.0:
         return False
-    linear, middle, half, level_axes = forecast.linear, zeroed(3), row[HALF:LEVEL], is_level(axis_field)
-    copy_table(below[0], linear)
-    less, across = below[1]
+    matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
+    copy_into(below[0], matrix)
+    copy_table(below[1], slopes)
+    below_rest, across = below[2]
     if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
-        less, across = add_mixed_denominators(family, frame, row, linear[0], linear[1:])
-    everywhere = less + add_numerators(family, axis_field, frame, row, linear[0], linear[1:])
-    forecast.rests[0], forecast.rests[1], row[NU] = everywhere, across, 0.0
-    if negative_over(linear, everywhere, across, middle, half, level_axes):
+        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
+    row[NU] = 0.0
+    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):
+        forecast.rests[0] = math.inf
+        return False
+    copy_into(matrix, forecast.matrix)
+    forecast.rests[0], forecast.rests[1] = everywhere, across
+    matrix[0] += everywhere + across
+    matrix[1] += everywhere + across
+    matrix[2] += everywhere
+    corner = failing_corner(matrix, slopes, still, half, level_axes)
+    if corner < 0:
         return True
-    sharp = scratch(4, 6)
-    copy_table(linear, sharp)
-    for m in range(3):
-        sharp[0, m] += everywhere + (across if m < 2 else 0.0)
-    # sharpening takes the denominators' remainder away at best
-    if negative_over(linear, everywhere - less, across, middle, half, level_axes):
+    if mended(matrix, slopes, half, corner, below_rest, level_axes):
         if level_axes:  # what is off the level plane does not count
-            sharp[0, 2] = -2.0 * (abs(sharp[0, 0]) + abs(sharp[0, 1]) + abs(sharp[0, 3]))
-            sharp[0, 4] = sharp[0, 5] = 0.0
-        sharpen(family, frame, row, sharp[0], sharp[1:])
-        if negative_over(sharp, 0.0, 0.0, middle, half, level_axes):
+            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+            matrix[4] = matrix[5] = 0.0
+        slopes = scratch(3, 6)
+        copy_table(forecast.slopes, slopes)
+        sharpen(family, frame, row, matrix, slopes)
+        if failing_corner(matrix, slopes, still, half, level_axes) < 0:
             return True
-    return row[BALL] >= 0.0 and excludes_allowed(domain, row, sharp, level_axes)
+    return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
 
 @inner_kernel
-def excludes_allowed(domain, row, linear, level_axes):
-    """Return whether a linear matrix is negative wherever a border allows positions; fill its multiplier."""
+def excludes_allowed(domain, row, matrix, slopes, level_axes):
+    """Return whether the matrix is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
-    v, gradient, border, bent, half = scratch(3), scratch(3), scratch(7), scratch(4, 6), row[HALF:LEVEL]
+    if alternatives == 0:
+        return False
+    v, gradient, nu, ways = scratch(3), scratch(3), scratch(2), scratch(2, 3)
+    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
+    half, row[NU] = row[HALF:LEVEL], 0.0
     if level_axes:
-        linear[0, 2], linear[0, 4] = min(linear[0, 0], linear[0, 1]) - abs(linear[0, 3]), 0.0
-        linear[0, 5] = 0.0
-    top_eigenvector(linear[0], v)
+        matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
+    top_eigenvector(matrix, v)
     for i in range(3):
-        gradient[i] = form_value(linear, 1 + i, v)
+        gradient[i] = form_value(slopes, i, v)
+    bent, bent_slopes = scratch(6), scratch(3, 6)
     for a in range(alternatives):
-        if not border_sum(domain, row, sides[a], counts[a], gradient, border):
+        for c in range(counts[a]):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
+        if not border_multipliers(ways, counts[a], gradient, nu):
             return False
-        copy_table(linear, bent)
-        for m in range(3):
-            bent[0, m] += border[0]
-            for i in range(3):
-                bent[0, m] += 0.5 * border[4 + i] * half[i] ** 2
-                bent[1 + i, m] += border[1 + i]
-        if not negative_over(bent, 0.0, 0.0, zeroed(3), half, level_axes):
+        copy_into(matrix, bent)
+        copy_table(slopes, bent_slopes)
+        for c in range(counts[a]):
+            rest = values[c]
+            for i in range(axes[c]):
+                rest += 0.5 * bends[c] * half[i] ** 2
+            for m in range(3):
+                bent[m] += nu[c] * rest
+                for i in range(3):
+                    bent_slopes[i, m] += nu[c] * ways[c, i]
+        if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
             return False
-    return alternatives > 0
+        row[NU] = nu[0]
+    if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
+    return True
 
 
 @inner_kernel

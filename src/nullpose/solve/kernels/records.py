@@ -57,8 +57,9 @@ class Workspace(NamedTuple):
         jets: (denominators, JET).
         denominators: (denominators, 6) forms.
         log_denominators: (denominators,).
-        linear: (4, 6) the last sum of forms at a box's centre, and its slopes.
-        rests: (2,) its remainders over the box: of the second order, and that on the first two axes besides.
+        matrix: (6,) the last sum of forms at a box's centre.
+        slopes: (3, 6) its slopes.
+        rests: (2,) its remainders over the box: of the second order, and that on the first two axes alone.
     """
 
     weights: FloatArray
@@ -67,5 +68,6 @@ class Workspace(NamedTuple):
     jets: FloatArray
     denominators: FloatArray
     log_denominators: FloatArray
-    linear: FloatArray
+    matrix: FloatArray
+    slopes: FloatArray
     rests: FloatArray
