@@ -12,7 +12,7 @@ from nullpose.errors import UsageError
 from nullpose.scenario import Airframe, Eavesdropper, Scenario, Transmitter
 from nullpose.solve import Solution, solve
 from nullpose.solve.certificate_from_proof import certificate_of, leaves_of
-from nullpose.solve.kernels import box as kernel_box
+from nullpose.solve.kernels import node
 
 ENOUGH_S = 600.0
 
@@ -31,14 +31,14 @@ def proof_of(
 
 def row_of(box: tuple[int, ...], proof: SimpleNamespace, **columns: float) -> np.ndarray:
     """Return a row whose box is a dyadic part of a proof's root."""
-    row = np.zeros(kernel_box.COLUMNS)
+    row = np.zeros(node.COLUMNS)
     side = (proof.root[1] - proof.root[0]) / 2.0 ** np.array(box[::2])
-    row[kernel_box.HALF : kernel_box.HALF + 3] = 0.5 * side
-    row[kernel_box.CENTRE : kernel_box.CENTRE + 3] = proof.root[0] + side * (np.array(box[1::2]) + 0.5)
-    row[kernel_box.LEVEL], row[kernel_box.FACE], row[kernel_box.BALL] = 1.0, -1.0, -1.0
-    row[kernel_box.KIND], row[kernel_box.COUNT], row[kernel_box.WEIGHT] = WORLD, 1.0, 1.0
+    row[node.HALF : node.HALF + 3] = 0.5 * side
+    row[node.CENTRE : node.CENTRE + 3] = proof.root[0] + side * (np.array(box[1::2]) + 0.5)
+    row[node.LEVEL], row[node.FACE], row[node.BALL] = 1.0, -1.0, -1.0
+    row[node.KIND], row[node.COUNT], row[node.WEIGHT] = WORLD, 1.0, 1.0
     for name, value in columns.items():
-        row[getattr(kernel_box, name)] = value
+        row[getattr(node, name)] = value
     return row
 
 
@@ -73,8 +73,8 @@ def test_cells_become_dyadic() -> None:
         row = row_of((0,) * 6, proof, FACE=face)
         for side in range(2):
             width = 2.0 ** -depth[side] * 2.0
-            row[kernel_box.CELL + 2 * side] = -1.0 + width * index[side]
-            row[kernel_box.CELL + 2 * side + 1] = -1.0 + width * (index[side] + 1)
+            row[node.CELL + 2 * side] = -1.0 + width * index[side]
+            row[node.CELL + 2 * side + 1] = -1.0 + width * (index[side] + 1)
         rows.append(row)
         cells.append([face, depth[0], index[0], depth[1], index[1]])
     proof.leaves = np.array(rows)
@@ -85,9 +85,9 @@ def test_equal_mixes_are_shared() -> None:
     """Rows with the same multipliers point to one mix; those of distance tests to none."""
     proof = proof_of(np.empty(0))
     rows = [row_of((0,) * 6, proof) for _ in range(4)]
-    rows[1][kernel_box.COUNT], rows[1][kernel_box.INDEX + 1], rows[1][kernel_box.WEIGHT] = 2.0, 3.0, 0.25
-    rows[1][kernel_box.WEIGHT + 1] = 0.75
-    rows[3][kernel_box.KIND], rows[3][kernel_box.ANCHOR] = FAR, 2.0
+    rows[1][node.COUNT], rows[1][node.INDEX + 1], rows[1][node.WEIGHT] = 2.0, 3.0, 0.25
+    rows[1][node.WEIGHT + 1] = 0.75
+    rows[3][node.KIND], rows[3][node.ANCHOR] = FAR, 2.0
     proof.leaves = np.array(rows)
     leaves = leaves_of(proof)
     assert leaves.mix.tolist() == [0, 1, 0, -1]

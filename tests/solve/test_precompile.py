@@ -6,10 +6,10 @@ from collections.abc import Callable
 import pytest
 
 from nullpose.family import AxisField, build_family
-from nullpose.solve.kernels.box import keep_largest
 from nullpose.solve.kernels.branch import branch
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multistart import search_and_climb
+from nullpose.solve.kernels.node import keep_largest
 from nullpose.solve.kernels.search import cut_box
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import compile_proof, compile_search, precompile

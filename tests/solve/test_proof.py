@@ -7,7 +7,7 @@ import pytest
 
 from nullpose.family import AxisField, Family, build_family
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solve.kernels import box
+from nullpose.solve.kernels import node
 from nullpose.solve.kernels.axis import best_axis
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.multistart import multistart
@@ -25,7 +25,7 @@ def proof_of(family: Family, axis_field: AxisField, **limits: float) -> Proof:
 
 def boxes(proof: Proof) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and highest corners of a proof's leaves."""
-    centre, half = proof.leaves[:, box.CENTRE : box.HALF], proof.leaves[:, box.HALF : box.LEVEL]
+    centre, half = proof.leaves[:, node.CENTRE : node.HALF], proof.leaves[:, node.HALF : node.LEVEL]
     return centre - half, centre + half
 
 
@@ -55,11 +55,11 @@ def test_no_pose_of_a_leaf_reaches_its_level(random_scene: Callable) -> None:
         family = build_family(random_scene(rng, n_nodes, n_jammers, 10.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)
         assert proof.reason == ""
-        whole_sphere = proof.leaves[proof.leaves[:, box.FACE] < 0.0]
+        whole_sphere = proof.leaves[proof.leaves[:, node.FACE] < 0.0]
         chosen = whole_sphere[rng.integers(len(whole_sphere), size=200)]
         for row in chosen:
-            p = row[box.CENTRE : box.HALF] + rng.uniform(-1, 1, size=3) * row[box.HALF : box.LEVEL]
-            assert value_at(family, p) <= row[box.LEVEL] * (1.0 + 1e-12)
+            p = row[node.CENTRE : node.HALF] + rng.uniform(-1, 1, size=3) * row[node.HALF : node.LEVEL]
+            assert value_at(family, p) <= row[node.LEVEL] * (1.0 + 1e-12)
 
 
 def test_no_search_beats_the_bound(random_scene: Callable) -> None:
@@ -148,7 +148,7 @@ def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest
         family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)
         assert proof.reason == ""
-        assert np.any(proof.leaves[:, box.KIND] == box.FAR)
+        assert np.any(proof.leaves[:, node.KIND] == node.FAR)
         for row in proof.leaves:
-            ratios = row[box.INDEX : box.INDEX + int(row[box.COUNT])]
+            ratios = row[node.INDEX : node.INDEX + int(row[node.COUNT])]
             assert len(set(ratios)) == len(ratios)

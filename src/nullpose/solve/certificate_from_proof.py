@@ -113,42 +113,42 @@ def leaves_of(proof: Proof) -> Leaves:
     Args:
         proof: with its root and leaves.
     """
-    from nullpose.solve.kernels import box
+    from nullpose.solve.kernels import node
 
     rows = proof.leaves
     low, high = proof.root
-    half, centre = rows[:, box.HALF : box.HALF + 3], rows[:, box.CENTRE : box.CENTRE + 3]
+    half, centre = rows[:, node.HALF : node.HALF + 3], rows[:, node.CENTRE : node.CENTRE + 3]
     flat = high <= low
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = np.where(flat, 0, np.rint(np.log2(0.5 * (high - low) / half))).astype(np.int64)
         index = np.where(flat, 0, np.rint((centre - low) / (2.0 * half) - 0.5)).astype(np.int64)
-    test = rows[:, box.KIND].astype(np.int64)
-    ratios, weights = rows[:, box.INDEX : box.WEIGHT], rows[:, box.WEIGHT : box.BALL]
+    test = rows[:, node.KIND].astype(np.int64)
+    ratios, weights = rows[:, node.INDEX : node.WEIGHT], rows[:, node.WEIGHT : node.BALL]
     table: dict[tuple[float, ...], int] = {}
     mixes: list[dict[int, float]] = []
     mix = np.full(len(rows), -1, dtype=np.int64)
     for i in np.flatnonzero(np.isin(test, (WORLD, TOWARDS, AFFINE))):
-        used = int(rows[i, box.COUNT])
+        used = int(rows[i, node.COUNT])
         key = (*ratios[i, :used], *weights[i, :used])
         if key not in table:
             table[key] = len(mixes)
             mixes.append({int(k): float(w) for k, w in zip(ratios[i, :used], weights[i, :used], strict=True)})
         mix[i] = table[key]
-    point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, box.ANCHOR])
-    uses_ball = rows[:, box.NU] > 0.0
+    point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
+    uses_ball = rows[:, node.NU] > 0.0
     is_free = np.isin(test, (WORLD, TOWARDS))
     return Leaves(
         box=np.stack([depth[:, 0], index[:, 0], depth[:, 1], index[:, 1], depth[:, 2], index[:, 2]], axis=1),
-        cell=_cells(rows, box.FACE, box.CELL),
+        cell=_cells(rows, node.FACE, node.CELL),
         test=test,
         point=point.astype(np.int64),
-        level=rows[:, box.LEVEL].copy(),
+        level=rows[:, node.LEVEL].copy(),
         mix=mix,
         mixes=tuple(mixes),
-        sides=np.where(rows[:, [box.FACE]] >= 0.0, rows[:, box.SIDE : box.SIDE + 2], 0.0),
-        band=np.where(is_free, rows[:, box.BAND], 0.0),
-        ball=np.where(uses_ball, rows[:, box.BALL], -1).astype(np.int64),
-        ball_multiplier=np.where(uses_ball, rows[:, box.NU], 0.0),
+        sides=np.where(rows[:, [node.FACE]] >= 0.0, rows[:, node.SIDE : node.SIDE + 2], 0.0),
+        band=np.where(is_free, rows[:, node.BAND], 0.0),
+        ball=np.where(uses_ball, rows[:, node.BALL], -1).astype(np.int64),
+        ball_multiplier=np.where(uses_ball, rows[:, node.NU], 0.0),
     )
 
 

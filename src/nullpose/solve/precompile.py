@@ -69,11 +69,11 @@ def _is_compiled(kernel: Any) -> bool:
 
 def compile_proof() -> None:
     """Compile the branch and bound by giving it no box to work off."""
-    from nullpose.solve.kernels import box, branch
+    from nullpose.solve.kernels import branch, node
     from nullpose.solve.kernels.records import Goal
 
     family, field = _smallest_family(), AxisField.free()
-    row, rows, none = np.zeros(box.COLUMNS), np.zeros((1, box.COLUMNS)), np.empty(3)
+    row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     with _collecting_no_garbage():
         branch.branch(
             family.arrays,
@@ -93,9 +93,9 @@ def compile_proof() -> None:
 
 def compile_search() -> None:
     """Compile what is needed beside that, by a search of no round and a climb of no step."""
-    from nullpose.solve.kernels.box import COLUMNS, keep_largest
     from nullpose.solve.kernels.links import min_log_ratio
     from nullpose.solve.kernels.multistart import search_and_climb
+    from nullpose.solve.kernels.node import COLUMNS, keep_largest
     from nullpose.solve.kernels.search import cut_box
     from nullpose.solve.multistart import climb
 

@@ -71,11 +71,11 @@ class _Run:
         nodes: int,
         bound: float,
     ) -> None:
-        from nullpose.solve.kernels import box, branch
+        from nullpose.solve.kernels import branch, node
         from nullpose.solve.kernels.linked import entry_of
 
         self.family, self.axis_field = family, axis_field
-        self.kernel, self.box, self.branch = branch, box, entry_of(branch.branch)
+        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
         self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
@@ -93,9 +93,9 @@ class _Run:
         return math.exp(self.incumbent.log_value)
 
     def _favourite(self) -> FloatArray:
-        row = np.zeros(self.box.COLUMNS)
+        row = np.zeros(self.node.COLUMNS)
         weights = self.incumbent.multipliers.copy()
-        self.box.keep_largest(weights, len(weights), row)
+        self.node.keep_largest(weights, len(weights), row)
         return row
 
     def root(self) -> FloatArray:
@@ -112,9 +112,9 @@ class _Run:
         entry_of(cut_box)(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
         high = np.maximum(low, high)  # empty where two ratios are out of reach of each other: any place does
         row = self.favourite.copy()
-        row[self.box.CENTRE : self.box.HALF] = 0.5 * (low + high)
-        row[self.box.HALF : self.box.LEVEL] = 0.5 * (high - low) * (1.0 + 1e-12)
-        row[self.box.FACE] = -1.0
+        row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
+        row[self.node.HALF : self.node.LEVEL] = 0.5 * (high - low) * (1.0 + 1e-12)
+        row[self.node.FACE] = -1.0
         return row[None]
 
     def directly(self, root: FloatArray) -> tuple[FloatArray, str]:
@@ -186,8 +186,8 @@ class _Run:
 
     def result(self, root: FloatArray, leaves: FloatArray, reason: str) -> Proof:
         """Return what the run has come to."""
-        middle = root[0, self.box.CENTRE : self.box.CENTRE + 3]
-        side = root[0, self.box.HALF : self.box.HALF + 3]
+        middle = root[0, self.node.CENTRE : self.node.CENTRE + 3]
+        side = root[0, self.node.HALF : self.node.HALF + 3]
         return Proof(
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
@@ -199,13 +199,13 @@ class _Run:
 
     def shown(self, done: FloatArray, leaves: FloatArray) -> FloatArray:
         """Return the leaves that show the bound: a stage's, unless the bound was better before."""
-        return done if np.max(done[:, self.box.LEVEL]) <= self.proved else leaves
+        return done if np.max(done[:, self.node.LEVEL]) <= self.proved else leaves
 
     def by_distance(self, root: FloatArray) -> FloatArray:
         """Return the leaf that shows the bound from distances alone, by which a run begins."""
         leaf = root.copy()
-        leaf[0, self.box.KIND], leaf[0, self.box.ANCHOR] = self.box.FAR, self.farthest
-        leaf[0, self.box.LEVEL] = self.proved
+        leaf[0, self.node.KIND], leaf[0, self.node.ANCHOR] = self.node.FAR, self.farthest
+        leaf[0, self.node.LEVEL] = self.proved
         return leaf
 
 

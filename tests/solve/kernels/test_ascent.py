@@ -8,10 +8,10 @@ import pytest
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve.kernels.ascent import POOL, Pool, ascend
-from nullpose.solve.kernels.box import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
 from nullpose.solve.kernels.dual import dual_multipliers
 from nullpose.solve.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solve.kernels.jit import heap_kernel
+from nullpose.solve.kernels.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
 from nullpose.solve.kernels.symmetric import top_eigenvector
 
 TOLERANCE = 1e-6
@@ -84,7 +84,8 @@ def test_it_agrees_with_the_interior_point(start: str) -> None:
         weights, v = np.empty(ratios + 4), np.empty(3)
         found, followed = ascended(family.arrays, row, mean, back, weights, v)
         best, matrix = np.empty(ratios), np.empty(6)
-        wanted = dual_multipliers(forms, ratios, level, 1e-9, best, matrix)
+        third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
+        wanted = dual_multipliers(forms, 0, ratios, level, math.inf, 1e-9, third, best, matrix)
         if math.isfinite(found):  # multipliers, good or not, bound the dual from above
             mix, top_axis = weights[:ratios] @ forms, np.empty(3)
             assert math.isclose(weights[:ratios].sum(), 1.0, rel_tol=1e-9)

@@ -10,8 +10,8 @@ from nullpose.family import Family
 from nullpose.family.airspace import airspace_zones
 from nullpose.scenario import Airspace
 from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
-from nullpose.solve.kernels.box import BALL, CENTRE, COLUMNS, HALF, LEVEL, NU
 from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL, NU
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 SEEDS = st.integers(0, 2**32 - 1)

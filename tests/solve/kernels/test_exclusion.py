@@ -14,7 +14,9 @@ from scipy.spatial.transform import Rotation
 from nullpose.family import AxisField, Family
 from nullpose.family.airspace import airspace_zones
 from nullpose.scenario import Airspace
-from nullpose.solve.kernels.box import (
+from nullpose.solve.kernels.branch import EARLY, examine, workspace_of
+from nullpose.solve.kernels.jit import heap_kernel
+from nullpose.solve.kernels.node import (
     AFFINE,
     BALL,
     BAND,
@@ -33,8 +35,6 @@ from nullpose.solve.kernels.box import (
     SIDE,
     WEIGHT,
 )
-from nullpose.solve.kernels.branch import EARLY, examine, workspace_of
-from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.records import Goal
 
 EXCLUDED = 0

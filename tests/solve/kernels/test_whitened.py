@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from nullpose.objectives import Ratios
-from nullpose.solve.kernels.box import CENTRE, COLUMNS, HALF, LEVEL
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import heap_kernel
+from nullpose.solve.kernels.node import CENTRE, COLUMNS, HALF, LEVEL
 from nullpose.solve.kernels.whitened import axis_of, fill_values, ratio_form, whiten, whiten_axis
 
 

@@ -11,8 +11,8 @@ from nullpose.family.airspace import airspace_zones
 from nullpose.family.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import depth_m
-from nullpose.solve.kernels.box import CENTRE, COLUMNS, HALF, LEVEL
 from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.node import CENTRE, COLUMNS, HALF, LEVEL
 from nullpose.solve.kernels.zones import (
     FORBIDDEN,
     MOST_ALTERNATIVES,

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solve.kernels.box import BALL, CENTRE, HALF, NU, reaching_ball
 from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.node import BALL, CENTRE, HALF, NU, reaching_ball
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.zones import (
     FORBIDDEN,

@@ -12,11 +12,21 @@ import math
 import numpy as np
 
 from nullpose.family.records import Axes
-from nullpose.solve.kernels.box import (
+from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
+from nullpose.solve.kernels.denominators import expand_denominator
+from nullpose.solve.kernels.domain import contains
+from nullpose.solve.kernels.enclosure import JET, axis_clearance
+from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
+from nullpose.solve.kernels.expansion import frame_at, min_distance
+from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.multipliers import free_multipliers
+from nullpose.solve.kernels.node import (
     AFFINE,
     ANCHOR,
     BALL,
     BAND,
+    CELL,
     CENTRE,
     COLUMNS,
     COUNT,
@@ -28,18 +38,10 @@ from nullpose.solve.kernels.box import (
     OFF_BAND,
     WEIGHT,
     longest_side,
+    off_band,
+    split_axis,
     split_position,
 )
-from nullpose.solve.kernels.cells import is_level, off_band, split_axis
-from nullpose.solve.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
-from nullpose.solve.kernels.denominators import expand_denominator
-from nullpose.solve.kernels.domain import contains
-from nullpose.solve.kernels.enclosure import JET, axis_clearance
-from nullpose.solve.kernels.exclusion import excludes, out_of_reach, will_fail
-from nullpose.solve.kernels.expansion import frame_at, min_distance
-from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solve.kernels.links import min_log_ratio
-from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
@@ -186,6 +188,9 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
             )
         if value > goal.best * (1.0 + _BEATS):
             return _BETTER, 1
+    if primal == math.inf:  # no axis was met that is inside both cell and band
+        wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
+        return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
     if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
         return _EXCLUDED, 1
     # two forms have no duality gap (Brickman), unless a cell or a band is in force

@@ -14,7 +14,10 @@ import math
 import numpy as np
 
 from nullpose.solve.kernels.borders import border_multipliers, borders, slope_and_rest
-from nullpose.solve.kernels.box import (
+from nullpose.solve.kernels.enclosure import JET, link_jet
+from nullpose.solve.kernels.forms import entry
+from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.node import (
     BALL,
     CENTRE,
     COUNT,
@@ -25,9 +28,6 @@ from nullpose.solve.kernels.box import (
     WEIGHT,
     keep_largest,
 )
-from nullpose.solve.kernels.enclosure import JET, link_jet
-from nullpose.solve.kernels.forms import entry
-from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, eigen3
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.box import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solve.kernels.expansion import expand_point, min_distance
 from nullpose.solve.kernels.forms import bilinear
 from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solve.kernels.records import TOWARDS_POINT
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import top_eigenvector

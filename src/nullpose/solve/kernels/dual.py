@@ -25,7 +25,7 @@ from nullpose.solve.kernels.symmetric import (
 )
 from nullpose.solve.kernels.vectors import dot
 
-__all__ = ["dual_multipliers"]
+__all__ = ["dual_multipliers", "positive_definite"]
 
 _MOST_STEPS = 60
 _BACKTRACKS = 40
@@ -85,14 +85,20 @@ def feasible_step(matrix, slacks, changes, way, trial):
 
 
 @heap_kernel
-def dual_multipliers(forms, total, level, gap, multipliers, matrix):
-    """Fill the multipliers of forms, which sum to one.
+def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, matrix):
+    """Fill the multipliers of forms, which sum to one, and of the ``sides`` constraints before them.
+
+    Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
+    largest eigenvalue below it.
 
     Args:
-        forms: (total, 6) or more.
-        total: how many there are.
+        forms: (total, 6) or more; the first ``sides`` of them are constraints ``<Q, U> >= 0``.
+        sides: how many those are.
+        total: how many there are with the forms that are maximised over.
         level: the size of the values that are of interest.
+        stop: the primal value at which to stop.
         gap: relative accuracy, in units of the level.
+        start: (6,) positive definite matrix of unit trace that meets the constraints strictly.
         multipliers: output, (total,) or more.
         matrix: output, (6,): the primal matrix U.
 
@@ -102,18 +108,18 @@ def dual_multipliers(forms, total, level, gap, multipliers, matrix):
     rates, values, slacks, changes = np.empty((total, 6)), np.empty(total), np.empty(total), np.zeros(total)
     duals, system, gradient = np.empty(total), scratch(6, 6), scratch(6)
     way, trial = scratch(6), scratch(6)
-    matrix[:], matrix[:3] = 0.0, 1.0 / 3.0
+    copy_into(start, matrix)
     for k in range(total):
         fill_slopes(forms[k], rates[k])
-        rates[k, 5] = -1.0
+        rates[k, 5] = 0.0 if k < sides else -1.0
         values[k] = form_product(forms[k], matrix)
-    smallest = smallest_of(values)
+    smallest = smallest_of(values[sides:])
     mu, end = 0.3 * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
-    s = smallest - mu * total
+    s = smallest - mu * (total - sides)
     for _ in range(_MOST_STEPS):
         system[:, :], gradient[:], gradient[5] = 0.0, 0.0, 1.0
         for k in range(total):
-            slacks[k] = values[k] - s
+            slacks[k] = values[k] + s * rates[k, 5]
             duals[k] = mu / slacks[k]
         add_log_det(matrix, mu, system, gradient)
         add_constraints(slacks, duals, rates, np.int64(6), mu, system, gradient)
@@ -129,17 +135,17 @@ def dual_multipliers(forms, total, level, gap, multipliers, matrix):
         copy_into(trial, matrix)
         s += step * way[5]
         for k in range(total):
-            values[k] += step * (changes[k] + way[5])
-        smallest = smallest_of(values)
+            values[k] += step * (changes[k] - rates[k, 5] * way[5])
+        smallest = smallest_of(values[sides:])
         is_centred = inner(gradient, way, 6) <= 0.3 * mu
-        if is_centred and mu <= end:
+        if smallest > stop or (is_centred and mu <= end):
             break
         if is_centred:
             mu = max(0.1 * mu, 0.999 * end)
     for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
         multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
     weight = 0.0
-    for k in range(total):
+    for k in range(sides, total):
         weight += multipliers[k]
     for k in range(total):
         multipliers[k] /= weight

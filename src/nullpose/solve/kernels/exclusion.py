@@ -12,20 +12,6 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
-from nullpose.solve.kernels.box import (
-    ANCHOR,
-    BALL,
-    CENTRE,
-    COUNT,
-    FAR,
-    HALF,
-    INDEX,
-    KEPT_OUT,
-    LEVEL,
-    NU,
-    WEIGHT,
-)
-from nullpose.solve.kernels.cells import CONSTRAINTS, constraint, constraint_multiplier, is_level
 from nullpose.solve.kernels.denominators import (
     ROUNDING,
     add_mixed_denominators,
@@ -35,20 +21,44 @@ from nullpose.solve.kernels.denominators import (
 from nullpose.solve.kernels.expansion import expand_point, min_distance
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.node import (
+    ANCHOR,
+    BALL,
+    BAND,
+    CELL,
+    CENTRE,
+    COUNT,
+    FACE,
+    FAR,
+    HALF,
+    INDEX,
+    KEPT_OUT,
+    LEVEL,
+    NU,
+    SIDE,
+    WEIGHT,
+    cell_side,
+)
 from nullpose.solve.kernels.records import WORLD
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
-__all__ = ["excludes", "out_of_reach", "will_fail"]
+__all__ = ["excludes", "is_level", "out_of_reach", "will_fail"]
 
 _HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
 @inner_kernel
+def is_level(axis_field):
+    """Return whether an axis field holds the level axes only."""
+    return axis_field.kind == 3 and axis_field.offset[1] == 0.0
+
+
+@inner_kernel
 def negative_at(matrix, slopes, x, y, z, level_axes):
-    """Return whether the linear matrix is negative definite at a step away, perhaps for level axes."""
+    """Return whether the linear matrix is negative definite at a step from the centre, perhaps for level axes."""
     a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
     a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
     a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
@@ -110,8 +120,8 @@ def will_fail(forecast, row, part, level_axes):
 
 
 @inner_kernel
-def add_turned(form, weight, frame, matrix, matrix_slopes):
-    """Add a weighted form of the world, turned into the frame, and its slopes; return its remainder."""
+def add_side(form, weight, frame, matrix, matrix_slopes):
+    """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
     q, basis = scratch(6), frame.basis
     congruence(form, basis, q)
     for m in range(6):
@@ -128,6 +138,20 @@ def add_turned(form, weight, frame, matrix, matrix_slopes):
         matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
     size = q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2)
     return weight * 2.4143 * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
+
+
+@inner_kernel
+def add_band(axis_field, frame, row, matrix, slopes):
+    """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
+    weight = row[BAND]
+    if axis_field.kind < 2 or weight == 0.0 or is_level(axis_field):
+        return 0.0
+    form = zeroed(6)
+    form[2] = -1.0 if weight > 0.0 else 1.0
+    end = axis_field.offset[1] if weight > 0.0 else axis_field.offset[0]
+    for m in range(3):
+        matrix[m] += weight * end
+    return add_side(form, abs(weight), frame, matrix, slopes)
 
 
 @inner_kernel
@@ -148,15 +172,14 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
             matrix[m] += weight * isotropic
         size = isotropic + strength * (form[0] + form[1] + form[2])
         everywhere += weight * (radius * strength * up + ROUNDING * size)
-    for q in range(CONSTRAINTS):
-        weight = constraint_multiplier(row, q)
-        if weight > 0.0:
-            _, isotropic = constraint(axis_field, row, q, form)
-            for m in range(3):
-                matrix[m] += weight * isotropic
-            everywhere += radius * add_turned(form, weight, frame, matrix, slopes)
-            everywhere += 4.0 * ROUNDING * weight  # entries are at most 1
-    return everywhere
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if row[SIDE + side] > 0.0:
+                cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
+                everywhere += radius * add_side(form, row[SIDE + side], frame, matrix, slopes)
+                everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
+    everywhere += radius * add_band(axis_field, frame, row, matrix, slopes)
+    return everywhere + 4.0 * ROUNDING * abs(row[BAND])
 
 
 @inner_kernel
@@ -171,7 +194,6 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
             denominator for all.
-        forecast: output: ``matrix``, ``slopes`` and ``rests`` of the sum, for ``will_fail``.
     """
     if not row[COUNT] > 0.0:
         return False

@@ -162,8 +162,9 @@ def likely_axis(family, p, axis):
 @inner_heap_kernel
 def axis_of_forms(forms, back, level, axis):
     """Fill the axis that the dual of the smallest of several whitened forms suggests."""
-    matrix, v, multipliers = scratch(6), scratch(3), np.empty(forms.shape[0])
-    dual_multipliers(forms, forms.shape[0], level, _ROUGH, multipliers, matrix)
+    start, matrix, v, multipliers = zeroed(6), scratch(6), scratch(3), np.empty(forms.shape[0])
+    start[:3] = 1.0 / 3.0
+    dual_multipliers(forms, np.int64(0), forms.shape[0], level, math.inf, _ROUGH, start, multipliers, matrix)
     top_eigenvector(matrix, v)
     for i in range(3):
         axis[i] = dot(back[i], v)

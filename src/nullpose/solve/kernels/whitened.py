@@ -4,14 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solve.kernels.box import CENTRE, HALF, LEVEL
-from nullpose.solve.kernels.cells import CONSTRAINTS, constraint, is_level
+from nullpose.solve.kernels.exclusion import is_level
 from nullpose.solve.kernels.forms import add_form, congruence, inverse_factor, seen_from
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.links import denominator_at, numerator_at
+from nullpose.solve.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
 from nullpose.solve.kernels.scratch import scratch
 
-__all__ = ["axis_of", "constraint_forms", "fill_values", "ratio_form", "whiten", "whiten_axis"]
+__all__ = ["axis_of", "constraint_forms", "fill_values", "half_width", "ratio_form", "whiten", "whiten_axis"]
+
+_THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
+_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
+
+
+@inner_kernel
+def half_width(axis_field):
+    """Return half the width that a cone is given; zero for a band."""
+    if axis_field.kind != 3:
+        return 0.0
+    c = axis_field.offset[0]
+    return min(_THIN, _STEEP * min(c, 1.0 - c))
 
 
 @inner_kernel
@@ -62,33 +74,37 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
 
 
 @inner_kernel
-def constraint_forms(axis_field, basis, row, back, forms, numbers, scales):
-    """Fill forms of the constraints of the row's cell and band, their numbers and scales; return how many.
+def constraint_forms(axis_field, basis, row, back, forms, places):
+    """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are.
 
-    A constraint ``Q >= 0`` at a level t is the form ``t I + s Q``: it is at least t where Q is not negative,
-    and there are multipliers with it that bring the largest eigenvalue below t whatever the scale s > 0 is
-    if there are any. The scale makes the entries of s Q up to t.
+    And the column of a row in which each one's multiplier stands, negative where it stands negated.
     """
     raw, turned = scratch(6), scratch(6)
-    sides, level = np.int64(0), row[LEVEL]
-    for q in range(CONSTRAINTS):
-        there, isotropic = constraint(axis_field, row, q, raw)
-        if not there:
-            continue
-        for m in range(3):
-            raw[m] += isotropic
-        form = forms[sides]
-        congruence(raw, basis, turned)
-        congruence(turned, back, form)
-        if is_level(axis_field):
-            form[2] = form[4] = form[5] = 0.0
-        largest = 0.0
-        for m in range(6):
-            largest = max(largest, abs(form[m]))
-        for m in range(6):
-            form[m] = level * (form[m] / largest + (1.0 if m < 3 else 0.0))
-        numbers[sides], scales[sides] = q, level / largest
-        sides += 1
+    sides = np.int64(0)
+    level_axes = is_level(axis_field)
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
+                continue
+            cell_side(int(row[FACE]), row[CELL:SIDE], side, raw)
+            congruence(raw, basis, turned)
+            congruence(turned, back, forms[sides])
+            if level_axes:
+                forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
+            places[sides] = SIDE + side
+            sides += 1
+    if axis_field.kind >= 2 and not level_axes:
+        thin = half_width(axis_field)
+        for end in range(2):
+            c = axis_field.offset[end] + (thin if end == 1 else -thin)
+            if 0.0 < c < 1.0:
+                for m in range(6):
+                    raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
+                raw[2] += 1.0 if end == 0 else -1.0
+                congruence(raw, basis, turned)
+                congruence(turned, back, forms[sides])
+                places[sides] = BAND if end == 1 else -BAND
+                sides += 1
     return sides
 
 

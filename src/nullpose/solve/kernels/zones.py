@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from nullpose.solve.kernels.box import CENTRE, HALF
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.node import CENTRE, HALF
 
 __all__ = ["FORBIDDEN", "MOST_ALTERNATIVES", "OUTSIDE", "UNCLEAR", "in_zone", "zone_alternatives"]
 

@@ -1,8 +1,13 @@
-"""A box of the tree as a row of numbers: its columns, and how it is halved."""
+"""A node of the tree as a row of numbers: its columns, and how it is split.
+
+Cells of axes are rectangles on the faces of a cube, ``u = (1, y, z)`` up to a cyclic permutation, sign and
+length, in the world frame; face -1 is every axis.
+"""
 
 from __future__ import annotations
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into
 
 __all__ = [
@@ -26,9 +31,12 @@ __all__ = [
     "SIDE",
     "SUPPORT",
     "WEIGHT",
+    "cell_side",
     "keep_largest",
     "longest_side",
+    "off_band",
     "reaching_ball",
+    "split_axis",
     "split_position",
 ]
 
@@ -53,6 +61,19 @@ AFFINE = 2
 FAR = 3
 KEPT_OUT = 4
 OFF_BAND = 5
+
+
+@inner_kernel
+def cell_side(face, cell, side, out):
+    """Fill the form ``(v - low a)(high a - v)`` of a cell's side, a being the face's axis, v the side's."""
+    a = face
+    v = (face + 1 + side) % 3
+    low, high = cell[2 * side], cell[2 * side + 1]
+    out[:] = 0.0
+    out[v] = -1.0
+    out[a] = -low * high
+    pair = 3 if a + v == 1 else (4 if a + v == 2 else 5)
+    out[pair] = 0.5 * (low + high)
 
 
 @kernel
@@ -114,3 +135,49 @@ def split_position(row, side, stack, top):
         stack[top, CENTRE + side] += (0.5 if child else -0.5) * row[HALF + side]
         top += 1
     return top
+
+
+@inner_kernel
+def split_axis(row, level_axes, stack, top):
+    """Push the parts of a cell of axes, three faces or two halves; return the new top.
+
+    Where all axes are level, only the coordinate in the level plane is cut.
+    """
+    if row[FACE] < 0.0:
+        for face in range(3):
+            copy_into(row, stack[top])
+            stack[top, FACE] = face
+            stack[top, BAND] = 0.0
+            for side in range(2):
+                stack[top, CELL + 2 * side], stack[top, CELL + 2 * side + 1] = -1.0, 1.0
+                stack[top, SIDE + side] = 0.0
+            top += 1
+        return top
+    side = 0 if row[CELL + 1] - row[CELL] >= row[CELL + 3] - row[CELL + 2] else 1
+    if level_axes:
+        side = 0 if row[FACE] == 0.0 else 1
+    middle = 0.5 * (row[CELL + 2 * side] + row[CELL + 2 * side + 1])
+    for child in range(2):
+        copy_into(row, stack[top])
+        stack[top, CELL + 2 * side + (0 if child else 1)] = middle
+        top += 1
+    return top
+
+
+@inner_kernel
+def off_band(ends, row):
+    """Return whether no axis of a row's cell has its elevation within the band."""
+    face = int(row[FACE])
+    if face < 0:
+        return False
+    # squares of the two free coordinates over the cell, the face's own being one
+    low, high = scratch(3), scratch(3)
+    low[:], high[:] = 1.0, 1.0
+    for side in range(2):
+        v = (face + 1 + side) % 3
+        a, b = row[CELL + 2 * side], row[CELL + 2 * side + 1]
+        low[v] = 0.0 if a < 0.0 < b else min(a * a, b * b)
+        high[v] = max(a * a, b * b)
+    least = low[2] / (low[2] + high[0] + high[1])
+    most = high[2] / (high[2] + low[0] + low[1])
+    return most < ends[0] * (1.0 - 1e-12) or least > ends[1] * (1.0 + 1e-12)
