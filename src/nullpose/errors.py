@@ -5,18 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = [
-    "CertificateError",
-    "ClusterError",
-    "Fault",
-    "NullposeError",
-    "OutputError",
-    "ScenarioError",
-    "SolveError",
-    "UsageError",
-]
-
-
 _MOST_TOLD = 20  # faults in a message
 
 

@@ -16,17 +16,6 @@ from typing import Any
 
 from nullpose.errors import Fault, OutputError, ScenarioError
 
-__all__ = [
-    "MOST_BYTES",
-    "check_outputs",
-    "parse_json",
-    "prepare_folder",
-    "read_bytes",
-    "refusals",
-    "replacing",
-    "write_text",
-]
-
 MOST_BYTES = 10_000_000
 """The largest file that is read, but for certificates and the manifests of studies."""
 

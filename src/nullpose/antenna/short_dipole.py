@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from nullpose.antenna.quadratic import QuadraticAntenna
 
-__all__ = ["SHORT_DIPOLE", "short_dipole"]
-
 SHORT_DIPOLE = QuadraticAntenna(name="dipole", label="short dipole", leak=0.0)
 
 

@@ -30,8 +30,6 @@ from nullpose.certificate.interval import Interval, dot, stack, swapped
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
-__all__ = ["affine_holds", "link_jet"]
-
 _SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
 _UNIT = Interval(np.eye(3)[:, :, None])
 _AFTER, _LAST = [1, 2, 0], [2, 0, 1]

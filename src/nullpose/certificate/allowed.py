@@ -14,8 +14,6 @@ from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import zone_alternatives
 from nullpose.family import Family
 
-__all__ = ["Weighted", "negative_where_allowed"]
-
 # Constraints with a multiplier, not negative, for each box.
 Weighted: TypeAlias = list[tuple[FloatArray, Constraint]]
 

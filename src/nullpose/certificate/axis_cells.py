@@ -10,8 +10,6 @@ from nullpose.certificate.forms import PLACE
 from nullpose.certificate.interval import Interval
 from nullpose.family import AxisField, Family
 
-__all__ = ["cell_ends", "off_band_holds", "side_form"]
-
 
 def cell_ends(cell: IntArray, side: int) -> tuple[FloatArray, FloatArray]:
     """Return the ends of one side of each cell, (b,) each; exact, as dyadic numbers of few bits.

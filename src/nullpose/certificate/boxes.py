@@ -9,8 +9,6 @@ import numpy as np
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval
 
-__all__ = ["Boxes", "boxes_of", "parts"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Boxes:

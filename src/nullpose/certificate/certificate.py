@@ -13,20 +13,6 @@ from nullpose.family import AxisField
 from nullpose.scenario import Scenario
 from nullpose.schemes import RECORDS
 
-__all__ = [
-    "AFFINE",
-    "COLUMNS",
-    "FAR",
-    "KEPT_OUT",
-    "OFF_BAND",
-    "TOWARDS",
-    "WORLD",
-    "Certificate",
-    "Leaves",
-    "Tree",
-    "claimed_axes",
-]
-
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 

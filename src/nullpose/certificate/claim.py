@@ -23,8 +23,6 @@ from nullpose.family import AxisField, Family
 from nullpose.objectives import Quantity
 from nullpose.scenario import Airframe, Scenario
 
-__all__ = ["VALUE_RTOL", "claim_fault", "pose_fault"]
-
 # The stated value may differ from the pose's by so much: it was rounded.
 VALUE_RTOL = 1e-10
 

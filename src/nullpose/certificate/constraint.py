@@ -9,8 +9,6 @@ import numpy as np
 from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import Interval, dot
 
-__all__ = ["Constraint"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Constraint:

@@ -6,8 +6,6 @@ import numpy as np
 
 from nullpose.certificate.certificate import IntArray, Leaves
 
-__all__ = ["uncovered"]
-
 _DEPTH = slice(0, 10, 2)
 
 

@@ -10,8 +10,6 @@ from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
 from nullpose.family import AxisField, Family
 
-__all__ = ["far_holds", "kept_out_holds", "root_holds"]
-
 
 def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Return which boxes keep their node so far that it cannot reach the level, whatever the axis.

@@ -22,15 +22,6 @@ from nullpose.files import parse_json, read_bytes, replacing
 from nullpose.scenario import Scenario
 from nullpose.scenario.wording import printable
 
-__all__ = [
-    "FORMAT",
-    "VERSION",
-    "certificate_text",
-    "parse_certificate",
-    "read_certificate",
-    "write_certificate",
-]
-
 FORMAT = "nullpose-certificate"
 VERSION = 2
 

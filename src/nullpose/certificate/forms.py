@@ -6,20 +6,6 @@ import numpy as np
 
 from nullpose.certificate.interval import FloatArray, Interval, stack
 
-__all__ = [
-    "COLUMN",
-    "COUNTED",
-    "IDENTITY",
-    "PLACE",
-    "ROW",
-    "adjugate",
-    "definite",
-    "matrices",
-    "outer",
-    "quadratic",
-    "squares",
-]
-
 IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
 """Row and column of each of the six."""

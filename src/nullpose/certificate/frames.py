@@ -18,8 +18,6 @@ from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.linear import Linear
 from nullpose.family import Family
 
-__all__ = ["SWING", "Frames", "anchor_shape", "constant", "expansion", "frames_of"]
-
 # Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up.
 SWING = (1.0 + np.sqrt(2.0)) * (1.0 + 1e-12)
 

@@ -17,8 +17,6 @@ from nullpose.certificate.linear import Linear
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
-__all__ = ["free_holds"]
-
 _LARGEST_ETA = 0.5
 _SWERVE = (2.0 + 2.0 / np.sqrt(3.0)) * (1.0 + 1e-12)  # see "Near a null", rounded up
 _DIAGONAL = np.sqrt(2.0) * (1.0 + 1e-12)  # a form's spread of eigenvalues over its Frobenius norm, rounded up

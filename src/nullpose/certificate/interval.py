@@ -12,8 +12,6 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FloatArray", "Interval", "as_interval", "dot", "stack", "swapped", "where"]
-
 FloatArray: TypeAlias = NDArray[np.float64]
 
 

@@ -11,8 +11,6 @@ from nullpose.certificate.certificate import FloatArray, IntArray
 from nullpose.certificate.forms import definite
 from nullpose.certificate.interval import Interval
 
-__all__ = ["Linear", "negative_definite"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linear:

@@ -12,8 +12,6 @@ import numpy as np
 from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import Interval
 
-__all__ = ["Outline", "Point", "clipped", "corners", "exact", "may_meet"]
-
 Point: TypeAlias = tuple[Fraction, ...]
 
 

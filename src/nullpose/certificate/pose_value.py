@@ -11,17 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.family import AxisField, Family
 
-__all__ = [
-    "Exact",
-    "antenna_axis",
-    "band_excess",
-    "body_axes",
-    "exact",
-    "field_offset",
-    "sine_cosine",
-    "smallest_ratio",
-]
-
 # An array of fractions.
 Exact: TypeAlias = NDArray[Any]
 

@@ -10,8 +10,6 @@ from nullpose.certificate.claim import VALUE_RTOL
 from nullpose.objectives import Quantity
 from nullpose.schemes import RECORDS
 
-__all__ = ["sentence"]
-
 
 def sentence(certificate: Certificate, leaves: int) -> str:
     """Return the claim of a certificate that was proved.

@@ -10,8 +10,6 @@ from nullpose.certificate.file import scenario_digest
 from nullpose.family import build_family
 from nullpose.scenario import Scenario
 
-__all__ = ["differences", "subject"]
-
 
 def subject(certificate: Certificate) -> dict[str, Any]:
     """Return what a certificate is about as plain data: its claim, its scenario and the scenario's digest.

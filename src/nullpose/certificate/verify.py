@@ -30,8 +30,6 @@ from nullpose.certificate.free_test import free_holds
 from nullpose.certificate.sentence import sentence
 from nullpose.family import AxisField, Family, build_family
 
-__all__ = ["Verdict", "verify"]
-
 _CHUNK = 4096
 _CUT_AT_ONCE = 128
 _CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times

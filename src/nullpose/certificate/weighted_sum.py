@@ -10,8 +10,6 @@ from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval, where
 from nullpose.family import Family
 
-__all__ = ["Multiple", "mix_slots", "weighted_sum"]
-
 # A ground point for each box, and by what its form is multiplied: exactly zero where it does not count.
 Multiple: TypeAlias = tuple[IntArray, Interval]
 

@@ -17,8 +17,6 @@ from nullpose.certificate.interval import Interval, stack
 from nullpose.certificate.outline import Outline, may_meet
 from nullpose.family import Family
 
-__all__ = ["Alternative", "forbidden", "zone_alternatives"]
-
 _CYLINDER, _FENCE = 1, 2
 _FLAT = np.array([1.0, 1.0, 0.0])
 

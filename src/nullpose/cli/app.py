@@ -20,8 +20,6 @@ from nullpose.cli.study_report import report
 from nullpose.cli.sweep import sweep
 from nullpose.cli.verify import verify
 
-__all__ = ["app", "main"]
-
 app = typer.Typer(
     name="nullpose",
     cls=FaultReportingGroup,

@@ -7,8 +7,6 @@ import typer
 from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile, read_scenario
 from nullpose.cli.output import show, show_json
 
-__all__ = ["check"]
-
 
 def check(
     file: ScenarioFile,

@@ -27,8 +27,6 @@ from nullpose.cli.progress import Ticker
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
-__all__ = ["compare"]
-
 
 def compare(
     file: ScenarioFile,

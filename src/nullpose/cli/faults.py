@@ -16,15 +16,6 @@ from typer.core import TyperGroup
 
 from nullpose.errors import NullposeError, SolveError
 
-__all__ = [
-    "BAD_INPUT",
-    "INTERNAL",
-    "INTERRUPTED",
-    "PIPE_CLOSED",
-    "FaultReportingGroup",
-    "signals_handled",
-]
-
 INTERNAL = 1
 BAD_INPUT = 2
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it

@@ -11,30 +11,6 @@ import typer
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
-__all__ = [
-    "AllowOutside",
-    "CertificateFile",
-    "Combining",
-    "CombiningName",
-    "Fast",
-    "FigureFile",
-    "Gap",
-    "GeoJsonFile",
-    "JsonOutput",
-    "NodeLimit",
-    "NullJammer",
-    "OutFolder",
-    "Overrides",
-    "Robust",
-    "ScenarioFile",
-    "Seed",
-    "TimeLimit",
-    "Verified",
-    "read_scenario",
-    "refuse",
-    "solve_options",
-]
-
 
 class CombiningName(StrEnum):
     """The ways to combine an array's elements, by name."""

@@ -15,8 +15,6 @@ from nullpose.errors import SolveError
 if TYPE_CHECKING:
     from nullpose.report.document import View
 
-__all__ = ["compiling_announced", "prepare_outputs", "show", "show_json", "tell"]
-
 
 def tell(
     found: Any,

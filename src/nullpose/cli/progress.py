@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from nullpose.study.monte_carlo import StudyProgress
 
-__all__ = ["GapBar", "ProgressBar", "StudyBar", "Ticker"]
-
 _QUIET_S = 1.0  # work shorter than this shows no progress
 _LOG_EVERY_S = 10.0
 

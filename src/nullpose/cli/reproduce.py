@@ -6,8 +6,6 @@ from nullpose.cli.options import JsonOutput, OutFolder, Seed
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
 
-__all__ = ["reproduce"]
-
 
 def reproduce(out: OutFolder, seed: Seed = 0, json_output: JsonOutput = False) -> None:
     """Redraw the paper's Figure 2 and check each of its claims."""

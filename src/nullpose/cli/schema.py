@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from nullpose.cli.output import show_json
 
-__all__ = ["schema"]
-
 
 def schema() -> None:
     """Print the JSON Schema of scenario files.

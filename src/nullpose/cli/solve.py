@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from nullpose.scenario import Scenario
     from nullpose.solve import Result
 
-__all__ = ["solve"]
-
 _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
 
 

@@ -10,8 +10,6 @@ import typer
 from nullpose.cli.faults import signals_handled
 from nullpose.cli.options import AllowOutside, Overrides, ScenarioFile, read_scenario
 
-__all__ = ["studio"]
-
 _LOOPBACK = "127.0.0.1"
 
 

@@ -16,8 +16,6 @@ from nullpose.cli.progress import StudyBar
 if TYPE_CHECKING:
     from nullpose.study.monte_carlo import StudyStatus
 
-__all__ = ["StudyFolder", "study"]
-
 study = typer.Typer(
     name="study",
     no_args_is_help=True,

@@ -14,8 +14,6 @@ from nullpose.cli.study import StudyFolder
 if TYPE_CHECKING:
     from nullpose.report.study import StudyReport
 
-__all__ = ["report"]
-
 
 def report(
     folder: StudyFolder,

@@ -22,8 +22,6 @@ from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
 from nullpose.schemes import Scheme
 
-__all__ = ["sweep"]
-
 
 def sweep(
     file: ScenarioFile,

@@ -12,8 +12,6 @@ from nullpose.cli.options import AllowOutside, JsonOutput
 from nullpose.cli.output import show, show_json
 from nullpose.cli.progress import Ticker
 
-__all__ = ["verify"]
-
 
 def verify(
     file: Annotated[

@@ -12,8 +12,6 @@ from nullpose.objectives import FloatArray, IntArray
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import area_m2
 
-__all__ = ["airspace_zones", "loosened"]
-
 _Zone: TypeAlias = tuple[int, FloatArray, float, float]  # kind, edges, lowest and highest altitude
 
 FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FENCE = 0, 1, 2

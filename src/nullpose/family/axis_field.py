@@ -9,8 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.family.records import Axes
 
-__all__ = ["AxisField"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisField:

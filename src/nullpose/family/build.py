@@ -12,8 +12,6 @@ from nullpose.family.family import Family
 from nullpose.objectives import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["LOUDEST", "build_family", "domain_of"]
-
 LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from nullpose.objectives import FloatArray
 
-__all__ = ["convex_parts", "hull_and_pockets"]
-
 _NEXT = [1, 2, 0]  # the corners after the three of a triangle
 
 

@@ -11,8 +11,6 @@ import numpy as np
 from nullpose.family.records import Domain
 from nullpose.objectives import FloatArray, Ratios
 
-__all__ = ["Family"]
-
 
 class Family:
     """Ratios over the link forms of points, and their domain. Every array of either is read on it too.

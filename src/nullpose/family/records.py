@@ -8,8 +8,6 @@ import numpy as np
 
 from nullpose.objectives import FloatArray, IntArray
 
-__all__ = ["ArrayProblem", "Axes", "Domain"]
-
 
 class Domain(NamedTuple):
     """The positions of a family: box, keep-out balls, convex forbidden pieces, zones.

@@ -13,8 +13,6 @@ from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
-__all__ = ["BindingCase", "build_robust_family", "interferer_field", "point_uncertainty_m"]
-
 
 class BindingCase(NamedTuple):
     """An error case and the one ratio of the nominal family that it is bad for."""

@@ -8,8 +8,6 @@ from nullpose.objectives.quantity import Quantity, Scenario
 from nullpose.objectives.ratios import Ratios
 from nullpose.objectives.record import ObjectiveRecord
 
-__all__ = ["MIN_SINR"]
-
 _SINR = Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr")
 _MARGIN = Quantity("min_margin", "margin", "a margin", "margin", "dB", "SINR", "margin")
 

@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-__all__ = ["LEAST_RATE_BPS_HZ", "Quantity", "Scenario"]
-
 Scenario: TypeAlias = Any
 """A :class:`nullpose.scenario.Scenario`, whose module imports this room."""
 

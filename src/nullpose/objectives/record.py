@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from nullpose.objectives.quantity import Quantity, Scenario
 from nullpose.objectives.ratios import FloatArray, Ratios
 
-__all__ = ["ObjectiveRecord"]
-
 
 def _receiver_noise_w(scenario: Scenario) -> float:
     return float(scenario.receiver.noise_power_w)

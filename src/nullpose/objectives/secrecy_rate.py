@@ -8,8 +8,6 @@ from nullpose.objectives.quantity import Quantity, Scenario
 from nullpose.objectives.ratios import Ratios
 from nullpose.objectives.record import ObjectiveRecord
 
-__all__ = ["SECRECY_RATE"]
-
 _RATE = Quantity(
     "min_secrecy_rate", "secrecy rate", "a secrecy rate", "rate", "bits/s/Hz", "SNR", "secrecy_rate_bps_hz"
 )

@@ -10,8 +10,6 @@ from nullpose.paper.study import JammingStudy
 from nullpose.report.certainty import Certainty
 from nullpose.schemes import Scheme
 
-__all__ = ["Claim"]
-
 _SEARCHED = Scheme.MAXIMUM_GAIN_PRINTED  # nothing is ever proved of it, which the claims that use it say
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from nullpose.paper import places, values
 from nullpose.paper.claim import Claim
 
-__all__ = ["CLAIMS"]
-
 CLAIMS = (
     Claim(
         id="weak-jamming-maximum-gain",

@@ -14,8 +14,6 @@ from nullpose.study import SweepTable
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_figure2"]
-
 _SINR_DB = (-3.6, 2.15)  # the four cases fill it; the printed form leaves it at the bottom
 _LABELS = ((0.3, 1.38), (3e2, 0.53), (3e2, -0.97), (3e2, -2.02))
 """P_M/P and smallest SINR [dB] of the left end of each case's label, beside its own curve alone."""

@@ -16,8 +16,6 @@ from nullpose.study import SweepTable
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["Reproduction", "claims_markdown", "reproduction_view"]
-
 _BEYOND = (
     "A bound is on a value at one power: where the best pose lies, a level found by bisection, and powers "
     "between those looked at are proved only where a claim says so."

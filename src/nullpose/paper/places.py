@@ -11,8 +11,6 @@ from nullpose.report.geometry import distance_m, null_angle_rad
 from nullpose.report.numbers import at_least, at_most
 from nullpose.schemes import Scheme
 
-__all__ = ["ABOVE_M", "BETTER_DB", "POINTED_DEG", "above_jammer", "equidistant", "null_at_jammer"]
-
 POINTED_DEG = 1.0
 ABOVE_M = 0.1
 BETTER_DB = 1e-4

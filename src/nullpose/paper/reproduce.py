@@ -25,8 +25,6 @@ from nullpose.report.plain import json_text
 from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import sweep
 
-__all__ = ["reproduce"]
-
 _FILES = ("figure2.png", "figure2.svg", "figure2.csv", "poses.png", "poses.svg", "claims.md", "claims.json")
 _CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
 

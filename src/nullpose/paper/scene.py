@@ -5,8 +5,6 @@ from __future__ import annotations
 from nullpose.scenario import Scenario
 from nullpose.study import spaced
 
-__all__ = ["JAMMER_POWER", "JAMMING_LEVELS", "POSE_LEVELS", "PRINTED_LEVELS", "paper_scenario"]
-
 JAMMER_POWER = "jammers.M.power_w"
 """The swept setting: with nodes of 1 W it equals the paper's ratio P_M/P."""
 

@@ -11,8 +11,6 @@ from nullpose.report.geometry import distance_m
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study import SweepRow, SweepTable, sweep
 
-__all__ = ["NOISE", "RATIO", "JammingStudy", "Lead", "Measured", "apart_m", "bound_db", "lead_of", "told"]
-
 RATIO = "jamming_to_transmission_ratio"
 """Name of P_M/P in evidence."""
 

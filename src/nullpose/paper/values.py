@@ -15,21 +15,6 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.numbers import at_least, at_most
 from nullpose.schemes import PAPER_SCHEMES, Scheme
 
-__all__ = [
-    "COINCIDE_DB",
-    "CONSTANT_DB",
-    "FLAT_DB",
-    "NEAR_DB",
-    "SIGNIFICANT_DB",
-    "STRONG",
-    "WEAK",
-    "pose_optimisation_wins",
-    "saturation",
-    "strong_jamming",
-    "weak_jamming",
-    "zero_interference_constant",
-]
-
 COINCIDE_DB = 0.01
 CONSTANT_DB = 1e-6
 SIGNIFICANT_DB = 1.0

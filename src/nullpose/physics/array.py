@@ -14,17 +14,6 @@ from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = [
-    "analogue_sinr",
-    "analogue_weights",
-    "array_channels",
-    "beam_sinr",
-    "digital_sinr",
-    "digital_weights",
-    "element_positions",
-    "steering_vectors",
-]
-
 ComplexArray = NDArray[np.complex128]
 
 _VERTICAL = np.array([0.0, 0.0, 1.0])

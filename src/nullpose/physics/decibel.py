@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 
-__all__ = ["from_db", "to_db"]
-
 
 def to_db(ratio: ArrayLike) -> FloatArray:
     """Return ``10 log10(ratio)``, minus infinity where the ratio is zero.

@@ -13,8 +13,6 @@ from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["ErrorCase", "objective_under", "ratios_under", "rotation_between", "sinr_under"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ErrorCase:

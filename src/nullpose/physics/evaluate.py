@@ -15,8 +15,6 @@ from nullpose.physics.sinr import sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["Link", "evaluate", "links_of", "min_margin", "min_secrecy_rate", "min_sinr"]
-
 
 @dataclass(frozen=True, slots=True)
 class Link:

@@ -13,8 +13,6 @@ from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu, ned_from_enu
 
-__all__ = ["FramePose", "Geodetic", "PoseFrames", "flu_from_frd", "frd_from_flu", "pose_frames"]
-
 
 @dataclass(frozen=True, slots=True)
 class FramePose:

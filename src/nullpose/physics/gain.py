@@ -8,8 +8,6 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
 from nullpose.physics.types import FloatArray
 
-__all__ = ["antenna_gain", "elevation_cosine"]
-
 
 def _unit(vectors: FloatArray) -> FloatArray:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

@@ -12,8 +12,6 @@ from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["margins_of_many"]
-
 
 def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
     """Return every node's margin in every scene: its SINR over its weight or required SINR, if it has one.

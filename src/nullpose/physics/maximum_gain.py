@@ -9,8 +9,6 @@ from nullpose.physics.sinr import sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["maximum_gain_axis", "maximum_gain_sinr", "maximum_gain_sinr_as_printed"]
-
 
 def _direction_product(scenario: Scenario, position_m: FloatArray) -> FloatArray:
     if len(scenario.nodes) != 2:

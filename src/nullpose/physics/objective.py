@@ -10,8 +10,6 @@ from nullpose.physics.sinr import sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["margin", "objective_value"]
-
 
 def margin(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
     """Return the margin of every node: its SINR over its weight or over the SINR that it requires.

@@ -13,8 +13,6 @@ from nullpose.physics.rotation import antenna_axis, attitude_from_axis, attitude
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["Pose"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pose:

@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 
-__all__ = ["antenna_axis", "attitude_from_axis", "attitude_within_tilt", "rotation_world_from_body"]
-
 
 def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike) -> FloatArray:
     """Return the rotation that takes body coordinates to the world's.

@@ -9,8 +9,6 @@ from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["eavesdropper_snr", "node_snr", "secrecy_rate"]
-
 
 def _snr(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: FloatArray, noise_w: FloatArray

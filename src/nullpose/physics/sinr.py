@@ -10,8 +10,6 @@ from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["received_power_w", "sinr"]
-
 
 def received_power_w(
     position_m: ArrayLike,

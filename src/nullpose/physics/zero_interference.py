@@ -8,8 +8,6 @@ from numpy.typing import ArrayLike
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-__all__ = ["zero_interference_axis", "zero_interference_sinr"]
-
 
 def zero_interference_axis(position_m: ArrayLike, jammer_position_m: ArrayLike) -> FloatArray:
     """Return the axis that points the dipole's null at a jammer.

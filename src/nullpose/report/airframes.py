@@ -15,8 +15,6 @@ from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
 
-__all__ = ["airframes_view", "answer_lines", "numbers_of", "proof_lines"]
-
 _STATUS = {
     Status.CERTIFIED: "certified",
     Status.GAP_NOT_REACHED: "bounded",

@@ -11,8 +11,6 @@ from nullpose.schemes import Scheme
 from nullpose.solve import Rigour, Status
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["Certainty", "certainty_lines", "rigour_lines"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certainty:

@@ -18,8 +18,6 @@ from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import Result, compare
 
-__all__ = ["Comparison", "compare_all", "comparison_view"]
-
 
 @dataclass(frozen=True, slots=True)
 class Comparison:

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["View", "beside", "document", "grouped", "head", "markdown_table", "pairs", "rows", "table"]
-
 Row = Mapping[str, str]
 View: TypeAlias = "RenderableType"
 """What rich can print; rich is imported only when something is printed."""

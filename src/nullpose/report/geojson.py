@@ -22,8 +22,6 @@ from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solve import Result
 
-__all__ = ["require_origin", "solution_geojson", "write_geojson"]
-
 _Feature = dict[str, object]
 
 

@@ -11,8 +11,6 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import NoFlyZone
 
-__all__ = ["azimuth_rad", "distance_m", "null_angle_rad", "outline_m", "tilt_rad"]
-
 _SIDES = 72  # of the polygon that stands for a cylinder; 0.1 % of the radius larger at most
 
 

@@ -11,32 +11,6 @@ from nullpose.objectives import Quantity
 if TYPE_CHECKING:
     from nullpose.solve import Objective
 
-__all__ = [
-    "MINUS",
-    "NONE",
-    "at_least",
-    "at_most",
-    "axis_label",
-    "begun",
-    "bound_text",
-    "bound_words",
-    "count_of",
-    "degrees_text",
-    "escaped",
-    "fixed",
-    "listed",
-    "number",
-    "percent",
-    "share_text",
-    "short",
-    "span",
-    "stated",
-    "unit_of",
-    "value_words",
-    "with_interval",
-    "with_unit",
-]
-
 MINUS = "\N{MINUS SIGN}"
 _UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}
 NONE = "\N{EN DASH}"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 
-__all__ = ["json_text"]
-
 
 def json_text(value: object, indent: int | None = 2) -> str:
     """Return a value as JSON in ASCII; what JSON has no number for (NaN, infinities) becomes null.

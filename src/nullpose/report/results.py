@@ -31,18 +31,6 @@ from nullpose.solve import Objective, Result
 from nullpose.solve.array import ArrayDetails
 from nullpose.solve.robust import GuardedPose, RobustDetails
 
-__all__ = [
-    "BINDING_RTOL",
-    "array_view",
-    "azimuth_text",
-    "binding_nodes",
-    "frame_rows",
-    "result_view",
-    "robust_view",
-    "solution_view",
-    "work_words",
-]
-
 BINDING_RTOL = 1e-6
 """Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
 

@@ -16,8 +16,6 @@ from nullpose.report.numbers import stated
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 
-__all__ = ["scenario_view", "summarise"]
-
 _Point = Node | Jammer | Eavesdropper
 
 

@@ -13,8 +13,6 @@ from nullpose.schemes import Scheme
 from nullpose.solve import Status
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["sweep_view", "write_sweep"]
-
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
 
 

@@ -9,8 +9,6 @@ from nullpose.report.numbers import count_of
 from nullpose.scenario import Airframe, Array, Eavesdropper, Jammer, Origin, Scenario
 from nullpose.solve import Result
 
-__all__ = ["airframe_words", "array_words", "error_words", "place_words", "reach_words", "requirement_words"]
-
 
 def airframe_words(airframe: Airframe, tilt_rad: float | None = None) -> str:
     """Return what an airframe can do, as in ``tilts at most 10 deg; dipole 90 deg from upright on the body``.

@@ -12,8 +12,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import MountDegrees, TiltDegrees
 from nullpose.scenario.ways import Ways, exactly_one
 
-__all__ = ["Airframe"]
-
 PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexarotor": 30.0}
 """Largest tilt of each airframe that has a name [deg]."""
 

@@ -17,8 +17,6 @@ from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import KeepOutMetres, Range
 
-__all__ = ["Airspace"]
-
 BORDER_M = 1e-9
 """Positions no further than this beyond a border count as on it [m]."""
 

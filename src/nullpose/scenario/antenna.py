@@ -11,8 +11,6 @@ from nullpose.scenario.rules import Choice
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import NullDepthDecibels
 
-__all__ = ["Antenna"]
-
 _Kind = Annotated[str, Choice("an antenna", tuple(ANTENNAS))]
 
 

@@ -10,8 +10,6 @@ from nullpose.scenario.rules import Choice, Count
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Wavelengths
 
-__all__ = ["Array"]
-
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
 
 

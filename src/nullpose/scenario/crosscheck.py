@@ -15,8 +15,6 @@ from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import inner_section
 
-__all__ = ["scenario_faults", "shared_names"]
-
 SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
 

@@ -6,8 +6,6 @@ import numpy as np
 
 from nullpose.scenario.arrays import Floats
 
-__all__ = ["distance_m"]
-
 _HALVINGS = 100  # of the multiplier's range, which is bounded relative to the answer
 
 

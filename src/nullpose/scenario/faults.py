@@ -13,8 +13,6 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.wording import described, printable
 
-__all__ = ["Place", "collected", "path_of", "refusal", "rejection", "reworded", "scenario_error"]
-
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
 

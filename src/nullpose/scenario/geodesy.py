@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["enu_from_geodetic", "geodetic_from_enu", "ned_from_enu"]
-
 # pymap3d is imported where it is used: most scenarios have no place on the Earth.
 
 

@@ -25,8 +25,6 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, at_most_one
 
-__all__ = ["Eavesdropper", "Emitter", "GroundPoint", "Jammer", "Node"]
-
 _PLACE = Ways((("position_m",), GEODETIC_KEYS), fewest=0, most=2)
 
 

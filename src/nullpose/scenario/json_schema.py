@@ -12,8 +12,6 @@ from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
 from nullpose.scenario.transmitter import POWER
 
-__all__ = ["json_schema"]
-
 
 def json_schema() -> dict[str, Any]:
     """Returns the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 
 from nullpose.errors import Fault
 
-__all__ = ["ListedNode", "retold"]
-
 _NODE = re.compile(r"nodes\[(\d+)\](?:\.(.+))?")
 _MENTION = re.compile(r"nodes\[(\d+)\]")
 

@@ -15,8 +15,6 @@ from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
 from nullpose.scenario.wording import described
 
-__all__ = ["files_of", "inside", "load", "scenario_from_text"]
-
 _KEY = "nodes_from"
 _READERS = {".geojson": nodes_from_geojson, ".json": nodes_from_geojson, ".csv": nodes_from_csv}
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", tuple(_READERS))

@@ -9,8 +9,6 @@ from pydantic import BeforeValidator, WithJsonSchema
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described
 
-__all__ = ["Label", "Title"]
-
 
 def _line(value: object) -> str:
     if not isinstance(value, str):

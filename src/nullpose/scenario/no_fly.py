@@ -17,8 +17,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import PlanePoint, RadiusMetres, Range
 from nullpose.scenario.ways import Ways
 
-__all__ = ["NoFlyZone"]
-
 
 class NoFlyZone(Section):
     """An upright solid that the vehicle may not enter; its border is allowed.

@@ -16,8 +16,6 @@ from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import listed, printable, unknown
 
-__all__ = ["nodes_from_csv"]
-
 _LOCAL = ("x_m", "y_m", "z_m")
 _PLACE = Ways((_LOCAL, GEODETIC_KEYS))
 _COLUMNS = ("name", *_LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))

@@ -12,8 +12,6 @@ from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.wording import described
 
-__all__ = ["nodes_from_geojson"]
-
 _NO_PLACE = "left out, for the place of a feature is its geometry's coordinates; remove this property"
 _COORDINATES = "[longitude, latitude, altitude] in degrees and in m over the WGS-84 ellipsoid"
 _ADD_HEIGHT = "add the altitude, or a property alt_m"

@@ -17,15 +17,6 @@ from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import GEODETIC_KEYS, Altitude, Latitude, Longitude
 
-__all__ = [
-    "FARTHEST_M",
-    "POINT_LISTS",
-    "Origin",
-    "is_placed",
-    "located",
-    "origin_faults",
-]
-
 FARTHEST_M = 1e5
 """A point farther from the origin than this is taken for a mistake [m]."""
 

@@ -18,8 +18,6 @@ from nullpose.scenario.section import Section, inner_section
 from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.wording import listed, nearest, plain
 
-__all__ = ["Override", "apply_overrides", "parse_override"]
-
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
 _PATH = re.compile(rf"(?:{_STEP.pattern})+")

@@ -14,8 +14,6 @@ from nullpose.scenario.faults import rejection
 from nullpose.scenario.rules import ListOf
 from nullpose.scenario.units import PlanePoint
 
-__all__ = ["MOST_CORNERS", "Polygon", "area_m2", "counter_clockwise_m", "depth_m"]
-
 MOST_CORNERS = 5000
 """Vertices of a polygon, and of all that an airspace has: more take too long to check and to cut."""
 _APART_M = 1e-6

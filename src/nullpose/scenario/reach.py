@@ -15,8 +15,6 @@ from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.subdivision import find_position
 from nullpose.scenario.uncertainty import Uncertain
 
-__all__ = ["airspace_faults", "may_hold_a_position"]
-
 _MOST_DISTANCES = 6_000_000  # between parts of the airspace and what bounds it, for the time that they take
 
 

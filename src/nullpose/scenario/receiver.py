@@ -21,8 +21,6 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, exactly_one
 
-__all__ = ["Receiver"]
-
 
 class Receiver(Section):
     """The receiver's noise power, the path gain at 1 m, and how well the vehicle holds a pose.

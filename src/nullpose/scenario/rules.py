@@ -13,9 +13,6 @@ from pydantic_core import CoreSchema, core_schema
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.wording import described, nearest, plain
 
-__all__ = ["MOST_MEMBERS", "Ascending", "Choice", "Count", "ListOf", "Quantity", "Rule", "list_of_tables"]
-
-
 MOST_MEMBERS = 10_000
 """The most members of a list, such as nodes or the corners of a polygon."""
 

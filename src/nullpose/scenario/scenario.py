@@ -30,8 +30,6 @@ from nullpose.scenario.transmitter import Transmitter
 from nullpose.scenario.units import power_w
 from nullpose.scenario.ways import Ways
 
-__all__ = ["Scenario"]
-
 _Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 
 

@@ -24,8 +24,6 @@ from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described, nearest, unknown
 
-__all__ = ["Section", "inner_section"]
-
 _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
 

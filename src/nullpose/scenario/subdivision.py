@@ -8,8 +8,6 @@ import numpy as np
 
 from nullpose.scenario.arrays import Floats
 
-__all__ = ["find_position"]
-
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
 _BATCH = 256
 

@@ -12,8 +12,6 @@ from nullpose.files import MOST_BYTES, read_bytes
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.wording import nearest
 
-__all__ = ["SCENARIO_FILE", "FileKind", "file_text", "tables_of"]
-
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
 _KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")
 _MOST_PARTS = 64

@@ -6,8 +6,6 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-__all__ = ["toml_text", "toml_value"]
-
 
 def toml_text(scenario: Mapping[str, object]) -> str:
     """Returns the TOML text of plain values nested as in a scenario file: keys, tables, lists of tables."""

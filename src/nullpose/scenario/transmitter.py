@@ -10,8 +10,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import DecibelMilliwatts, Watts, power_w
 from nullpose.scenario.ways import Ways, exactly_one
 
-__all__ = ["POWER", "Powered", "Transmitter"]
-
 POWER = exactly_one("power_w", "power_dbm")
 """The keys of a transmit power."""
 

@@ -17,9 +17,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import RollPitchYaw, SemiAxes
 from nullpose.scenario.wording import plain
 
-__all__ = ["Extent", "Uncertain"]
-
-
 _RADIUS = Quantity(
     "a radius in m (or a list of three semi-axes [a, b, c])", 0.0, 1e7, "an error is a size; 0 means none"
 )

@@ -6,38 +6,6 @@ from typing import Annotated
 
 from nullpose.scenario.rules import Ascending, ListOf, Quantity
 
-__all__ = [
-    "GEODETIC_KEYS",
-    "SPEED_OF_LIGHT_M_PER_S",
-    "Altitude",
-    "AttitudeDegrees",
-    "DecibelMilliwatts",
-    "Decibels",
-    "ErrorDegrees",
-    "ErrorMetres",
-    "Hertz",
-    "KeepOutMetres",
-    "Latitude",
-    "Longitude",
-    "Metres",
-    "MountDegrees",
-    "NullDepthDecibels",
-    "PlanePoint",
-    "Position",
-    "RadiusMetres",
-    "Range",
-    "RatioDecibels",
-    "RollPitchYaw",
-    "SemiAxes",
-    "TiltDegrees",
-    "Watts",
-    "Wavelengths",
-    "Weight",
-    "power_w",
-    "ratio_from_db",
-    "watts_from_dbm",
-]
-
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 """The keys that state a place on the Earth: all three, or none."""
 

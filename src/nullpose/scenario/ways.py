@@ -6,8 +6,6 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Ways", "at_most_one", "exactly_one"]
-
 
 @dataclass(frozen=True, slots=True)
 class Ways:

@@ -8,8 +8,6 @@ from difflib import SequenceMatcher
 
 import numpy as np
 
-__all__ = ["described", "listed", "nearest", "plain", "printable", "unknown"]
-
 _LONGEST_QUOTE = 40  # characters of a given text that a message repeats
 _LONGEST_WORD = 100  # characters of a word that is repeated, or compared with others
 _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting

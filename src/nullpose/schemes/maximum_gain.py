@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
-__all__ = ["MAXIMUM_GAIN"]
-
 
 def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField] | None:
     from nullpose.family import AxisField

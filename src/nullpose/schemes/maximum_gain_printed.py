@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
 
-__all__ = ["MAXIMUM_GAIN_PRINTED"]
-
 
 def _ratios_at(scenario: Scenario, position_m: FloatArray) -> FloatArray:
     from nullpose.physics import maximum_gain_sinr_as_printed

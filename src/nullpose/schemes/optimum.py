@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
-__all__ = ["OPTIMUM"]
-
 
 def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
     from nullpose.family import AxisField

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
-__all__ = ["Curve", "SchemeRecord"]
-
 
 @dataclass(frozen=True, slots=True)
 class Curve:

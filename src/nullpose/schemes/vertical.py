@@ -10,8 +10,6 @@ if TYPE_CHECKING:
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
-__all__ = ["VERTICAL"]
-
 
 def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
     from nullpose.family import AxisField

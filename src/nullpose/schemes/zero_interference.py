@@ -10,8 +10,6 @@ if TYPE_CHECKING:
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
-__all__ = ["ZERO_INTERFERENCE"]
-
 _FIELD = "null "  # before the jammer's name
 
 

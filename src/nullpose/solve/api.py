@@ -22,8 +22,6 @@ from nullpose.solve.result import Result, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.solve_and_prove import solve_and_prove
 
-__all__ = ["best_axis", "compare", "solve"]
-
 
 def solve(
     scenario: Scenario,

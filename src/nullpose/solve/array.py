@@ -29,9 +29,6 @@ from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, Status, objective_of
 
-__all__ = ["COMBININGS", "ArrayDetails", "solve_array"]
-
-
 COMBININGS = "digital", "analogue"
 """The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""
 

@@ -13,9 +13,6 @@ from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
-__all__ = ["ArrayBound", "array_bound"]
-
-
 _MOST_BOXES = 300_000
 _LEAST_BOXES = 20_000
 _WORK = 3e7  # boxes times what one costs: nodes, jammers and elements

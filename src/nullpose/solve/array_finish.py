@@ -10,9 +10,6 @@ import numpy as np
 from nullpose.objectives import FloatArray
 from nullpose.solve.array_task import ArrayTask
 
-__all__ = ["finished"]
-
-
 _STEPS = 300
 _PRECISION = 1e-13
 _LEAST = -1e3  # log ratio that counts for a node which is not heard

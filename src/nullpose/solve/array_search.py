@@ -19,9 +19,6 @@ from nullpose.solve.array_finish import finished
 from nullpose.solve.array_task import ArrayTask, silent
 from nullpose.solve.multistart import NOT_RECEIVED, landmarks, multistart
 
-__all__ = ["ArrayHunt", "ArraySearch", "ArraySettings", "Pool"]
-
-
 _BETAS = np.array([4.0, 16.0, 64.0])
 _HOP_BETAS = _BETAS[1:]
 _STEPS = 60

@@ -13,9 +13,6 @@ from nullpose.objectives import FloatArray
 from nullpose.physics.array import element_positions
 from nullpose.scenario import Array, Scenario
 
-__all__ = ["ArrayTask", "silent"]
-
-
 _CLEAR_M = 1e-9  # how far beyond a wall a position is put, more than the rounding of its coordinates
 _REPAIRS = 50
 

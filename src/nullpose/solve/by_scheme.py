@@ -17,8 +17,6 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.position_search import search_positions
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
-__all__ = ["solve_scheme"]
-
 
 def solve_scheme(
     scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None

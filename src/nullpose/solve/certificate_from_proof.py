@@ -18,8 +18,6 @@ from nullpose.solve.proof import Proof
 from nullpose.solve.result import Result
 from nullpose.solve.rigour import Rigour, bound_above
 
-__all__ = ["certificate_of", "require_certificate", "verified"]
-
 
 def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField]:
     """Return the axis fields that a certificate of a scheme needs a tree for, by name.

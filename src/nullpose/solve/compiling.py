@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-__all__ = ["announce_compiling"]
-
 
 @contextmanager
 def announce_compiling(announce: Callable[[], None]) -> Iterator[None]:

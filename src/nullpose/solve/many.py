@@ -23,9 +23,6 @@ from nullpose.solve.result import Status
 from nullpose.solve.rigour import Rigour, bound_above
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
-__all__ = ["NOWHERE", "ManySolutions", "solve_many"]
-
-
 NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""
 

@@ -16,18 +16,6 @@ from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.precompile import compile_search
 
-__all__ = [
-    "BORDER_M",
-    "NOT_RECEIVED",
-    "NO_POSITION",
-    "SearchSettings",
-    "climb",
-    "landmarks",
-    "multistart",
-    "search_settings",
-]
-
-
 BORDER_M = 4e-10
 """How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
 NO_POSITION = (

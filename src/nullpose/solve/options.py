@@ -11,8 +11,6 @@ from nullpose.errors import UsageError
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
 
-__all__ = ["NODE_LIMIT", "TIME_LIMIT_S", "SolveKeywords", "SolveOptions", "default_gap", "default_gap_of"]
-
 TIME_LIMIT_S = 60.0
 NODE_LIMIT = 10**9
 

@@ -19,9 +19,6 @@ from nullpose.family.airspace import loosened
 from nullpose.objectives import FloatArray
 from nullpose.solve.multistart import BORDER_M, NO_POSITION, NOT_RECEIVED, landmarks
 
-__all__ = ["search_positions"]
-
-
 _COARSE = 256
 _POLISHED = 8
 _RESTARTS = 6

@@ -16,8 +16,6 @@ import numpy as np
 
 from nullpose.family import AxisField, Family
 
-__all__ = ["compile_proof", "compile_search", "precompile"]
-
 _WAIT_S = 300.0  # the other process is ended then, and what it compiled is compiled again
 _ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
 _PROGRAM = "from nullpose.solve.precompile import compile_proof as c; c()"

@@ -19,8 +19,6 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
-__all__ = ["INTERRUPT", "Proof", "prove"]
-
 _DIRECT_NODES = 20_000  # of a try with axes split early; most problems of the paper's size need a few hundred
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen

@@ -9,8 +9,6 @@ import numpy as np
 
 from nullpose.version import __version__
 
-__all__ = ["provenance"]
-
 
 def provenance(seed: int) -> dict[str, object]:
     """Return the versions and the seed behind a result.

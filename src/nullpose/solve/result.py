@@ -17,8 +17,6 @@ from nullpose.schemes import Scheme
 from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.rigour import Rigour, bound_above
 
-__all__ = ["Objective", "Result", "Stats", "Status", "objective_of"]
-
 
 class Status(StrEnum):
     """How a solve ended."""

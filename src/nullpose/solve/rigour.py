@@ -9,8 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import SolveError
 
-__all__ = ["Rigour", "bound_above"]
-
 _ROUNDING = 1e-9  # relative: far more than the rounding of a value and of its bound
 
 

@@ -14,8 +14,6 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import Proof, prove
 
-__all__ = ["Outcome", "solve_and_prove"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Outcome:

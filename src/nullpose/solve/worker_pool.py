@@ -11,8 +11,6 @@ import numpy as np
 
 from nullpose.objectives import FloatArray
 
-__all__ = ["Kernel", "WorkerPool", "processors"]
-
 Kernel: TypeAlias = Callable[..., Any]
 """The branch and bound kernel with its arguments before the stack."""
 

@@ -9,8 +9,6 @@ from nullpose.report.numbers import short
 from nullpose.solve import Result, Status
 from nullpose.studio.case import Case
 
-__all__ = ["Answer", "answer_of", "status_words"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answer:

@@ -9,8 +9,6 @@ import numpy as np
 from nullpose.scenario import Scenario
 from nullpose.studio.scene import scene_size_m
 
-__all__ = ["aim"]
-
 
 def aim(camera: Any, scenario: Scenario) -> None:
     """Let a camera look at the whole of a scene.

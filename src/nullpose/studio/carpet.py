@@ -15,8 +15,6 @@ from nullpose.studio.field_map import Field
 if TYPE_CHECKING:
     from viser import SceneApi
 
-__all__ = ["Carpet"]
-
 _LIFT_M = 0.05  # off the grid on the ground
 _FINER = 6  # pixels for each step of the grid
 _ALPHA = 105

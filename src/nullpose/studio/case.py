@@ -8,8 +8,6 @@ from nullpose.scenario import Scenario
 from nullpose.solve import PAPER_SCHEMES, Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
-__all__ = ["CASES", "OPTIMUM", "Case", "case_named", "cases_of"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:

@@ -8,8 +8,6 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["KIND_COLOURS", "SLOTS", "Rgb", "css", "round_steps", "scale_colours", "scale_range"]
-
 Rgb = tuple[int, int, int]
 
 KIND_COLOURS = MappingProxyType(

@@ -12,8 +12,6 @@ from nullpose.studio.meshes import Mesh
 if TYPE_CHECKING:
     from viser import SceneApi
 
-__all__ = ["FLAT", "add_label", "add_lines", "add_mesh"]
-
 FLAT = {"cast_shadow": False, "receive_shadow": False}
 """Shadows took half of the time of a picture without a graphics card."""
 

@@ -23,8 +23,6 @@ from nullpose.studio.meshes import (
 if TYPE_CHECKING:
     from viser import SceneApi
 
-__all__ = ["LINK_RANGE_DB", "Drone"]
-
 LINK_RANGE_DB = (-6.0, 12.0)
 """Range of the links' colours, dB, while no map has set one."""
 

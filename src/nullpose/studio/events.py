@@ -9,8 +9,6 @@ from nullpose.studio.case import Case
 from nullpose.studio.field_map import FieldMap
 from nullpose.study import SweepTable
 
-__all__ = ["Event", "Notice", "PowerCurve"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Notice:

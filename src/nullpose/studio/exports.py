@@ -10,8 +10,6 @@ from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
 
-__all__ = ["figure_png", "pose_json", "scene_html"]
-
 
 def pose_json(session: Session) -> bytes:
     """Return the solutions of the cases that are shown, as JSON.

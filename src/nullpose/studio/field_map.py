@@ -13,8 +13,6 @@ from nullpose.physics import antenna_gain, objective_value, to_db
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
 
-__all__ = ["MAPS", "Field", "FieldMap", "field_map", "map_extent_m"]
-
 FloatArray = NDArray[np.float64]
 
 MAPS = ("best value at each place", "pattern's footprint")

@@ -14,8 +14,6 @@ from ipaddress import ip_address
 from typing import Any
 from urllib.parse import parse_qs
 
-__all__ = ["Guard"]
-
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
 _HEADERS = {"Referrer-Policy": "no-referrer", "Content-Security-Policy": "frame-ancestors 'none'"}
 

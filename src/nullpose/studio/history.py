@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 
 from nullpose.studio.view import View
 
-__all__ = ["History"]
-
 _MOST = 200
 
 

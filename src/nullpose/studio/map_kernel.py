@@ -15,8 +15,6 @@ import numpy as np
 from nullpose.family import build_family
 from nullpose.scenario import Airspace, Node, Receiver, Scenario
 
-__all__ = ["compile_map_kernel", "map_kernel_is_ready"]
-
 _PROGRAM = "from nullpose.studio.map_kernel import compile_map_kernel as c; c()"
 
 _asking = threading.Lock()

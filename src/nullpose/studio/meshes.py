@@ -16,22 +16,6 @@ from nullpose.physics import Pose
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import NoFlyZone
 
-__all__ = [
-    "MARKS",
-    "Mesh",
-    "body_mesh",
-    "doughnut_bands",
-    "doughnut_mesh",
-    "ellipsoid_mesh",
-    "merged",
-    "null_line_m",
-    "prism_mesh",
-    "revolved_mesh",
-    "rod_mesh",
-    "rotor_mesh",
-    "zone_mesh",
-]
-
 
 class Mesh(NamedTuple):
     """A surface of triangles.

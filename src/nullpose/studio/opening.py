@@ -13,8 +13,6 @@ from nullpose.studio.guard import Guard
 if TYPE_CHECKING:
     from viser import SceneApi, ViserServer
 
-__all__ = ["LOOPBACK", "open_server", "require_viser"]
-
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
 

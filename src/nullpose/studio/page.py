@@ -32,8 +32,6 @@ from nullpose.studio.view import PointKey, View
 if TYPE_CHECKING:
     from viser import ClientHandle
 
-__all__ = ["Page"]
-
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this

@@ -13,8 +13,6 @@ from nullpose.studio.view import POWER_DB, View
 if TYPE_CHECKING:
     from viser import GuiApi
 
-__all__ = ["NO_CASE", "Panel"]
-
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
 

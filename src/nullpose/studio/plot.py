@@ -13,8 +13,6 @@ from nullpose.studio.colours import css, round_steps, scale_colours
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB
 
-__all__ = ["power_plot_svg", "scale_svg"]
-
 _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
 _MOST_SPAN = 30.0

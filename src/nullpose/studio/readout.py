@@ -15,8 +15,6 @@ from nullpose.studio.answer import Answer
 from nullpose.studio.colours import SLOTS, css
 from nullpose.studio.session import Session
 
-__all__ = ["about_html", "drone_text", "failure_html", "readout_html"]
-
 _FAILED = "no pose"
 _TONES = {
     _FAILED: ("#a02000", "&#10007;"),

@@ -19,8 +19,6 @@ from nullpose.studio.view import PointKey, View
 if TYPE_CHECKING:
     from viser import SceneApi
 
-__all__ = ["Ground", "OnDrag", "scene_size_m"]
-
 FloatArray = NDArray[np.float64]
 OnDrag = Callable[[PointKey, FloatArray, str], None]
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from nullpose.studio.page import Page
 
-__all__ = ["MOST_PAGES", "Studio", "studio"]
-
 MOST_PAGES = 8
 """How many pages a studio serves at a time; each has a thread that solves."""
 

@@ -16,8 +16,6 @@ from nullpose.studio.history import History
 from nullpose.studio.view import View
 from nullpose.studio.worker import REST_S, Worker
 
-__all__ = ["Session"]
-
 _E = TypeVar("_E", Answer, Notice, FieldMap, PowerCurve)
 
 

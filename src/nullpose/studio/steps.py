@@ -14,8 +14,6 @@ from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB, View
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["POWER_LABEL", "power_curves", "proved_answers", "quick_answers"]
-
 POWER_LABEL = "jamming power over node power (dB)"
 """What the power curve is drawn over."""
 

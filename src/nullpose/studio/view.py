@@ -14,8 +14,6 @@ from nullpose.physics import from_db, to_db
 from nullpose.scenario import GroundPoint, Scenario
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 
-__all__ = ["POWER_DB", "Kind", "PointKey", "View"]
-
 Kind = Literal["nodes", "jammers", "eavesdroppers"]
 PointKey = tuple[Kind, int]
 """A ground point: which list of the scenario it is in, and where there."""

@@ -18,8 +18,6 @@ from nullpose.studio.map_kernel import map_kernel_is_ready
 from nullpose.studio.steps import power_curves, proved_answers, quick_answers
 from nullpose.studio.view import View
 
-__all__ = ["REST_S", "Worker"]
-
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 

@@ -8,17 +8,6 @@ from itertools import product
 
 from nullpose.scenario import Airframe, Array, Scenario
 
-__all__ = [
-    "AIRFRAME_CASES",
-    "ARRAY_SIZES",
-    "OMNIDIRECTIONAL",
-    "STATED",
-    "AirframeCase",
-    "array_phrase",
-    "cases_of",
-    "mounted_phrase",
-]
-
 OMNIDIRECTIONAL = "omnidirectional"  # the case that the others are measured against
 STATED = "stated"  # the case that a scenario states itself, if it is none of the others
 

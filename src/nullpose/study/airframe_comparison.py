@@ -21,8 +21,6 @@ from nullpose.solve.robust import guarantee, solve_robust
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
 from nullpose.study.grid import solved_case, solved_grid
 
-__all__ = ["TOLERANCE", "AirframeComparison", "AirframeResult", "Guaranteed", "compare_airframes"]
-
 TOLERANCE = 0.01  # a vehicle suffices if it gives no less than the omnidirectional one but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
 

@@ -11,8 +11,6 @@ from nullpose.schemes import Scheme
 from nullpose.solve import Result, SolveKeywords, solve, solve_array
 from nullpose.solve.robust import solve_robust
 
-__all__ = ["solved_case", "solved_grid"]
-
 Row = TypeVar("Row")
 
 

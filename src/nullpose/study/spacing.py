@@ -8,8 +8,6 @@ import numpy as np
 
 from nullpose.errors import UsageError
 
-__all__ = ["spaced"]
-
 _DIGITS = 12  # significant digits kept, so that a decade lands on 0.01 and not on 0.009999999999999998
 
 

@@ -16,8 +16,6 @@ from nullpose.study.grid import solved_grid
 from nullpose.study.spacing import spaced
 from nullpose.study.table import SweepRow, SweepTable
 
-__all__ = ["SweepPlan", "plan_sweep", "sweep"]
-
 
 def sweep(
     scenario: Scenario,

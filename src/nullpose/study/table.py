@@ -14,8 +14,6 @@ from nullpose.files import replacing
 from nullpose.objectives import RECORDS, USUAL, Quantity
 from nullpose.solve import Result
 
-__all__ = ["SweepRow", "SweepTable"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SweepRow(Result):

@@ -17,8 +17,6 @@ from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import number, share_text
 from nullpose.study import AirframeComparison, AirframeResult
 
-__all__ = ["draw_airframes"]
-
 _ROW_INCH = 0.3
 _SENTENCE_INCH = 0.3
 _GAP = 0.6  # between dipoles and arrays, in rows

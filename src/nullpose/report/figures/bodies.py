@@ -13,8 +13,6 @@ from nullpose.report.figures.labels import Label
 from nullpose.report.figures.style import GREY
 from nullpose.scenario import Eavesdropper, Jammer, NoFlyZone
 
-__all__ = ["draw_set", "draw_zone", "set_box_m"]
-
 _MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
 
 

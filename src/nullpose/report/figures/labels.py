@@ -13,8 +13,6 @@ from mpl_toolkits.mplot3d import proj3d
 
 from nullpose.physics.types import FloatArray
 
-__all__ = ["Label", "place_labels"]
-
 _SIZE_PT = 9.0
 _MARKER_PT = 5.0  # half of a marker
 _AWAY_PT = 7.0  # from a point to its name

@@ -14,8 +14,6 @@ from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
 
-__all__ = ["beam_surface_m", "draw_surface", "pattern_surface_m"]
-
 _DOWN, _RINGS, _AROUND = 61, 91, 241  # steps of a dipole's and of a beam's: lobes of many elements are narrow
 
 

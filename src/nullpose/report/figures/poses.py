@@ -38,8 +38,6 @@ from nullpose.solve.array import ArrayDetails
 from nullpose.solve.robust import RobustDetails
 from nullpose.study import SweepRow
 
-__all__ = ["draw_array", "draw_pose", "draw_poses", "draw_result", "draw_robust"]
-
 _LETTERS = 100  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
 _SURFACE = "radiation pattern, near side cut away"

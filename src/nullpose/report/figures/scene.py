@@ -21,8 +21,6 @@ from nullpose.report.figures.style import GREY, house_style
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 
-__all__ = ["ALONE", "AXIS", "DRONE", "PAIR", "PANELS", "SURFACE", "Stage", "View", "draw_line", "draw_panels"]
-
 # Lengths drawn, as shares of the scene's extent.
 _MARGIN = 0.12  # free ground around the scene
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out

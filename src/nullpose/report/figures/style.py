@@ -20,20 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "CURVES",
-    "GREY",
-    "INK",
-    "VEHICLES",
-    "Curve",
-    "draw_curve",
-    "house_style",
-    "line_style",
-    "prepare_figure_file",
-    "write_figure",
-    "write_figure_file",
-]
-
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
 _FORMATS = (".png", ".svg")

@@ -18,8 +18,6 @@ from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style
 from nullpose.report.numbers import axis_label
 from nullpose.study import SweepRow, SweepTable
 
-__all__ = ["draw_caption", "draw_curves", "draw_sweep", "quantity_of"]
-
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
 _ROOM = 3.0  # at least so many dB above the curves are shown
 _CARET_DOWN = 7  # Matplotlib's name for it

@@ -11,8 +11,6 @@ from nullpose.report.study.cases import LEVEL, ReportCase
 from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES
 from nullpose.report.study.summary import Summary, three_of
 
-__all__ = ["MOST_OF_IT", "answer_of", "certainty_of", "outage_words", "unfinished_note"]
-
 MOST_OF_IT = 0.9  # a vehicle that has this share of what an omnidirectional one gains has most of it
 
 _MOST_TOLD = 5  # cases, and combinations of swept values, that are told one by one

@@ -13,8 +13,6 @@ from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
 from nullpose.study.monte_carlo import StudyCase, StudySpec
 
-__all__ = ["LEVEL", "ReportCase", "report_cases"]
-
 LEVEL = AIRFRAME_CASES[0]  # what the others are measured against
 _ANY = Airframe(tilt_max_deg=180.0)
 

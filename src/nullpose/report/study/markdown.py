@@ -18,8 +18,6 @@ from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, quantile, r
 from nullpose.report.study.summary import Summary, three_of
 from nullpose.report.study.values import STATUSES
 
-__all__ = ["gain_tables", "report_text", "title_of"]
-
 _SURE = percent(CONFIDENCE)
 _MOST_REASONS = 12
 _LONGEST_REASON = 300  # letters

@@ -9,8 +9,6 @@ from nullpose.report.numbers import axis_label, unit_of
 from nullpose.scenario.units import power_w
 from nullpose.study.monte_carlo import StudySpec
 
-__all__ = ["MOST_SHOWN", "SweptPoints"]
-
 MOST_SHOWN = 6  # combinations that have a panel or a column; the tables on disk have all
 
 _JAMMING = re.compile(r"jammers(\.[^.\[\]]+|\[0\])?\.power_w")

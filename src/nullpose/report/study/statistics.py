@@ -10,22 +10,6 @@ from numpy.typing import NDArray
 
 from nullpose.physics.types import FloatArray
 
-__all__ = [
-    "CONFIDENCE",
-    "FEW_SCENES",
-    "MEDIAN",
-    "WORST_TENTH",
-    "band_half_width",
-    "difference",
-    "draws",
-    "interval_of",
-    "quantile",
-    "quantile_interval",
-    "replicates_of",
-    "resampled",
-    "share_interval",
-]
-
 CONFIDENCE = 0.95  # of every band and interval
 MEDIAN, WORST_TENTH = 0.5, 0.1
 

@@ -32,8 +32,6 @@ from nullpose.study.monte_carlo import StudySpec, StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Summary", "summarise", "three_of"]
-
 Columns = dict[str, Any]  # numbers by case, or one for all
 Counts = NDArray[np.int64]
 

@@ -17,8 +17,6 @@ from nullpose.study.monte_carlo import StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["FAILED", "STATUSES", "StudyValues", "gather"]
-
 STATUSES = ("certified", "gap-not-reached", "best-found", "failed")  # a status is kept as its place here
 FAILED = STATUSES.index("failed")
 

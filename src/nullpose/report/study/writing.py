@@ -22,8 +22,6 @@ from nullpose.study.monte_carlo import read_study
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["StudyReport", "report_study"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyReport:

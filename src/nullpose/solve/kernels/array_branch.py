@@ -12,8 +12,6 @@ from nullpose.solve.kernels.array_response import array_value
 from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import dot, minus, norm, row
 
-__all__ = ["branch_array"]
-
 
 @inner_kernel
 def farthest(point, centre, half):

@@ -15,8 +15,6 @@ from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_ker
 from nullpose.solve.kernels.local_coordinates import choose_sides, side_slack
 from nullpose.solve.kernels.vectors import minus, norm, over, store
 
-__all__ = ["climb", "walls"]
-
 _LENGTH_M2 = 25.0  # first guess at the inverse curvature of a position
 _ANGLE = 0.05  # and of an angle
 _LONGEST_M = 20.0

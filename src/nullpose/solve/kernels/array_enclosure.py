@@ -25,8 +25,6 @@ from nullpose.solve.kernels.array_response import channels_at, node_power, nulls
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import along, dot, minus, over, row
 
-__all__ = ["box_bound"]
-
 _BEND = 2.0 / math.sqrt(3.0)  # a direction's second derivative along a line is at most this over r^2
 _CYCLE = 2.0 * math.pi
 _PASSES = 3

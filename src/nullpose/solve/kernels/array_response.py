@@ -16,16 +16,6 @@ from nullpose.objectives import FloatArray
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.vectors import minus, over, row, store
 
-__all__ = [
-    "Channels",
-    "Nulls",
-    "array_value",
-    "channels_at",
-    "node_power",
-    "nulls_towards",
-    "respond",
-]
-
 ComplexArray = NDArray[np.complex128]
 
 _TINY = 1e-300

@@ -21,8 +21,6 @@ from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import add_scaled, copy_into, gauss_solve, tangents, top_eigenvector
 from nullpose.solve.kernels.whitened import axis_of, fill_values, ratio_form
 
-__all__ = ["POOL", "Pool", "ascend", "lowest_missing", "put_weights"]
-
 POOL = 36
 """The most forms at hand: constraints, the ratios of a box, and what turns out to be smaller."""
 _MOST = 20  # of them in an ascent

@@ -28,8 +28,6 @@ from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, eigen3, largest_eigenvalue, matrix_of, normalise
 from nullpose.solve.kernels.vectors import dot
 
-__all__ = ["best_axis", "best_axis_of_forms"]
-
 _MAX_CANDIDATES = 4000
 _FLAT = 1e-10
 _DINKELBACH_STEPS = 60

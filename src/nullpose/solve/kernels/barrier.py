@@ -20,16 +20,6 @@ from nullpose.solve.kernels.symmetric import (
     smallest_of,
 )
 
-__all__ = [
-    "add_constraints",
-    "barrier_value",
-    "bent_step",
-    "best_level",
-    "newton_step",
-    "residual",
-    "update_duals",
-]
-
 
 @kernel
 def best_level(f, mu):

@@ -20,8 +20,6 @@ from nullpose.solve.kernels.zones import (
     zone_alternatives,
 )
 
-__all__ = ["border_multipliers", "borders", "choose_border", "slope_and_rest"]
-
 
 @inner_kernel
 def choose_border(domain, row):

@@ -46,8 +46,6 @@ from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
 
-__all__ = ["BETTER", "DONE", "EARLY", "FULL", "LATE", "LIMIT", "branch"]
-
 DONE = 0
 LIMIT = 1
 FULL = 2

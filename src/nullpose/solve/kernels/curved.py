@@ -32,8 +32,6 @@ from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, eigen3
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
-__all__ = ["curved_multipliers", "denominator_jet", "excludes_curved", "impact"]
-
 _SHARES = 5  # sizes of mu that are tried along concave directions
 _LESS = 0.25
 _ROUNDING = 2e-14  # relative to the terms summed: see "The certificate explained"

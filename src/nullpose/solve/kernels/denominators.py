@@ -12,8 +12,6 @@ from nullpose.solve.kernels.records import TOWARDS_POINT
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import top_eigenvector
 
-__all__ = ["ROUNDING", "add_mixed_denominators", "add_scaled", "expand_denominator", "sharpen"]
-
 ROUNDING = 2e-14
 """Relative to the terms summed: a hundred units in the last place."""
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.zones import in_zone
 
-__all__ = ["contains"]
-
 
 @kernel
 def contains(domain, p):

@@ -25,8 +25,6 @@ from nullpose.solve.kernels.symmetric import (
 )
 from nullpose.solve.kernels.vectors import dot
 
-__all__ = ["dual_multipliers", "positive_definite"]
-
 _MOST_STEPS = 60
 _BACKTRACKS = 40
 

@@ -15,8 +15,6 @@ from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
 
-__all__ = ["JET", "axis_clearance", "link_jet"]
-
 JET = 18  # value, gradient (3), the Hessian's midpoint (6) and radius (6), least and greatest value
 
 

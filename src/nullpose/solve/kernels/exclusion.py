@@ -44,8 +44,6 @@ from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
-__all__ = ["excludes", "is_level", "out_of_reach", "will_fail"]
-
 _HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 

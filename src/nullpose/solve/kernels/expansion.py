@@ -19,8 +19,6 @@ from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
 
-__all__ = ["expand_point", "frame_at", "min_distance"]
-
 
 @kernel
 def min_distance(points, j, centre, half):

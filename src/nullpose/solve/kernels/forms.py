@@ -7,19 +7,6 @@ import math
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 
-__all__ = [
-    "add_form",
-    "bilinear",
-    "congruence",
-    "entry",
-    "fill_form",
-    "fill_forms",
-    "form_value",
-    "inverse_factor",
-    "seen_from",
-    "turned_back",
-]
-
 
 @inner_kernel
 def entry(k):

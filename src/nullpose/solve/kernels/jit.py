@@ -15,8 +15,6 @@ from nullpose.family import records
 from nullpose.objectives import ratios
 from nullpose.solve.kernels.linked import LinkedDispatcher, Part
 
-__all__ = ["heap_kernel", "inner_heap_kernel", "inner_kernel", "kernel"]
-
 # without the wrapper that C callbacks would use, a tenth less is compiled
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 # no references are counted, which in short kernels is a fifth of the time

@@ -35,8 +35,6 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 
-__all__ = ["LinkedDispatcher", "Part", "entry_of"]
-
 _PASSES = (
     TranslateByteCode,
     FixupArgs,

@@ -16,8 +16,6 @@ import numpy as np
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch, zeroed
 
-__all__ = ["denominator_at", "derivatives", "log_ratios", "min_log_ratio", "numerator_at", "seen_axis"]
-
 
 @inner_kernel
 def seen_axis(turn, j, u):

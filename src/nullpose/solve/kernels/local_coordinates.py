@@ -25,25 +25,6 @@ from nullpose.solve.kernels.symmetric import (
 )
 from nullpose.solve.kernels.vectors import dot
 
-__all__ = [
-    "AFFINE",
-    "BAND",
-    "CONE",
-    "add_slack_slopes",
-    "axis_at",
-    "choose_sides",
-    "clamp_axis",
-    "clamp_elevation",
-    "domain_slacks",
-    "local_coordinates",
-    "move",
-    "nearest_node",
-    "reduce_hessian",
-    "rotation_rate",
-    "side_slack",
-    "slack_count",
-]
-
 AFFINE, BAND, CONE = 1, 2, 3  # kinds of axis field, 0 being any axis
 
 

@@ -19,8 +19,6 @@ from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
 from numba.np.arrayobj import load_item, store_item
 
-__all__ = ["KernelLowering", "array_value"]
-
 _INTP = cgutils.intp_t
 _ITEM = 8  # bytes of a number
 _DATA, _SHAPE, _STRIDES = 4, 5, 6  # where numba has these in an array

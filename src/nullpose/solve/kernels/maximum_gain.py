@@ -18,8 +18,6 @@ from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into, normalise, squared_distance, tangents
 
-__all__ = ["maximum_gain_value"]
-
 _TIE = 1e-11
 
 

@@ -36,8 +36,6 @@ from nullpose.solve.kernels.whitened import (
     whiten_axis,
 )
 
-__all__ = ["free_multipliers"]
-
 _MANY = 16  # ratios that are taken at first, if there are more
 _FEW = 6  # and in each later round at most
 _ROUNDS = 5
@@ -171,7 +169,9 @@ def interior_multipliers(
         return math.inf
     for k in range(ratios):
         ratio_form(family, is_level(axis_field), basis, row, whitening, k, forms[k])
-    accuracy = max(1e-5, _INTERIOR * coarseness) if coarseness > 0.0 else 1e-10  # at one position nothing else closes a gap
+    accuracy = (
+        max(1e-5, _INTERIOR * coarseness) if coarseness > 0.0 else 1e-10
+    )  # at one position nothing else closes a gap
     primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
     top_eigenvector(matrix, v)
     reached = math.inf

@@ -8,8 +8,6 @@ from nullpose.solve.kernels.jit import heap_kernel
 from nullpose.solve.kernels.polish import polish
 from nullpose.solve.kernels.search import search
 
-__all__ = ["search_and_climb"]
-
 _SAME = 1e-12
 
 

@@ -10,36 +10,6 @@ from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import copy_into
 
-__all__ = [
-    "AFFINE",
-    "ANCHOR",
-    "BALL",
-    "BAND",
-    "CELL",
-    "CENTRE",
-    "COLUMNS",
-    "COUNT",
-    "FACE",
-    "FAR",
-    "HALF",
-    "INDEX",
-    "KEPT_OUT",
-    "KIND",
-    "LEVEL",
-    "NU",
-    "OFF_BAND",
-    "SIDE",
-    "SUPPORT",
-    "WEIGHT",
-    "cell_side",
-    "keep_largest",
-    "longest_side",
-    "off_band",
-    "reaching_ball",
-    "split_axis",
-    "split_position",
-]
-
 CENTRE = 0  # the box's centre, m
 HALF = 3  # its half sides, m
 LEVEL = 6  # the ratio that was excluded

@@ -42,8 +42,6 @@ from nullpose.solve.kernels.local_coordinates import (
 from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, inner, smallest_of
 
-__all__ = ["polish"]
-
 _MU_END = 1e-12
 _LONGEST = 0.7
 _INSIDE = 0.995

@@ -5,8 +5,6 @@ from __future__ import annotations
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 
-__all__ = ["real_roots"]
-
 _EDGE = 1.0 + 1e-9
 
 

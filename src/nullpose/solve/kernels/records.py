@@ -7,8 +7,6 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TOWARDS_POINT", "WORLD", "Frame", "Goal", "Workspace"]
-
 FloatArray: TypeAlias = NDArray[np.float64]
 
 WORLD = 0

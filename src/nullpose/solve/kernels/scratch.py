@@ -15,8 +15,6 @@ from numba import config, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = ["scratch", "scratch_int", "zeroed"]
-
 _ITEM = 8  # bytes of a float64 and of an int64
 _MOST = 4096  # of them in one array: a thread's stack is small
 

@@ -27,8 +27,6 @@ from nullpose.solve.kernels.symmetric import (
 )
 from nullpose.solve.kernels.vectors import dot
 
-__all__ = ["search"]
-
 _MU_START = 0.1
 _MAX_STEPS = 100
 _SAME = 1e-9

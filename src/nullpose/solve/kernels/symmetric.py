@@ -10,27 +10,6 @@ from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.vectors import cross, dot, perpendicular, store, unit
 
-__all__ = [
-    "add_scaled",
-    "add_square",
-    "adjugate",
-    "cholesky_factor",
-    "cholesky_solve",
-    "copy_into",
-    "copy_table",
-    "eigen3",
-    "form_product",
-    "gauss_solve",
-    "inner",
-    "largest_eigenvalue",
-    "matrix_of",
-    "normalise",
-    "smallest_of",
-    "squared_distance",
-    "tangents",
-    "top_eigenvector",
-]
-
 _SWEEPS = 30
 _PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where an entry of the matrix stands in the form
 

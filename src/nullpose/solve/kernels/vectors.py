@@ -6,24 +6,6 @@ import math
 
 from nullpose.solve.kernels.jit import inner_kernel
 
-__all__ = [
-    "along",
-    "combination",
-    "components",
-    "cross",
-    "dot",
-    "minus",
-    "norm",
-    "over",
-    "perpendicular",
-    "row",
-    "rows",
-    "scaled",
-    "store",
-    "times",
-    "unit",
-]
-
 
 @inner_kernel
 def row(matrix, i):

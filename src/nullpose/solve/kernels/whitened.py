@@ -11,8 +11,6 @@ from nullpose.solve.kernels.links import denominator_at, numerator_at
 from nullpose.solve.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
 from nullpose.solve.kernels.scratch import scratch
 
-__all__ = ["axis_of", "constraint_forms", "fill_values", "half_width", "ratio_form", "whiten", "whiten_axis"]
-
 _THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
 _STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
 

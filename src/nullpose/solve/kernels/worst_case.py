@@ -27,8 +27,6 @@ from nullpose.solve.kernels.vectors import (
 )
 from nullpose.solve.kernels.worst_case_links import Sets, root_link, strongest_link
 
-__all__ = ["Errors", "Ratio", "descend", "into_ball", "into_cone", "ratio_at", "worst_found"]
-
 _LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
 _STEPS = 200
 _TRIES = 40

@@ -28,8 +28,6 @@ from nullpose.solve.kernels.worst_case import (
 )
 from nullpose.solve.kernels.worst_case_links import ROUND, clearance, strongest_link
 
-__all__ = ["worst_case"]
-
 _SLACK = 1e-12  # relative: more than rounding takes from a sum
 _BETTER = 1e-9  # relative: less is no reason to descend anew
 _SIDES = 5  # of a cell: two of the axis, three of the offset

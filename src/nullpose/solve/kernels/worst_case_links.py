@@ -30,8 +30,6 @@ from nullpose.solve.kernels.vectors import (
     unit,
 )
 
-__all__ = ["ROUND", "Sets", "clearance", "root_link", "strongest_link"]
-
 ROUND = 4e-15  # of a cross product of two vectors, relative to the product of their lengths
 _HAIR = 1e-13  # of a bound: what its few operations may lose
 _ARCS = 8

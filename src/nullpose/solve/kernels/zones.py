@@ -15,8 +15,6 @@ import numpy as np
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.node import CENTRE, HALF
 
-__all__ = ["FORBIDDEN", "MOST_ALTERNATIVES", "OUTSIDE", "UNCLEAR", "in_zone", "zone_alternatives"]
-
 OUTSIDE = -1  # the zone does not reach into the box
 UNCLEAR = -2  # it does, in a way that is not simple
 FORBIDDEN = 0  # the whole box is forbidden

@@ -19,9 +19,6 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.proof import prove
 from nullpose.solve.robust.inner import Inner
 
-__all__ = ["Exchange", "Visited"]
-
-
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee

@@ -13,9 +13,6 @@ from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.inner import Inner, RatioGuarantee
 
-__all__ = ["ACCURACY", "Guarantee", "RatioGuarantee", "guarantee", "guarantee_of"]
-
-
 ACCURACY = 3e-3
 """Relative distance between a guarantee and the worst case found, unless another is asked for."""
 

@@ -14,9 +14,6 @@ from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
 from nullpose.scenario import Scenario
 
-__all__ = ["Inner", "RatioGuarantee"]
-
-
 _ROUND_SET = 1e-12  # semi-axes this close make a ball
 _FLATTEST = 1e-9  # semi-axes are at least this share of the largest
 _EXACT = 1e-9  # accuracy where nothing has to be split

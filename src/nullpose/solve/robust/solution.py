@@ -15,8 +15,6 @@ from nullpose.scenario import Scenario
 from nullpose.solve.robust.guarantee import Guarantee
 from nullpose.solve.robust.wording import in_words
 
-__all__ = ["GuardedPose", "RobustDetails"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class GuardedPose:

@@ -22,8 +22,6 @@ from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
 from nullpose.solve.robust.inner import Inner
 from nullpose.solve.robust.solution import GuardedPose, RobustDetails
 
-__all__ = ["ROBUST_GAP", "solve_robust"]
-
 ROBUST_GAP = 1e-2
 """The relative gap asked for unless another is."""
 

@@ -10,9 +10,6 @@ from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 
-__all__ = ["in_words"]
-
-
 _LEAST_RAD = 1e-9
 _LEAST_M = 1e-6
 

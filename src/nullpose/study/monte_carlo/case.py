@@ -22,8 +22,6 @@ from nullpose.scenario.wording import described
 from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
 
-__all__ = ["CaseArray", "FixedPose", "Gap", "NodeLimit", "Seconds", "StudyCase"]
-
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]

@@ -22,8 +22,6 @@ from nullpose.study.monte_carlo.solving import At, reason_of, solved_row, solved
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import fingerprint
 
-__all__ = ["KILLED", "Part", "packed", "rows_of", "seconds_per_scene", "solve_chunk"]
-
 # The reason of the rows of a scene that no worker survives.
 KILLED = "every worker that took this scene died; it may need more memory than they have"
 

@@ -19,8 +19,6 @@ from nullpose.solve.worker_pool import processors
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["connected"]
-
 _CONNECT_S = 5.0  # how long a scheduler has to answer
 
 # Nothing is served over HTTP: no password would guard it.

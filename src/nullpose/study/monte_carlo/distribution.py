@@ -16,8 +16,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, exactly_one
 from nullpose.scenario.wording import plain
 
-__all__ = ["Distribution", "Drawn"]
-
 FloatArray = NDArray[np.float64]
 
 _Number = Annotated[float, Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")]

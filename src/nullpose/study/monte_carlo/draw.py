@@ -18,8 +18,6 @@ from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, known
 
-__all__ = ["MOST_DRAWS", "Draws", "draw_scene", "quantity_of", "scene_at"]
-
 FloatArray = NDArray[np.float64]
 _Swept = tuple[dict[str, Points], list[tuple[str, float]]]  # what is drawn, and what is set after that
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from nullpose.study.monte_carlo.ledger import Ledger
 
-__all__ = ["solver_of"]
-
 _IN_FLIGHT = 2  # parts for each worker's thread: one at work and one in store
 _LOOK_S = 0.5  # between two looks at the cluster
 

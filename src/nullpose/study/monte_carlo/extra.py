@@ -6,8 +6,6 @@ from importlib.util import find_spec
 
 from nullpose.errors import UsageError
 
-__all__ = ["require_extra"]
-
 _PACKAGES = ("pyarrow", "pandas", "xarray", "dask", "distributed", "cryptography")
 
 

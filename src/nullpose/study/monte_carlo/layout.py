@@ -27,8 +27,6 @@ from nullpose.scenario.ways import Ways, at_most_one, exactly_one
 from nullpose.scenario.wording import described, plain
 from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
-__all__ = ["Eavesdroppers", "Jammers", "Nodes", "Points"]
-
 MOST_POINTS = 10_000  # of one kind in a scene
 
 

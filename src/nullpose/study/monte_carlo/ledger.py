@@ -11,8 +11,6 @@ from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.store import Store
 
-__all__ = ["Ledger", "StudyProgress"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyProgress:

@@ -17,8 +17,6 @@ from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["load_spec", "require_sound"]
-
 _SPEC_FILE = FileKind("the spec of a study", "study.toml")
 # In place of a scenario file that is faulty.
 _STAND_IN: dict[str, Any] = {

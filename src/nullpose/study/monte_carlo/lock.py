@@ -13,8 +13,6 @@ from typing import IO
 from nullpose.errors import OutputError
 from nullpose.files import check_outputs
 
-__all__ = ["LOCK", "holder", "locked"]
-
 LOCK = "lock"
 
 _LONGEST = 4096  # characters that are read: a lock names a process and a machine

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["StudyStatus", "StudyTable", "read_study", "study_spec", "study_status"]
-
 
 class StudyTable:
     """The rows of a study that are done, by scene, combination of swept values and case.

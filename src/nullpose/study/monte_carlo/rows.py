@@ -11,8 +11,6 @@ from nullpose.study.monte_carlo.spec import StudySpec
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["FAILED", "Row", "as_parquet", "row_of", "schema_of"]
-
 # What one case gives in one scene at one combination of swept values: what is known, by column.
 Row = dict[str, Any]
 

@@ -17,8 +17,6 @@ from nullpose.study.monte_carlo.reading import StudyStatus, study_status
 from nullpose.study.monte_carlo.spec import StudySpec, known
 from nullpose.study.monte_carlo.store import Store
 
-__all__ = ["MOST_IN_A_PART", "run_study"]
-
 MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
 
 _PART_S = 1.0

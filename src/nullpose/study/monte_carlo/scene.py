@@ -29,8 +29,6 @@ from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways, at_most_one
 
-__all__ = ["SceneBase"]
-
 _Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]
 _Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 

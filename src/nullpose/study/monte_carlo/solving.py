@@ -26,8 +26,6 @@ from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
-__all__ = ["GIVEN_POSE", "At", "reason_of", "solved_row", "solved_together"]
-
 At = tuple[int, int]  # a scene's number and that of a combination of swept values
 
 _PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")

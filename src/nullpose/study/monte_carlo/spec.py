@@ -24,8 +24,6 @@ from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Poi
 from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes
 
-__all__ = ["MOST_SCENES", "StudySpec", "known"]
-
 MOST_SCENES = 999_999_999  # their numbers have nine digits in the names of parts
 
 _Seed = Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")]

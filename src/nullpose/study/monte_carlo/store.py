@@ -17,8 +17,6 @@ from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import versions
 
-__all__ = ["FORMAT", "QUANTITIES", "Store"]
-
 FORMAT = 1  # version of the folder's layout
 MANIFEST, JOURNAL, PARTS = "manifest.json", "parts.jsonl", "parts"
 

@@ -14,8 +14,6 @@ from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.wording import described, listed, plain, unknown
 from nullpose.study.spacing import spaced
 
-__all__ = ["MOST_POINTS", "SweepAxes"]
-
 MOST_POINTS = 1_000_000  # combinations of swept values
 
 _DEEPEST = 16  # parts of a path: no value of a scene is deeper

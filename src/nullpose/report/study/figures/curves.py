@@ -23,8 +23,6 @@ from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_
 from nullpose.report.study.summary import Summary, three_of
 from nullpose.report.study.values import FAILED
 
-__all__ = ["draw_along", "draw_distributions", "draw_effort", "draw_outage", "step_curve"]
-
 _DEEPEST = 40.0  # dB below the median of the lowest curve: what lies deeper leaves the picture
 _LEAST = 1e-12  # times and gaps of nothing are drawn here
 _SPREAD = 20.0  # values this many times apart are drawn on a logarithmic axis

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from nullpose.report.figures.style import INK, Curve
+from nullpose.report.figures.style import INK
 from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import (
@@ -22,8 +22,7 @@ from nullpose.report.study.figures.panels import (
 )
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary, three_of
-
-__all__ = ["draw_costs", "draw_gains", "draw_shares"]
+from nullpose.schemes import Curve
 
 _ROW = 0.27  # inches
 _CONFIDENT = f"{percent(CONFIDENCE)} confidence"
