@@ -52,6 +52,7 @@ def unpack(reals, counts):
         counts[k : k + entries],
         reals[d:e],
         np.zeros((0, 3, 3)),
+        0.0,
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

@@ -154,7 +154,7 @@ def random_family() -> Callable[..., Family]:
             high_m=np.array([np.inf, np.inf, 30.0]),
             keep_out_points_m=points_m,
             keep_out_m=keep_out_m,
-            leak=float(rng.choice([0.0, 0.001, 0.3])),
+            leak=float(np.choose(int(points_m[0, 0]) % 3, [0.0, 0.001, 0.3])),
         )
 
     return build

@@ -52,7 +52,7 @@ def ratios_over() -> Callable[..., Ratios]:
 def random_family() -> Callable[..., Family]:
     """Returns a builder: a family with several denominators and isotropic parts, as secrecy rates have."""
 
-    def build(rng: np.random.Generator, ratios: int, groups: int) -> Family:
+    def build(rng: np.random.Generator, ratios: int, groups: int, leak: float | None = None) -> Family:
         points = ratios + 2 * groups
         points_m = rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (points, 3))
         return Family(
@@ -69,7 +69,7 @@ def random_family() -> Callable[..., Family]:
             high_m=np.array([np.inf, np.inf, 30.0]),
             keep_out_points_m=np.zeros((0, 3)),
             keep_out_m=1.0,
-            leak=float(rng.choice([0.0, 0.01])),
+            leak=0.01 * (points_m[0, 0] > 50.0) if leak is None else leak,
         )
 
     return build

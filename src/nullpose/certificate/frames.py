@@ -94,17 +94,17 @@ def expansion(
     a = (Interval(points_m) - boxes.centre).T
     s = a.squared().total()
     here = frames.turned(a)
-    twice = squares(here)
-    bent_share = 1.0 - Interval(family.leak)  # of r r^T in the form
+    twice = less_leak(squares(here), family)
     # the anchor's is (I - (1 - leak) d d^T) / rho^2, without the rounding of a - rho d
     shape = anchor_shape(family, frames)
-    form = where(anchored, shape / s, (frames.gram * s - twice * bent_share) / s.squared())
+    form = where(anchored, shape / s, (frames.gram * s - twice) / s.squared())
     # b' = -e + (e (d.a) - d (a.e)) / rho for the three axes e, and rho d for the anchor itself
     swing = (dot(frames.direction, a) * _UNIT - frames.direction[:, None] * a) / frames.rho
     step = where(frames.turning, swing, 0.0) - _UNIT
     rate = dot(a[:, None], step) * 2.0
-    bent = outer(frames.turned(step), here[:, None]) * bent_share + rate * frames.gram[:, None]
-    slopes = rate * twice[:, None] * 2.0 * bent_share / (s.squared() * s) - bent / s.squared()
+    turned = less_leak(outer(frames.turned(step), here[:, None]), family)
+    bent = turned + rate * frames.gram[:, None]
+    slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
     pull = frames.direction * 2.0 / (s * frames.rho)
     slopes = where(anchored, shape[:, None] * pull, slopes)
     near, turn = boxes.nearest(points_m), frames.turning & ~anchored
@@ -121,8 +121,13 @@ def anchor_shape(family: Family, frames: Frames) -> Interval:
 
     Without a leak its third row is exactly zero.
     """
-    leak = Interval(family.leak)
-    return frames.across * (1.0 - leak) + frames.gram * leak
+    across = less_leak(frames.across, family)
+    return across if family.leak == 0.0 else across + frames.gram * family.leak
+
+
+def less_leak(form: Interval, family: Family) -> Interval:
+    """Return ``1 - leak`` times a form; the form itself, not rounded, of an antenna with a perfect null."""
+    return form if family.leak == 0.0 else form * (1.0 - Interval(family.leak))
 
 
 def constant(frames: Frames, q: Interval) -> Linear:

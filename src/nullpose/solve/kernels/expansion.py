@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.forms import seen_from
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
@@ -49,6 +49,17 @@ def frame_at(points, kind, anchor, centre, half, basis):
     return Frame(kind, anchor, basis, rho, min_distance(points, anchor, centre, half))
 
 
+@inner_kernel
+def fill_anchor(leak, frame, form, slopes):
+    """Fill the anchor's form and its derivatives, exactly zero where they vanish, however strong it is."""
+    form[:], slopes[:, :] = 0.0, 0.0
+    form[0] = form[1] = 1.0 / (frame.radius_m * frame.radius_m)
+    form[2] = leak * form[0]
+    for i in range(3):
+        slopes[i, 0] = slopes[i, 1] = 2.0 * frame.basis[i, 2] * form[0] / frame.radius_m
+        slopes[i, 2] = leak * slopes[i, 0]
+
+
 @kernel
 def expand_point(family, j, frame, centre, half, form, slopes):
     """Fill the form of point j at the centre and its derivative along each world axis.
@@ -63,9 +74,10 @@ def expand_point(family, j, frame, centre, half, form, slopes):
     bent = 1.0 - leak
     x, y, z = seen_from(points, turn, j, centre, frame.basis)
     basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
-    anchored = turns and j == frame.anchor
-    if anchored:
-        x = y = 0.0
+    a = min_distance(points, j, centre, half)
+    if turns and j == frame.anchor:
+        fill_anchor(leak, frame, form, slopes)
+        return 6.0 / (a * a * a * a), -2.0 / (a * a * a * a)
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
     form[0] = (leak * x * x + y * y + z * z) * i4
@@ -89,10 +101,7 @@ def expand_point(family, j, frame, centre, half, form, slopes):
         slopes[i, 3] = -(x * v + y * u) * b4 + k * x * y
         slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
         slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
-    a = min_distance(points, j, centre, half)
     i4 = 1.0 / (a * a * a * a)
-    if anchored:
-        return 6.0 * i4, -2.0 * i4
     if not turns:
         return 6.0 * i4, -4.0 * i4
     mixed = 1.0 / (a * a * a * frame.least_radius_m)
