@@ -56,7 +56,7 @@ def is_level(axis_field):
 
 @inner_kernel
 def negative_at(matrix, slopes, x, y, z, level_axes):
-    """Return whether the linear matrix is negative definite at a step from the centre, perhaps for level axes."""
+    """Return whether the linear matrix is negative definite at a step from the centre."""
     a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
     a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
     a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
@@ -192,6 +192,7 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
         row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
         below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
             denominator for all.
+        forecast: output: the sum, its slopes and its remainders, for ``will_fail``.
     """
     if not row[COUNT] > 0.0:
         return False
