@@ -14,7 +14,6 @@ from nullpose.family import AxisField, Family
 from nullpose.family.airspace import loosened
 from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
-from nullpose.solve.precompile import compile_search
 
 BORDER_M = 4e-10
 """How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
@@ -121,7 +120,6 @@ def multistart(
         SolveError: no position of the domain gave every ratio a positive value.
     """
     settings = settings or SearchSettings()
-    compile_search()
     places = landmarks(family)
     found = _run(family, axis_field, places, seed, settings)
     if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
