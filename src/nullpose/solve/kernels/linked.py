@@ -9,45 +9,15 @@ whole. Of the compiler's passes only those are run that a kernel can need.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from llvmlite import binding
+from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, Flags
-from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
-from numba.core.typed_passes import (
-    AnnotateTypes,
-    IRLegalization,
-    NoPythonBackend,
-    NopythonTypeInference,
-    PreLowerStripPhis,
-)
-from numba.core.untyped_passes import (
-    DeadBranchPrune,
-    FixupArgs,
-    GenericRewrites,
-    IRProcessing,
-    ReconstructSSA,
-    RewriteSemanticConstants,
-    TranslateByteCode,
-)
-
-_PASSES = (
-    TranslateByteCode,
-    FixupArgs,
-    IRProcessing,
-    RewriteSemanticConstants,
-    DeadBranchPrune,
-    GenericRewrites,
-    ReconstructSSA,
-    NopythonTypeInference,
-    PreLowerStripPhis,
-    IRLegalization,
-    AnnotateTypes,
-)
 
 
 class _Whole(JITCodeLibrary):
@@ -91,24 +61,44 @@ class _Flags(Flags):
         return isinstance(other, Flags) and self._values == other._values
 
 
+class _Typing:
+    """Numba's context of types, which looks up again what is called with the same types: here it is kept."""
+
+    _found: ClassVar[dict[Any, Any]] = {}
+
+    def __init__(self, context: Any, heap: bool) -> None:
+        self._context, self._heap = context, heap
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """Return the signature of a call."""
+        if kws or isinstance(func, types.Dispatcher):  # a kernel may call itself
+            return self._context.resolve_function_type(func, args, kws)
+        key = self._heap, func, tuple(args)
+        if key not in self._found:
+            self._found[key] = self._context.resolve_function_type(func, args, kws)
+        return self._found[key]
+
+
 class _Compiler(CompilerBase):
     library: Any = _Whole
 
     def __init__(
         self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Flags, variables: Any
     ) -> None:
-        super().__init__(typing, target, library, args, result, _Flags(flags), variables)
+        super().__init__(
+            _Typing(typing, bool(flags.nrt)), target, library, args, result, _Flags(flags), variables
+        )
 
     def define_pipelines(self) -> list[Any]:
-        from nullpose.solve.kernels.lowering import KernelLowering  # import a part of the compiler
+        from nullpose.solve.kernels.passes import passes  # a part of the compiler
 
-        state, passes = self.state, PassManager("kernel")
+        state = self.state
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        for each in (*_PASSES, KernelLowering, NoPythonBackend):
-            passes.add_pass(each, each._name)
-        passes.finalize()
-        return [passes]
+        return [passes()]
 
 
 class _PartCompiler(_Compiler):
