@@ -35,7 +35,7 @@ def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
         zones.append((kind, edges, *zone.forbidden_range_m(airspace.altitude_m)))
     if len(airspace.geofence_outline_m):
         zones.append((FENCE, _edges(airspace.geofence_outline_m), -np.inf, np.inf))
-    return _arrays(zones)
+    return _arrays(zones) if zones else dict(_NO_ZONES)
 
 
 def loosened(family: Family, by_m: float) -> Family:
@@ -105,3 +105,6 @@ def _outer_sides(part_m: FloatArray) -> FloatArray:
     offset = np.sum(normal * part_m, axis=1)
     zero = np.zeros(len(part_m))
     return np.column_stack([zero, normal, zero, offset])
+
+
+_NO_ZONES = _arrays([])

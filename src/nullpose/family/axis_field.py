@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,6 +52,7 @@ class AxisField:
         return cls(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
 
     @classmethod
+    @cache
     def within(cls, least: float, greatest: float) -> AxisField:
         """Return the field of all axes with ``least <= u_z^2 <= greatest``, the vertical one if both are 1.
 

@@ -53,5 +53,7 @@ def antenna_gain(
         Array of shape ``(..., m)``, between 0 and 1.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-    across = np.cross(_unit(to_points), np.asarray(axis, dtype=float)[..., None, :])
-    return np.asarray(antenna.gain(np.sum(across**2, axis=-1)))
+    (x, y, z), u = np.moveaxis(to_points, -1, 0), np.asarray(axis, dtype=float)
+    ux, uy, uz = u[..., 0, None], u[..., 1, None], u[..., 2, None]
+    across_sq = (y * uz - z * uy) ** 2 + (z * ux - x * uz) ** 2 + (x * uy - y * ux) ** 2  # m^2
+    return np.asarray(antenna.gain(across_sq / (x * x + y * y + z * z)))

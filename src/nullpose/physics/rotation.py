@@ -36,7 +36,8 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
         [sy * cp, sy * sp * sr + cy * cr, cr * sp * sy - sr * cy],
         [-sp, cp * sr, cr * cp],
     ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    matrix = np.array(rows)
+    return matrix.transpose(*range(2, matrix.ndim), 0, 1)
 
 
 def antenna_axis(

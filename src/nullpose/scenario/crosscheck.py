@@ -119,6 +119,8 @@ def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:
 def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     placed = list(points)
     positions_m = np.array([point.position_m for point in points.values()]).reshape(-1, 3)
+    if np.all(np.diff(np.sort(positions_m[:, 0])) >= SAME_PLACE_M):
+        return
     kinds = np.array([place[0] for place in placed])
     # Who jams may listen as well: a jammer and an eavesdropper may be at one place.
     may_be = {"jammers": "eavesdroppers", "eavesdroppers": "jammers"}

@@ -107,27 +107,26 @@ class Section(BaseModel):
             if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
                 too_long = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
                 raise collected(cls.__name__, [((key,), too_long)])
-        stated = {key: value for key, value in data.items() if key in cls.model_fields}
-        given = {key for key, value in stated.items() if value is not None}
+        fields = cls.model_fields
+        stated = {key: value for key, value in data.items() if key in fields}
+        given = frozenset(key for key, value in stated.items() if value is not None)
         strange = [str(key) for key in data if key not in stated]
-        absent = [key for key in cls.model_fields if key not in given]
-        meant = {nearest(key, absent) for key in strange[:_MOST_UNKNOWN]}
         # A key that is still to be given is the likelier meaning of a misspelt one.
+        absent = [key for key in fields if key not in given] if strange else []
+        meant = {nearest(key, absent) for key in strange[:_MOST_UNKNOWN]}
         faults: list[tuple[Place, str]] = [
-            ((key,), unknown("key", key, cls.model_fields, absent)) for key in strange[:_MOST_UNKNOWN]
+            ((key,), unknown("key", key, fields, absent)) for key in strange[:_MOST_UNKNOWN]
         ]
         if len(strange) > _MOST_UNKNOWN:
             faults.append(((), f"{len(strange) - _MOST_UNKNOWN} more keys are unknown; remove them too"))
         if not strange:
-            faults += [((), message) for ways in cls.ways for message in ways.faults(given)]
+            faults += [((), message) for message in _faults_of_ways(cls.ways, given)]
         completed = cls.completed(stated)
         try:
             judged = handler(completed)
         except ValidationError as error:
             otherwise = {key for ways in cls.ways if ways.begun(given) for key in chain(*ways.groups)}
-            faults += reworded(
-                error, cls.model_fields, meant | otherwise if faults or error.error_count() > 1 else ()
-            )
+            faults += reworded(error, fields, meant | otherwise if faults or error.error_count() > 1 else ())
             judged = cls._sound_part(completed)
         # What only follows from a value's own fault, or from a misspelt key, is not told.
         broken = {place[:depth] for place, _ in faults for depth in range(1, len(place) + 1)}
@@ -179,6 +178,12 @@ class Section(BaseModel):
         return type(self) is type(other) and all(
             getattr(self, key) == getattr(other, key) for key in type(self).model_fields
         )
+
+
+@cache
+def _faults_of_ways(ways: tuple[Ways, ...], given: frozenset[str]) -> tuple[str, ...]:
+    """Returns what is wrong with the keys that are given, together."""
+    return tuple(message for each in ways for message in each.faults(given))
 
 
 def inner_section(annotation: object) -> type[Section] | None:

@@ -6,7 +6,6 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Unpack
 
 import numpy as np
@@ -27,7 +26,6 @@ NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""
 
 _BLOCK = 64  # scenes between two reports
-_field_within = cache(AxisField.within)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -173,7 +171,7 @@ def _solve_band(
     shared = [each.incumbent for each in wider if band[0] <= _upright(each.incumbent.axis) <= band[1]]
     known = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
     try:
-        outcome = solve_and_prove(family, [_field_within(*band)], options, known=known, bound=bound)
+        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=known, bound=bound)
     except SolveError:
         return None
     if outcome.reason == INTERRUPT:

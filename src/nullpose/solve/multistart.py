@@ -28,6 +28,7 @@ NOT_RECEIVED = (
 """What is said where some were."""
 _CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
 _CLIMB_STEPS = 300
+_ALL = 1_000_000  # landmarks
 _PAIRED = 4  # interferers whose lines are looked at
 
 
@@ -39,24 +40,30 @@ class SearchSettings(NamedTuple):
         polished: the best of them that are polished in each round.
         rounds: most rounds.
         patience: rounds without improvement after which it stops.
+        landmarks: the best landmarks that are polished before the rounds.
     """
 
     coarse: int = 96
     polished: int = 24
     rounds: int = 12
     patience: int = 2
+    landmarks: int = _ALL
 
 
+_LIGHT = SearchSettings(coarse=8, polished=1, rounds=1, patience=1, landmarks=2)
 _NO_SEARCH = SearchSettings(coarse=0, polished=0, rounds=-1, patience=0)
 
 
-def search_settings(proof_follows: bool) -> SearchSettings:
+def search_settings(proof_follows: bool, field: AxisField) -> SearchSettings:
     """Return how hard to try: lightly if a proof follows, which repairs what the search misses.
 
     Args:
         proof_follows: whether one does.
+        field: the axes; if a position gives the axis, the best place may be a needle over a landmark.
     """
-    return SearchSettings(coarse=16, polished=2, rounds=2, patience=1) if proof_follows else SearchSettings()
+    if not proof_follows:
+        return SearchSettings()
+    return _LIGHT if field.is_free else _LIGHT._replace(landmarks=_ALL)
 
 
 def landmarks(family: Family, most: int = 16) -> FloatArray:

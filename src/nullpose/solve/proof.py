@@ -19,11 +19,15 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
-_DIRECT_NODES = 20_000  # of a try with axes split early; most problems of the paper's size need a few hundred
+_DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
+_ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
+_DIRECT_SHARE = 0.125  # of the time limit, at most: then come the stages, which have a bound to show
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
+_LATE_SEEN = 400
+_LATE_LEFT = 0.75  # of the root box: with more left after so many nodes, hardly any try comes to an end
 _KEPT = 4  # boxes of a limit that are left to the stages, which bound what is far at once
-_STAGE = 0.25  # each stage's gap, as a share of the one before
+_STAGE = 0.1  # each stage's gap, as a share of the one before
 _NEARLY = 2.0  # a stage that ends so near to the target goes all the way
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
 _MOST_LEAVES = 250_000
@@ -75,9 +79,9 @@ class _Run:
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
-        self.deadline = began + limits.time_limit_s
+        self.began, self.deadline = began, began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
-        self.nodes = 0
+        self.nodes, self.threads = 0, limits.threads or processors()
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
         self.proved, self.farthest = _reach(family)
@@ -121,23 +125,37 @@ class _Run:
         Splitting axes late takes some hundred nodes where splitting them early takes many thousands, and the
         other way round, and nothing cheap was found that tells which beforehand.
         """
-        tries = [(self.kernel.EARLY, _DIRECT_NODES)]
         ratios = len(self.family.numerator_point)
+        until = min(self.deadline, self.began + _DIRECT_SHARE * self.limits.time_limit_s)
+        tries = [(self.kernel.EARLY, _ALONE_NODES, _DIRECT_NODES, 1.0)]
         if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
-            tries.insert(0, (self.kernel.LATE, min(_LATE_NODES, _LATE_NODES_EACH * ratios)))
-        for self.axes_above, nodes in tries:
-            done, reason = self.stage(
-                self.target, root, min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
-            )
-            if not reason or time.perf_counter() > self.deadline or self.nodes >= self.node_limit:
+            late = min(_LATE_NODES, _LATE_NODES_EACH * ratios)
+            tries.insert(0, (self.kernel.LATE, _LATE_SEEN, late, _LATE_LEFT))
+        for self.axes_above, alone, nodes, left in tries:
+            most = min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
+            workers = WorkerPool(root, 1)
+            done, reason = self.work_off(workers, self.target, min(alone, most), until)
+            hopeless = reason and self._volume(workers.nodes()) > left * self._volume(root)
+            if reason and most > alone and not hopeless and time.perf_counter() < until:
+                done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
+            if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
                 break
         return done, reason
 
-    def stage(self, gap: float, start: FloatArray, most: int, threads: int = 1) -> tuple[FloatArray, str]:
+    def _volume(self, nodes: FloatArray) -> float:
+        return float(np.sum(np.prod(nodes[:, self.node.HALF : self.node.LEVEL], axis=1)))
+
+    def stage(self, gap: float, start: FloatArray, most: int) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
-        workers = WorkerPool(start, threads)
-        none = start[:0]
+        return self.work_off(WorkerPool(start, self.threads), gap, most, self.deadline, self.threads)
+
+    def work_off(
+        self, workers: WorkerPool, gap: float, most: int, deadline: float, threads: int = 1
+    ) -> tuple[FloatArray, str]:
+        """Do a stage's work on nodes that are already with the workers."""
+        none = np.empty((0, self.node.COLUMNS))
         until = self.nodes + most
+        workers.grow(threads)
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while True:
                 budget = max(1, min(self.chunk, until - self.nodes))
@@ -149,7 +167,7 @@ class _Run:
                     return workers.leaves(), ""
                 if self.on_progress is not None:
                     self.on_progress(self.proved / self.value - 1.0, self.nodes)
-                if time.perf_counter() > self.deadline:
+                if time.perf_counter() > deadline:
                     return none, f"the time limit of {self.limits.time_limit_s:g} s"
                 if self.nodes >= until:
                     return none, f"the node limit of {self.limits.node_limit}"
@@ -245,14 +263,13 @@ def prove(
         if not reason:
             leaves = run.shown(done, leaves)
         elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
-            threads = limits.threads or processors()
             start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
                 if len(start) > _MOST_REFINED:
                     reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
                     break
-                done, reason = run.stage(gap, start, run.node_limit - run.nodes, threads)
+                done, reason = run.stage(gap, start, run.node_limit - run.nodes)
                 if reason:
                     break
                 leaves, start = run.shown(done, leaves), done

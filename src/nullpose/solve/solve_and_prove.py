@@ -64,8 +64,7 @@ def solve_and_prove(
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)()
     began = time.perf_counter()
-    settings = search_settings(options.certify)
-    each = [known or multistart(family, field, seed=options.seed, settings=settings) for field in fields]
+    each = [known or _searched(family, field, options) for field in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
@@ -93,3 +92,8 @@ def solve_and_prove(
         upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
         reason=reason,
     )
+
+
+def _searched(family: Family, field: AxisField, options: SolveOptions) -> Incumbent:
+    settings = search_settings(options.certify, field)
+    return multistart(family, field, seed=options.seed, settings=settings)

@@ -17,7 +17,8 @@ Kernel: TypeAlias = Callable[..., Any]
 _FEWEST_TO_SHARE = 8
 _MOST_WORKERS = 8
 _BLOCK = 32_768  # leaves that are made room for at once, at most
-_DEPTH = 1024  # rows that a stack is given beyond those it begins with
+_FIRST = 256  # leaves that room is made for: so little is had without asking the system for memory
+_DEPTH = 256  # rows that a stack is given beyond those it begins with
 _SPARE = 16  # rows of a stack that a kernel needs
 
 
@@ -36,7 +37,7 @@ class _Worker:
     """
 
     def __init__(self, nodes: FloatArray) -> None:
-        self.stack, self.leaves = np.empty((0, nodes.shape[1])), np.empty((1024, nodes.shape[1]))
+        self.stack, self.leaves = np.empty((0, nodes.shape[1])), np.empty((_FIRST, nodes.shape[1]))
         self.top = self.filled = 0
         self.position_m, self.axis = np.empty(3), np.empty(3)
         self.better = False
@@ -84,6 +85,11 @@ class WorkerPool:
         count = max(1, min(workers, _MOST_WORKERS))
         self._workers = [_Worker(start[i::count]) for i in range(count)]
 
+    def grow(self, workers: int) -> None:
+        """Bring the pool to so many workers, new ones without nodes."""
+        none = self._workers[0].stack[:0]
+        self._workers += [_Worker(none) for _ in range(len(self._workers), min(workers, _MOST_WORKERS))]
+
     @property
     def done(self) -> bool:
         """Whether no node is left."""
@@ -108,6 +114,10 @@ class WorkerPool:
     def better(self) -> list[tuple[FloatArray, FloatArray]]:
         """Return the poses, position and axis, that beat the incumbent."""
         return [(w.position_m.copy(), w.axis.copy()) for w in self._workers if w.better]
+
+    def nodes(self) -> FloatArray:
+        """Return the nodes that are left, (n, columns)."""
+        return np.concatenate([worker.stack[: worker.top] for worker in self._workers])
 
     def leaves(self) -> FloatArray:
         """Return all leaves made; the workers give up theirs, since memory for both would be too much."""

@@ -17,7 +17,7 @@ from nullpose.solve.kernels.denominators import expand_denominator
 from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
-from nullpose.solve.kernels.expansion import frame_at, min_distance
+from nullpose.solve.kernels.expansion import frame_at, min_distance, min_square
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
@@ -99,8 +99,9 @@ def best_frame(family, axis_field, row):
     still = turning = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
-        a = min_distance(points, family.numerator_point[k], centre, half)
-        scale = row[WEIGHT + s] * family.numerator_weight[k] / (a * a * a * a)
+        square = min_square(points, family.numerator_point[k], centre, half)
+        a = math.sqrt(square)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
         still += 6.0 * scale
         turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
     for e in range(family.denominator_weight.shape[0]):
@@ -127,7 +128,8 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     nearest = math.inf
     for j in range(family.points_m.shape[0]):
-        nearest = min(nearest, min_distance(family.points_m, j, row[CENTRE:HALF], half))
+        nearest = min(nearest, min_square(family.points_m, j, row[CENTRE:HALF], half))
+    nearest = math.sqrt(nearest)
     if not nearest > _CLOSE * radius:
         return _BY_POSITION, side, 0
     if axis_field.kind == 1:
@@ -206,8 +208,8 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
 def lone_ratio(family, row, below):
     """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     for k in range(family.numerator_weight.shape[0]):
-        a = min_distance(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
-        most = family.numerator_isotropic[k] + family.numerator_weight[k] / (a * a)
+        square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
+        most = family.numerator_isotropic[k] + family.numerator_weight[k] / square
         if most < -below[family.denominator_of[k], 17] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True

@@ -8,6 +8,8 @@ multipliers. Any multipliers give a valid bound; these give nearly the best.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from nullpose.solve.kernels.barrier import add_constraints
@@ -27,6 +29,9 @@ from nullpose.solve.kernels.vectors import dot
 
 _MOST_STEPS = 60
 _BACKTRACKS = 40
+_FIRST = 0.1  # barrier weight, in units of the level
+_SHRINK = 0.03  # of it from one centre to the next
+_MARGIN = 0.1  # what more steps can gain, as a share of the distance to where they must come below
 
 
 @inner_kernel
@@ -87,7 +92,7 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
     """Fill the multipliers of forms, which sum to one, and of the ``sides`` constraints before them.
 
     Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
-    largest eigenvalue below it.
+    largest eigenvalue below it. And when the multipliers bring it so far below that better ones gain little.
 
     Args:
         forms: (total, 6) or more; the first ``sides`` of them are constraints ``<Q, U> >= 0``.
@@ -112,8 +117,9 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         rates[k, 5] = 0.0 if k < sides else -1.0
         values[k] = form_product(forms[k], matrix)
     smallest = smallest_of(values[sides:])
-    mu, end = 0.3 * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
+    mu, end = _FIRST * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
     s = smallest - mu * (total - sides)
+    below = stop if stop < math.inf else -math.inf
     for _ in range(_MOST_STEPS):
         system[:, :], gradient[:], gradient[5] = 0.0, 0.0, 1.0
         for k in range(total):
@@ -135,11 +141,11 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         for k in range(total):
             values[k] += step * (changes[k] - rates[k, 5] * way[5])
         smallest = smallest_of(values[sides:])
-        is_centred = inner(gradient, way, 6) <= 0.3 * mu
-        if smallest > stop or (is_centred and mu <= end):
+        is_centred = inner(gradient, way, 6) <= mu
+        if smallest > stop or (is_centred and (mu <= end or mu * total <= _MARGIN * (below - smallest))):
             break
         if is_centred:
-            mu = max(0.1 * mu, 0.999 * end)
+            mu = max(_SHRINK * mu, 0.999 * end)
     for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
         multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
     weight = 0.0

@@ -18,7 +18,7 @@ from nullpose.solve.kernels.denominators import (
     add_scaled,
     sharpen,
 )
-from nullpose.solve.kernels.expansion import expand_point, min_distance
+from nullpose.solve.kernels.expansion import expand_point, min_square
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.node import (
@@ -273,9 +273,9 @@ def out_of_reach(family, domain, row):
     keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     for k in range(family.numerator_weight.shape[0]):
-        a = min_distance(family.points_m, family.numerator_point[k], centre, half)
+        square = min_square(family.points_m, family.numerator_point[k], centre, half)
         least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
-        if (family.numerator_isotropic[k] - least) * a * a + family.numerator_weight[k] < 0.0:
+        if (family.numerator_isotropic[k] - least) * square + family.numerator_weight[k] < 0.0:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     for q in range(keep_points.shape[0]):

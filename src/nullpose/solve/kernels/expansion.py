@@ -20,15 +20,20 @@ from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
 
 
+@inner_kernel
+def min_square(points, j, centre, half):
+    """Return the squared distance from point j to the nearest point of the box."""
+    total = 0.0
+    for i in range(3):
+        x = max(0.0, abs(points[j, i] - centre[i]) - half[i])
+        total += x * x
+    return total
+
+
 @kernel
 def min_distance(points, j, centre, half):
     """Return the distance from point j to the nearest point of the box."""
-    total = 0.0
-    for i in range(3):
-        x = abs(points[j, i] - centre[i]) - half[i]
-        if x > 0.0:
-            total += x * x
-    return math.sqrt(total)
+    return math.sqrt(min_square(points, j, centre, half))
 
 
 @kernel
@@ -74,10 +79,11 @@ def expand_point(family, j, frame, centre, half, form, slopes):
     bent = 1.0 - leak
     x, y, z = seen_from(points, turn, j, centre, frame.basis)
     basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
-    a = min_distance(points, j, centre, half)
+    square = min_square(points, j, centre, half)
+    beyond = 1.0 / (square * square)
     if turns and j == frame.anchor:
         fill_anchor(leak, frame, form, slopes)
-        return 6.0 / (a * a * a * a), -2.0 / (a * a * a * a)
+        return 6.0 * beyond, -2.0 * beyond
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
     form[0] = (leak * x * x + y * y + z * z) * i4
@@ -101,9 +107,8 @@ def expand_point(family, j, frame, centre, half, form, slopes):
         slopes[i, 3] = -(x * v + y * u) * b4 + k * x * y
         slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
         slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
-    i4 = 1.0 / (a * a * a * a)
     if not turns:
-        return 6.0 * i4, -4.0 * i4
-    mixed = 1.0 / (a * a * a * frame.least_radius_m)
-    swing = 1.0 / (a * a * frame.least_radius_m * frame.least_radius_m)
-    return 6.0 * i4 + 16.0 * mixed + 8.31 * swing, -(4.0 * i4 + 12.0 * mixed + 6.31 * swing)
+        return 6.0 * beyond, -4.0 * beyond
+    swing = 1.0 / (square * frame.least_radius_m * frame.least_radius_m)
+    mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
+    return 6.0 * beyond + 16.0 * mixed + 8.31 * swing, -(4.0 * beyond + 12.0 * mixed + 6.31 * swing)

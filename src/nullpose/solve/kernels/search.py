@@ -242,7 +242,7 @@ def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_
                 copy_into(u, poses[c, 3:])
                 evaluations += 1
         before = best
-        for _ in range(judged if lap == 0 else min(settings.polished, judged)):
+        for _ in range(min(settings.landmarks if lap == 0 else settings.polished, judged)):
             c = np.argmax(values[:judged])
             if not values[c] > -math.inf:
                 break

@@ -131,7 +131,7 @@ class Exchange:
         Args:
             deadline: when to stop in any case, on the clock of ``time.perf_counter``.
         """
-        light, thorough = search_settings(True), search_settings(False)
+        light, thorough = (search_settings(follows, self.axis_field) for follows in (True, False))
         settings = light
         for _ in range(_MOST_ROUNDS):
             found = self._search_once(settings)
