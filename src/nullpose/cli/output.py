@@ -86,7 +86,7 @@ def compiling_announced() -> Iterator[None]:
     from nullpose.solve.compiling import announce_compiling
 
     with announce_compiling(
-        lambda: typer.echo("Compiling kernels for this machine (once, about half a minute) ...", err=True)
+        lambda: typer.echo("Compiling kernels for this machine (once, about 20 s) ...", err=True)
     ):
         yield
 

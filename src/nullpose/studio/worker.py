@@ -21,7 +21,7 @@ from nullpose.studio.view import View
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
-_COMPILING = "compiling the solver, once, which takes half a minute"
+_COMPILING = "compiling the solver, once, which takes about 20 s"
 
 _E = TypeVar("_E", bound=Event)
 
