@@ -17,4 +17,5 @@ def test_compiling_is_announced_once(capsys: pytest.CaptureFixture[str]) -> None
             numba.njit(lambda x, step=increment: x + step)(1)
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith("Compiling kernels for this machine") and err.count("\n") == 1
+    assert err.startswith("Compiling kernels for this machine")
+    assert err.count("\n") == 1
