@@ -90,8 +90,13 @@ def _ranks(place: Place, data: Any) -> list[int]:
     """Returns the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
-        is_list = isinstance(data, list | tuple)
-        keys = list(data) if isinstance(data, Mapping) else list(range(len(data))) if is_list else []
-        ranks.append(keys.index(step) if step in keys else len(keys))
-        data = data[step] if step in keys else ()
+        if isinstance(data, list | tuple):
+            inside = isinstance(step, int) and 0 <= step < len(data)
+            rank = step if inside and isinstance(step, int) else len(data)
+        else:
+            keys = list(data) if isinstance(data, Mapping) else []
+            inside = step in keys
+            rank = keys.index(step) if inside else len(keys)
+        ranks.append(rank)
+        data = data[step] if inside else ()
     return ranks

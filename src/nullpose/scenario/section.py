@@ -146,7 +146,7 @@ class Section(BaseModel):
             return data if isinstance(data, cls) else None
         sound: dict[str, Any] = {}
         for key, field in cls.model_fields.items():
-            value, inner = data.get(key), inner_section(field.annotation)
+            value, inner = data.get(key), _table_of(cls, key)
             sound[key] = None if key in data or field.is_required() else field.get_default()
             if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
                 sound[key] = tuple(inner._sound_part(member) for member in value)
@@ -191,6 +191,12 @@ def inner_section(annotation: object) -> type[Section] | None:
     if isinstance(annotation, type) and issubclass(annotation, Section):
         return annotation
     return next(filter(None, map(inner_section, get_args(annotation))), None)
+
+
+@cache
+def _table_of(kind: type[Section], key: str) -> type[Section] | None:
+    """Returns the kind of table that one key of a table holds."""
+    return inner_section(kind.model_fields[key].annotation)
 
 
 @cache

@@ -63,3 +63,9 @@ def test_two_programs_at_once(farm: Any, spec_file: Any, tmp_path: Path) -> None
     assert f"process {first.pid} on {socket.gethostname()} writes this study now" in said
     assert first.poll() is None
     os.killpg(first.pid, signal.SIGKILL)
+
+
+def test_a_lock_of_other_bytes_names_nobody(tmp_path: Path) -> None:
+    """Whatever stands in the file, the command that reads it goes on."""
+    (tmp_path / "lock").write_bytes(b"process \xff\xaa on here\n")
+    assert holder(tmp_path) == ""

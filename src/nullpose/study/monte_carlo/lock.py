@@ -34,7 +34,7 @@ def locked(folder: Path) -> Iterator[None]:
     """
     path, own = folder / LOCK, f"process {os.getpid()} on {socket.gethostname()}\n"
     check_outputs({}, {"the study's lock": path})
-    with path.open("a+", encoding="utf-8") as file:
+    with path.open("a+", encoding="utf-8", errors="replace") as file:
         if other := _other(file):
             raise OutputError(
                 f"{folder}: {other} writes this study now, or was killed doing so; wait for it, or end it; "
@@ -55,7 +55,7 @@ def holder(folder: Path) -> str:
     """
     with suppress(OSError):
         if (folder / LOCK).is_file():
-            with (folder / LOCK).open("r+", encoding="utf-8") as file:
+            with (folder / LOCK).open("r+", encoding="utf-8", errors="replace") as file:
                 return _other(file)
     return ""
 
