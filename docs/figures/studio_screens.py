@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports below this line
 
 from benchmarks.studio.chromium import opened  # noqa: E402
 

@@ -152,3 +152,15 @@ def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest
         for row in proof.leaves:
             ratios = row[node.INDEX : node.INDEX + int(row[node.COUNT])]
             assert len(set(ratios)) == len(ratios)
+
+
+def test_a_long_try_is_shared(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Begun by one thread and gone on with by three, a try proves what one thread alone proves."""
+    family = build_family(random_scene(np.random.default_rng(3), 5, 1, 30.0))
+    alone = proof_of(family, AxisField.free(), gap=1e-4)
+    monkeypatch.setattr(import_module("nullpose.solve.proof"), "_ALONE_NODES", 50)
+    monkeypatch.setattr(import_module("nullpose.solve.proof"), "_LATE_SEEN", 50)
+    shared = proof_of(family, AxisField.free(), gap=1e-4, threads=3)
+    assert alone.reason == shared.reason == ""
+    assert shared.nodes > 100
+    assert shared.upper_bound == pytest.approx(alone.upper_bound, rel=2e-4)

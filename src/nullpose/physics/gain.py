@@ -38,8 +38,9 @@ def antenna_gain(
     """Return the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
 
     A short dipole has ``G(gamma_i) = sin^2(gamma_i) = 1 - <(p_i - p) / |p_i - p|, u>^2``, evaluated as the
-    squared norm of the cross product of the two unit vectors: the same number, which keeps its digits beside
-    the null, where the printed difference loses all of them. Other antennas say what becomes of that sine.
+    squared norm of the cross product ``(p_i - p) x u`` over ``|p_i - p|^2``: the same number, which keeps its
+    digits beside the null, where the printed difference loses all of them. Other antennas say what becomes of
+    that sine.
 
     Source: paper eqs. 1.2 and 1.4; the maximum is 1, not the 1.5 of a short dipole's directivity.
 

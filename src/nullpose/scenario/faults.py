@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -90,13 +90,9 @@ def _ranks(place: Place, data: Any) -> list[int]:
     """Returns the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
-        if isinstance(data, list | tuple):
-            inside = isinstance(step, int) and 0 <= step < len(data)
-            rank = step if inside and isinstance(step, int) else len(data)
-        else:
-            keys = list(data) if isinstance(data, Mapping) else []
-            inside = step in keys
-            rank = keys.index(step) if inside else len(keys)
-        ranks.append(rank)
-        data = data[step] if inside else ()
+        # a range looks itself up at once, however long it is
+        places = range(len(data)) if isinstance(data, list | tuple) else range(0)
+        keys: Sequence[Any] = list(data) if isinstance(data, Mapping) else places
+        ranks.append(keys.index(step) if step in keys else len(keys))
+        data = data[step] if step in keys else ()
     return ranks

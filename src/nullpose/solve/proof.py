@@ -21,7 +21,7 @@ from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
 _DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
 _ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
-_DIRECT_SHARE = 0.125  # of the time limit, at most: then come the stages, which have a bound to show
+_DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _LATE_SEEN = 400
@@ -79,7 +79,7 @@ class _Run:
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
-        self.began, self.deadline = began, began + limits.time_limit_s
+        self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
         self.nodes, self.threads = 0, limits.threads or processors()
         # the same on every machine: where improvements are noticed decides which pose is found
@@ -126,7 +126,8 @@ class _Run:
         other way round, and nothing cheap was found that tells which beforehand.
         """
         ratios = len(self.family.numerator_point)
-        until = min(self.deadline, self.began + _DIRECT_SHARE * self.limits.time_limit_s)
+        now = time.perf_counter()
+        until = now + _DIRECT_SHARE * (self.deadline - now)
         tries = [(self.kernel.EARLY, _ALONE_NODES, _DIRECT_NODES, 1.0)]
         if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
             late = min(_LATE_NODES, _LATE_NODES_EACH * ratios)

@@ -26,7 +26,7 @@ def require_viser() -> None:
         UsageError: it cannot, with what to do about it.
     """
     try:
-        import viser  # noqa: F401
+        import viser  # noqa: F401  only whether it is installed
     except ImportError as error:
         raise UsageError(_INSTALL) from error
 

@@ -278,7 +278,7 @@ def least_distance(q, semi):
 @inner_kernel
 def clearance_of(radius, axes, semi, j, q):
     """Return what ``clearance`` does; compiled without the branch where there are no axes."""
-    if axes is not None:  # noqa: SIM102
+    if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
         if radius < 0.0:
             return least_distance(components(rows(axes[j]), q), row(semi, j))
     return norm(q) - radius
@@ -287,7 +287,7 @@ def clearance_of(radius, axes, semi, j, q):
 @inner_kernel
 def strongest_of(radius, axes, semi, j, y, q, leak, tolerance):
     """Return what ``strongest_link`` does; compiled without the branch where there are no axes."""
-    if axes is not None:  # noqa: SIM102
+    if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
         if radius < 0.0:
             return strongest_in_ellipsoid(y, q, rows(axes[j]), row(semi, j), leak, tolerance)
     most, place = strongest_in_ball(y, q, radius, leak)
