@@ -26,7 +26,7 @@ from nullpose.certificate.forms import (
     outer,
     squares,
 )
-from nullpose.certificate.interval import Interval, dot, stack, swapped
+from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
@@ -37,7 +37,7 @@ _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 Jet: TypeAlias = tuple[Interval, Interval, Interval, Interval]
 
 
-def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
+def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> Jet:
     """Return a link's value and gradient at the centres, its Hessian and its value over the boxes.
 
     Args:
@@ -45,8 +45,57 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float) ->
         boxes: b of them.
         points: (b, 3) the ground point of each.
         leak: the antenna's gain along its axis.
+        axes: (b, 3) the axes of the dipoles there, zero where there is none.
     """
-    matrix, half = Interval(field.matrix[:, :, None]), Interval(boxes.half.T)
+    has = np.any(axes != 0.0, axis=1)
+    if not np.any(has):
+        return _isotropic_jet(field, boxes, points, leak)
+    jets = _dipole_jet(field, boxes, points, axes)
+    if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
+        own = _isotropic_jet(axes, boxes, points, 0.0)
+        share = 1.0 - Interval(leak)
+        jets = tuple(jet * share + other * leak for jet, other in zip(jets, own, strict=True))
+    if not np.all(has):
+        others = _isotropic_jet(field, boxes, points, leak)
+        jets = tuple(where(has, jet, other) for jet, other in zip(jets, others, strict=True))
+    return jets[0], jets[1], jets[2], jets[3]
+
+
+def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> tuple[Interval, ...]:
+    """Return what :func:`link_jet` does where points have dipoles, without what leaks.
+
+    Their link is ``B^2 / (|u|^2 |r|^6)``, ``B = (u.v) |r|^2 - (u.r) (v.r)``.
+    """
+    matrix, v = Interval(field.matrix[:, :, None]), Interval(axes.T)
+    both = matrix + swapped(matrix)
+    slope = dot(matrix, v[:, None])  # of u.v
+
+    def parts(u: Interval, r: Interval) -> tuple[Interval, Interval, Interval]:
+        """Return B, its gradient and its Hessian."""
+        uv, ur, vr, s = dot(u, v), dot(u, r), dot(v, r), r.squared().total()
+        ahead = dot(matrix, r[:, None]) - u
+        gradient = slope * s - r * uv * 2.0 - ahead * vr + v * ur
+        bent = both[ROW, COLUMN] * vr - outer(slope, r) * 2.0 + outer(ahead, v)
+        return dot(_cross(u, r), _cross(v, r)), gradient, bent + uv * 2.0 * IDENTITY[:, None]
+
+    u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
+    product, gradient, bend = parts(u, r)
+    value, slopes, _ = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
+    u, r = _axis_and_way(field, points, boxes.hull)
+    _, _, bend = parts(u, r)
+    half = Interval(boxes.half.T)
+    swing = dot(Interval(bend.magnitude())[PLACE], half[:, None]).high
+    reach = dot(Interval(gradient.magnitude()) + Interval(swing) * 0.5, half).high
+    product, gradient = product + Interval(-reach, reach), gradient + Interval(-swing, swing)
+    over, _, hessian = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
+    most = np.fmin(over.high, (1.0 / r.squared().total()).high)
+    return value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most)
+
+
+def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
+    """Return what :func:`link_jet` does where points have no dipoles; the axis may be given, (b, 3)."""
+    matrix = Interval(field.matrix[:, :, None] if isinstance(field, AxisField) else np.zeros((3, 3, 1)))
+    half = Interval(boxes.half.T)
     u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
     cross, slopes = _cross(u, r), _cross(matrix, r[:, None]) - _cross(u[:, None], _UNIT)
     bend = -(_cross(matrix[:, ROW], _UNIT[:, COLUMN]) + _cross(matrix[:, COLUMN], _UNIT[:, ROW]))
@@ -74,16 +123,26 @@ def _cross(x: Interval, y: Interval) -> Interval:
     return x[_AFTER] * y[_LAST] - x[_LAST] * y[_AFTER]
 
 
-def _axis_and_way(field: AxisField, points: FloatArray, p: Interval) -> tuple[Interval, Interval]:
-    """Return ``u = o + M p`` and ``r = q - p``, (3, b) each."""
+def _axis_and_way(
+    field: AxisField | FloatArray, points: FloatArray, p: Interval
+) -> tuple[Interval, Interval]:
+    """Return ``u = o + M p``, or the axis given, and ``r = q - p``, (3, b) each."""
+    if not isinstance(field, AxisField):
+        return Interval(field.T), Interval(points.T) - p
     u = dot(Interval(field.matrix.T[:, :, None]), p[:, None]) + field.offset[:, None]
     return u, Interval(points.T) - p
 
 
 def _quotient(
-    matrix: Interval, u: Interval, r: Interval, cross: Interval, slopes: Interval, bend: Interval
+    matrix: Interval,
+    u: Interval,
+    r: Interval,
+    cross: Interval,
+    slopes: Interval,
+    bend: Interval,
+    power: int = 2,
 ) -> tuple[Interval, Interval, Interval]:
-    """Return ``n / (b s^2)`` with n, b and s the squares of x, u and r, its gradient and its Hessian.
+    """Return ``n / (b s^power)`` with n, b and s the squares of x, u and r, its gradient and its Hessian.
 
     Args:
         matrix: (3, 3, 1) M, the derivative of u; that of r is -I.
@@ -92,14 +151,16 @@ def _quotient(
         cross: (3, b) x = u x r, or (4, b) with sqrt(leak) u.r besides.
         slopes: (3, 3, b) its derivatives, along the second axis; (4, 3, b) likewise.
         bend: (3, 6, 1) its second derivatives; (4, 6, 1) likewise.
+        power: 2 or 3.
     """
     n, b, s = (vector.squared().total() for vector in (cross, u, r))
-    weight = b * s.squared()
+    weight = b * s.squared() * (s if power == 3 else 1.0)
     dn = dot(slopes, cross[:, None]) * 2.0
     beta, sigma = dot(matrix, u[:, None]) * 2.0 / b, r * -2.0 / s  # of log b and log s
-    fall = -(beta + sigma * 2.0)  # l, of the log of w = 1 / (b s^2)
+    fall = -(beta + sigma * power)  # l, of the log of w = 1 / (b s^power)
     bent = (swapped(squares(swapped(slopes))).total() + dot(bend, cross[:, None])) * 2.0
-    q = (squares(beta) + outer(beta, sigma)) * 2.0 + squares(sigma) * 6.0 - 4.0 * IDENTITY[:, None] / s
+    q = squares(beta) * 2.0 + outer(beta, sigma) * power + squares(sigma) * (power * (power + 1.0))
+    q = q - 2.0 * power * IDENTITY[:, None] / s
     q = q - dot(matrix[:, ROW], matrix[:, COLUMN]) * 2.0 / b
     # w (n'' + n' l + l' n + n q)
     return n / weight, (dn + n * fall) / weight, (bent + outer(dn, fall) + n * q) / weight
@@ -116,7 +177,9 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     """
     identity, above, below = weighted_sum(family, leaves)
     terms = above + [(point, -scale) for point, scale in below]
-    jets = [(scale, link_jet(field, boxes, family.points_m[point], family.leak)) for point, scale in terms]
+    dipoles = family.ground_axes if len(family.ground_axes) else np.zeros_like(family.points_m)
+    at = ((scale, family.points_m[point], dipoles[point]) for point, scale in terms)
+    jets = [(scale, link_jet(field, boxes, place, family.leak, axes)) for scale, place, axes in at]
     zero = Interval(np.zeros((6, len(boxes))))
     starts = (identity, zero[:3], zero, identity)
     value, slopes, hessian, ranged = (

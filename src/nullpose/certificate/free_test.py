@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import TOWARDS, WORLD, FloatArray, IntArray, Leaves
+from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import COUNTED, IDENTITY, matrices, quadratic
 from nullpose.certificate.frames import SWING, Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
@@ -35,8 +37,11 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
     """
     holds, vectors = _holds(family, field, leaves, boxes, None)
     left = np.flatnonzero(~holds)
+    some = leaves.chosen(left)
+    if len(left) and len(family.ground_axes):  # in coordinates that turn too fast, still ones may do
+        some = replace(some, test=np.where(some.test == TOWARDS, WORLD, some.test))
     if len(left):  # near a null the denominators' remainders may be had smaller
-        holds[left], _ = _holds(family, field, leaves.chosen(left), boxes.chosen(left), vectors[:, left])
+        holds[left], _ = _holds(family, field, some, boxes.chosen(left), vectors[:, left])
     return holds
 
 
@@ -44,14 +49,20 @@ def _holds(
     family: Family, field: AxisField, leaves: Leaves, boxes: Boxes, vectors: FloatArray | None
 ) -> tuple[np.ndarray, FloatArray]:
     """Return which boxes are excluded, and about the largest eigenvalues' vectors at their centres."""
-    frames = frames_of(family, leaves, boxes)
-    total = ratio_forms(family, leaves, boxes, frames, vectors)
-    total = with_constants(total, field, leaves, boxes, frames)
-    horizontal = ~frames.turning & (field.is_free and field.band[1] == 0.0)
+    if len(family.ground_axes):
+        held = [(q, weight) for q, weight, _ in constants(field, leaves)]
+        total, shear = dipole_sum(family, leaves, boxes, held)
+        whole, turning = shear.gram, shear.on
+    else:
+        frames = frames_of(family, leaves, boxes)
+        total = ratio_forms(family, leaves, boxes, frames, vectors)
+        total = with_constants(total, field, leaves, boxes, frames)
+        whole, turning = frames.gram, frames.turning
+    horizontal = ~turning & (field.is_free and field.band[1] == 0.0)
     top = top_vectors(total, horizontal)
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
-        here, gram, half = total.chosen(rows), frames.gram[:, rows], boxes.half[rows].T
+        here, gram, half = total.chosen(rows), whole[:, rows], boxes.half[rows].T
         for weight, bound in constraints:
             value = bound.value + (Interval(half).squared() * bound.bend).total()
             here = here + Linear(gram * (value * weight), gram[:, None] * (bound.slopes * weight))

@@ -8,8 +8,10 @@ from itertools import product
 import numpy as np
 
 from nullpose.certificate.certificate import FloatArray, IntArray
-from nullpose.certificate.forms import definite
-from nullpose.certificate.interval import Interval
+from nullpose.certificate.forms import COLUMN, PLACE, ROW, definite, matrices
+from nullpose.certificate.interval import Interval, dot
+
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,4 +63,28 @@ def negative_definite(a: Interval, horizontal: np.ndarray | bool = False) -> np.
         horizontal: where the first two coordinates are all that counts.
     """
     block, whole, _ = definite(-a)
-    return np.asarray(np.where(horizontal, block, whole))
+    holds = np.where(horizontal, block, whole)
+    left = np.flatnonzero(~holds & np.logical_not(horizontal) & np.all(np.isfinite(a.low + a.high), axis=0))
+    if len(left):
+        holds[left] = _dominant(-a[:, left])
+    return np.asarray(holds)
+
+
+def _dominant(a: Interval) -> np.ndarray:
+    """Return which forms, (6, b), are positive definite for certain, seen along their own axes.
+
+    Where two eigenvalues are small, their product is lost in the determinant's rounding. In the basis of the
+    eigenvectors, about, a matrix is all but diagonal: definite, if each entry of the diagonal is larger than
+    the sum of the others in its row.
+    """
+    axes = np.moveaxis(np.linalg.eigh(matrices(a.middle()))[1], 0, -1)
+    half = dot(a[PLACE][:, :, None], Interval(axes)[:, None])
+    seen = dot(Interval(axes)[:, ROW], half[:, COLUMN])
+    # the axes themselves must span the space: their products are those of an orthonormal basis, about
+    gram = dot(Interval(axes)[:, ROW], Interval(axes)[:, COLUMN])
+    holds = np.ones(axes.shape[-1], dtype=bool)
+    for form in (seen, gram):
+        off = form.magnitude()[PLACE]
+        rest = Interval(off[_NEXT, range(3)]) + off[_LAST, range(3)]
+        holds &= np.all(form.low[:3] > rest.high, axis=0)
+    return holds

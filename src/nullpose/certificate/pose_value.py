@@ -89,9 +89,17 @@ def sine2(x: Exact, y: Exact) -> Fraction:
     return Fraction(cross @ cross, (x @ x) * (y @ y))
 
 
-def link(point: Exact, position: Exact, axis: Exact, leak: Fraction) -> Fraction:
-    """Return a link's gain over ``|r|^2``, exactly; without a leak, paper eqs. 1.2 to 1.4."""
+def link(point: Exact, position: Exact, axis: Exact, leak: Fraction, dipole: Exact | None = None) -> Fraction:
+    """Return a link's gain over ``|r|^2``, exactly; without a leak and a dipole, paper eqs. 1.2 to 1.4.
+
+    With a dipole along v, ``(1 - l) B^2 / (|u|^2 |r|^6) + l |r x v|^2 / |r|^4``, ``B = (u x r).(v x r)``.
+    """
     r = point - position
+    if dipole is not None and np.any(dipole != 0):
+        square, across = Fraction(r @ r), np.cross(dipole, r)
+        both = Fraction(np.cross(axis, r) @ across)
+        kept = (1 - leak) * both**2 / Fraction(axis @ axis)
+        return (kept / square + leak * Fraction(across @ across)) / square**2
     return (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
 
 
@@ -104,7 +112,9 @@ def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
         axis: the antenna's axis, of any length.
     """
     leak = Fraction(family.leak)
-    links = np.array([link(point, position, axis, leak) for point in exact(family.points_m)])
+    dipoles = exact(family.ground_axes) if len(family.ground_axes) else [None] * len(family.points_m)
+    pairs = zip(exact(family.points_m), dipoles, strict=True)
+    links = np.array([link(point, position, axis, leak, dipole) for point, dipole in pairs])
     entries = exact(family.denominator_weight) * links[family.denominator_point]
     starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
     denominators = np.array(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.ratios import Ratios
+from nullpose.objectives.ratios import Ratios, ground_of
 from nullpose.objectives.record import ObjectiveRecord
 
 _SINR = Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr")
@@ -20,16 +20,18 @@ def _ratios(scenario: Scenario) -> Ratios:
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
     scale = scenario.receiver.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
+    axes, shares = ground_of(scenario, "node", "jammer")
     return Ratios(
         points_m=np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)]),
         numerator_isotropic=np.zeros(n_nodes),
-        numerator_weight=scale * scenario.node_powers_w / scenario.node_required_sinr,
+        numerator_weight=scale * scenario.node_powers_w / scenario.node_required_sinr * shares[:n_nodes],
         numerator_point=np.arange(n_nodes, dtype=np.int64),
         denominator_of=np.zeros(n_nodes, dtype=np.int64),
         denominator_isotropic=np.ones(1),
         denominator_start=np.array([0, n_jammers], dtype=np.int64),
         denominator_point=np.arange(n_nodes, n_nodes + n_jammers, dtype=np.int64),
-        denominator_weight=scale * scenario.jammer_powers_w,
+        denominator_weight=scale * scenario.jammer_powers_w * shares[n_nodes:],
+        ground_axes=axes,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.ratios import Ratios
+from nullpose.objectives.ratios import Ratios, ground_of
 from nullpose.objectives.record import ObjectiveRecord
 
 _RATE = Quantity(
@@ -27,16 +27,18 @@ def _ratios(scenario: Scenario) -> Ratios:
         scenario.eavesdropper_positions_m,
         scenario.jammer_positions_m.reshape(-1, 3),  # in no ratio, but to be kept clear of
     )
+    axes, shares = ground_of(scenario, "node", "eavesdropper", "jammer")
     return Ratios(
         points_m=np.vstack(positions),
         numerator_isotropic=np.ones(len(node)),
-        numerator_weight=(sent / scenario.node_noise_w)[node],
+        numerator_weight=(sent * shares[:n_nodes] / scenario.node_noise_w)[node],
         numerator_point=node.astype(np.int64),
         denominator_of=eavesdropper.astype(np.int64),
         denominator_isotropic=np.ones(n_eavesdroppers),
         denominator_start=np.arange(n_eavesdroppers + 1, dtype=np.int64),
         denominator_point=np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
-        denominator_weight=sent / scenario.eavesdropper_noise_w,
+        denominator_weight=sent * shares[n_nodes : n_nodes + n_eavesdroppers] / scenario.eavesdropper_noise_w,
+        ground_axes=axes,
     )
 
 

@@ -111,8 +111,10 @@ def sinr_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case:
     p, u = _actual(position_m, axis, case)
     link = (scenario.receiver.reference_gain, scenario.antenna_record)
     jammers_m = scenario.jammer_positions_m + case.jammer_offsets_m
-    signal_w = received_power_w(p, u, scenario.node_positions_m, scenario.node_powers_w, *link)
-    jamming_w = received_power_w(p, u, jammers_m, scenario.jammer_powers_w, *link)
+    nodes = (scenario.node_positions_m, scenario.node_powers_w)
+    signal_w = received_power_w(p, u, *nodes, *link, scenario.node_antennas)
+    jammers = (jammers_m, scenario.jammer_powers_w)
+    jamming_w = received_power_w(p, u, *jammers, *link, scenario.jammer_antennas)
     noise_w = np.sum(jamming_w, axis=-1, keepdims=True) + scenario.objective_record.noise_w(scenario)
     return np.asarray(signal_w / noise_w)
 
@@ -143,7 +145,7 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
     assert scenario.transmitter is not None, "or the signal to noise ratio would have failed"
     listeners_m = scenario.eavesdropper_positions_m + case.eavesdropper_offsets_m
     powers_w = np.full(len(listeners_m), scenario.transmitter.transmit_power_w)
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
+    link = (scenario.receiver.reference_gain, scenario.antenna_record, scenario.eavesdropper_antennas)
     overheard = received_power_w(p, u, listeners_m, powers_w, *link) / scenario.eavesdropper_noise_w
     return np.asarray((1.0 + wanted[..., :, None]) / (1.0 + overheard[..., None, :]))
 

@@ -34,7 +34,7 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     node_w = np.array([one.node_powers_w for one in scenarios])
     jammer_w = np.array([one.jammer_powers_w for one in scenarios])
     antenna = scenarios[0].antenna_record
-    if any(one.antenna_record != antenna for one in scenarios):
+    if any(one.antenna_record != antenna or one.node_antennas or one.jammer_antennas for one in scenarios):
         poses = zip(scenarios, np.asarray(position_m), np.asarray(axis), strict=True)
         return np.array([margin(*each) for each in poses])
     signal_w = received_power_w(position_m, axis, node_m, node_w, g0, antenna)

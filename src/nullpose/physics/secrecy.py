@@ -5,20 +5,26 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.antenna import GroundAntennas
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
 
 def _snr(
-    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: FloatArray, noise_w: FloatArray
+    scenario: Scenario,
+    position_m: ArrayLike,
+    axis: ArrayLike,
+    points_m: FloatArray,
+    ground: GroundAntennas | None,
+    noise_w: FloatArray,
 ) -> FloatArray:
     if scenario.transmitter is None:
         raise ValueError("this scenario states no power of the drone; it needs a [transmitter]")
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
     powers_w = np.full(len(points_m), scenario.transmitter.transmit_power_w)
     link = (scenario.receiver.reference_gain, scenario.antenna_record)
-    return np.asarray(received_power_w(position_m, axis, points_m, powers_w, *link) / noise_w)
+    return np.asarray(received_power_w(position_m, axis, points_m, powers_w, *link, ground) / noise_w)
 
 
 def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
@@ -40,7 +46,8 @@ def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Floa
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    return _snr(scenario, position_m, axis, scenario.node_positions_m, scenario.node_noise_w)
+    nodes = (scenario.node_positions_m, scenario.node_antennas, scenario.node_noise_w)
+    return _snr(scenario, position_m, axis, *nodes)
 
 
 def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
@@ -59,7 +66,8 @@ def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    return _snr(scenario, position_m, axis, scenario.eavesdropper_positions_m, scenario.eavesdropper_noise_w)
+    listeners_m, ground = scenario.eavesdropper_positions_m, scenario.eavesdropper_antennas
+    return _snr(scenario, position_m, axis, listeners_m, ground, scenario.eavesdropper_noise_w)
 
 
 def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:

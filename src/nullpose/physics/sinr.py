@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
-from nullpose.physics.gain import antenna_gain
+from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
+from nullpose.physics.polarisation import link_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -18,11 +18,12 @@ def received_power_w(
     powers_w: ArrayLike,
     reference_gain: ArrayLike,
     antenna: QuadraticAntenna = SHORT_DIPOLE,
+    ground: GroundAntennas | None = None,
 ) -> FloatArray:
     """Return the power that the drone receives from each ground transmitter.
 
-    ``g0 G(gamma_i) P_i / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m
-    (1 in the paper).
+    ``g0 G_i P_i / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m (1 in the
+    paper) and ``G_i`` the gain of :func:`link_gain`.
 
     Source: paper eq. 2.1.
 
@@ -33,13 +34,14 @@ def received_power_w(
         powers_w: their powers, shape ``(m,)``, watts; likewise.
         reference_gain: path gain at 1 m, a power ratio.
         antenna: which antenna the drone has.
+        ground: the transmitters' antennas; None where all are isotropic.
 
     Returns:
         Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     distance_sq = np.sum(to_points**2, axis=-1)  # m^2
-    gain = antenna_gain(position_m, axis, points_m, antenna)
+    gain = link_gain(position_m, axis, points_m, antenna, ground)
     return np.asarray(
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
     )
@@ -62,8 +64,9 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
         Array of shape ``(..., n_nodes)``, power ratios.
     """
     link = (scenario.receiver.reference_gain, scenario.antenna_record)
-    signal_w = received_power_w(position_m, axis, scenario.node_positions_m, scenario.node_powers_w, *link)
+    nodes = (scenario.node_positions_m, scenario.node_powers_w)
+    signal_w = received_power_w(position_m, axis, *nodes, *link, scenario.node_antennas)
     jammers = (scenario.jammer_positions_m, scenario.jammer_powers_w)
-    jamming_w = received_power_w(position_m, axis, *jammers, *link)
+    jamming_w = received_power_w(position_m, axis, *jammers, *link, scenario.jammer_antennas)
     interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
     return np.asarray(signal_w / (interference_w + scenario.objective_record.noise_w(scenario)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -31,7 +32,8 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     """Return every node's SINR with the null on the scenario's only jammer.
 
     ``Gamma_i = (1 - <d_i, d_M>^2) P_i / (|p_i - p|^2 sigma^2)``, with ``d`` the unit directions: the jammer's
-    power is gone from it. An antenna whose null is not perfect lets some of it in, and the nodes more.
+    power is gone from it. An antenna whose null is not perfect lets some of it in, and the nodes more;
+    antennas on the ground count as in :func:`link_gain`.
 
     Source: paper eq. 3.2.
 
@@ -48,14 +50,11 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     if len(scenario.jammers) != 1:
         raise ValueError(f"eq. 3.2 is for one jammer; this scenario has {len(scenario.jammers)}")
     p = np.asarray(position_m, dtype=float)
-    to_nodes = scenario.node_positions_m - p[..., None, :]
-    distance_sq = np.sum(to_nodes**2, axis=-1)  # m^2
-    node_directions = to_nodes / np.sqrt(distance_sq)[..., None]
-    jammer_direction = zero_interference_axis(p, scenario.jammer_positions_m[0])
-    # 1 - <a, b>^2 = |a x b|^2 for unit vectors
-    sine_sq = np.sum(np.cross(node_directions, jammer_direction[..., None, :]) ** 2, axis=-1)
-    g0, antenna = scenario.receiver.reference_gain, scenario.antenna_record
-    received_w = g0 * antenna.gain(sine_sq) * scenario.node_powers_w / distance_sq
-    jammer_distance_sq = np.sum((scenario.jammer_positions_m[0] - p) ** 2, axis=-1, keepdims=True)
-    jamming_w = g0 * antenna.gain(0.0) * scenario.jammer_powers_w / jammer_distance_sq
+    axis, jammer_m = zero_interference_axis(p, scenario.jammer_positions_m[0]), scenario.jammer_positions_m
+    link = (scenario.receiver.reference_gain, scenario.antenna_record)
+    nodes = (scenario.node_positions_m, scenario.node_powers_w)
+    received_w = received_power_w(p, axis, *nodes, *link, scenario.node_antennas)
+    jamming_w = received_power_w(p, axis, jammer_m, scenario.jammer_powers_w, *link, scenario.jammer_antennas)
+    if scenario.antenna_record.leak == 0.0:
+        jamming_w = np.zeros_like(jamming_w)  # as it is but for rounding
     return np.asarray(received_w / (jamming_w + scenario.receiver.noise_power_w))

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, Self
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field
 
+from nullpose.antenna import GROUND_ANTENNAS
+from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
+from nullpose.scenario.rules import Choice
 from nullpose.scenario.section import Section
 from nullpose.scenario.transmitter import POWER, Powered
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     GEODETIC_KEYS,
     Altitude,
+    AxisDirection,
     DecibelMilliwatts,
     Latitude,
     Longitude,
@@ -25,20 +29,24 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, at_most_one
 
+_Antenna = Annotated[str, Choice("an antenna on the ground", tuple(GROUND_ANTENNAS))]
 _PLACE = Ways((("position_m",), GEODETIC_KEYS), fewest=0, most=2)
 
 
 class GroundPoint(Section):
-    """Someone at a fixed place, with an isotropic antenna.
+    """Someone at a fixed place, with an antenna.
 
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (_PLACE,)
+    unstated: ClassVar[frozenset[str]] = frozenset({"antenna"})
 
     name: Label = Field(
         default="",
@@ -66,6 +74,27 @@ class GroundPoint(Section):
         description="Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.",
         examples=[252.0],
     )
+    antenna: _Antenna = Field(
+        default="isotropic",
+        description="What antenna it has: isotropic, which loses nothing to polarisation; circular, which "
+        "takes part with half the power; or dipole, a short one.",
+        examples=list(GROUND_ANTENNAS),
+    )
+    antenna_axis: AxisDirection | None = Field(
+        default=None,
+        description="How a dipole lies: the direction of its wire, [east, north, up], of any length. Left "
+        "out: upright.",
+        examples=[[0.0, 0.0, 1.0]],
+    )
+
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the fault that an axis is given of an antenna that has none."""
+        yield from super().faults(stated)
+        if self.antenna_axis is not None and self.antenna in GROUND_ANTENNAS and self.antenna != "dipole":
+            yield (
+                ("antenna_axis",),
+                f'given, but antenna = "{self.antenna}" has no axis; remove it, or write antenna = "dipole"',
+            )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Returns a copy with some values replaced; a new position takes the place of a latitude too.
@@ -89,6 +118,8 @@ class Emitter(Powered, GroundPoint):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
@@ -104,6 +135,8 @@ class Node(Emitter):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
@@ -178,6 +211,8 @@ class Jammer(Uncertain, Emitter):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
@@ -196,6 +231,8 @@ class Eavesdropper(Uncertain, GroundPoint):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         noise_w: its receiver's noise [W]; or else
         noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.

@@ -162,6 +162,16 @@ class Ascending(ListOf):
         return value
 
 
+class Direction(ListOf):
+    """A list of three numbers, not all zero: a direction, of any length."""
+
+    def judge(self, value: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Returns the three, or raises the fault that they point nowhere."""
+        if not any(value):
+            raise rejection(f"got {list(value)}, which has length 0 and no direction; must be {self.noun}")
+        return value
+
+
 class Members(ListOf):
     """A list of tables, as the metadata of an annotated tuple."""
 

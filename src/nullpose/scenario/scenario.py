@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Annotated, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
+from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, QuadraticAntenna, unit_axis
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
@@ -19,7 +19,7 @@ from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
-from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
+from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.names import Label, Title
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.receiver import Receiver
@@ -211,6 +211,21 @@ class Scenario(Section):
         """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3), read-only."""
         return read_only([each.uncertainty_matrix_m for each in self.eavesdroppers], (-1, 3, 3))
 
+    @cached_property
+    def node_antennas(self) -> GroundAntennas | None:
+        """The nodes' antennas; None where all are isotropic."""
+        return _antennas_of(self.nodes)
+
+    @cached_property
+    def jammer_antennas(self) -> GroundAntennas | None:
+        """The jammers' antennas; None where all are isotropic."""
+        return _antennas_of(self.jammers)
+
+    @cached_property
+    def eavesdropper_antennas(self) -> GroundAntennas | None:
+        """The eavesdroppers' antennas; None where all are isotropic."""
+        return _antennas_of(self.eavesdroppers)
+
     @property
     def is_uncertain(self) -> bool:
         """Whether any position, or the pose that the vehicle holds, is known only up to an error."""
@@ -232,3 +247,11 @@ class Scenario(Section):
             return stated
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         return float(np.sum(self.receiver.reference_gain * self.jammer_powers_w / distance_squared))
+
+
+def _antennas_of(points: Sequence[GroundPoint]) -> GroundAntennas | None:
+    if all(point.antenna == "isotropic" for point in points):
+        return None
+    axes = [unit_axis(p.antenna_axis) if p.antenna == "dipole" else np.zeros(3) for p in points]
+    shares = [GROUND_ANTENNAS[point.antenna] for point in points]
+    return GroundAntennas(read_only(axes, (-1, 3)), read_only(shares, (-1,)))

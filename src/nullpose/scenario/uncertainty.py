@@ -81,6 +81,7 @@ class Uncertain(Section):
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the fault that an attitude is given of what is no ellipsoid."""
+        yield from super().faults(stated)
         is_sound = self.uncertainty_m is not None or stated.get("uncertainty_m") is None
         if is_sound and self.uncertainty_attitude_deg and not isinstance(self.uncertainty_m, tuple):
             yield (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from nullpose.scenario.rules import Ascending, ListOf, Quantity
+from nullpose.scenario.rules import Ascending, Direction, ListOf, Quantity
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 """The keys that state a place on the Earth: all three, or none."""
@@ -59,6 +59,9 @@ RatioDecibels = Annotated[
 Weight = Annotated[
     float, Quantity("a weight", 1e-30, 1e30, "a weight is never zero or negative; 1 is the one of the others")
 ]
+Component = Annotated[
+    float, Quantity("a component of a direction", -1e9, 1e9, "[0, 0, 1] is upright, [1, 0, 0] points east")
+]
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 Latitude = Annotated[
@@ -83,6 +86,10 @@ Range = Annotated[
 ]
 PlanePoint = Annotated[
     tuple[Metres, Metres], ListOf("a list of two numbers [x, y]: metres east and north", 2, 2)
+]
+AxisDirection = Annotated[
+    tuple[Component, Component, Component],
+    Direction("a list of three numbers [x, y, z]: a direction, east, north and up, of any length", 3, 3),
 ]
 RollPitchYaw = Annotated[
     tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],

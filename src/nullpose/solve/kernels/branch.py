@@ -18,8 +18,9 @@ from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.enclosure import JET, axis_clearance
 from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
 from nullpose.solve.kernels.expansion import frame_at, min_distance, min_square
+from nullpose.solve.kernels.forms import add_denominator
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solve.kernels.links import min_log_ratio
+from nullpose.solve.kernels.links import has_dipole, min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
     AFFINE,
@@ -45,6 +46,8 @@ from nullpose.solve.kernels.node import (
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
 from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.vectors import cross, minus, norm
+from nullpose.solve.kernels.vectors import row as row_of
 
 DONE = 0
 LIMIT = 1
@@ -96,6 +99,11 @@ def best_frame(family, axis_field, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
+    if has_dipole(family, anchor):  # its direction turns faster the nearer it is to its own null
+        away = minus(row_of(points, anchor), centre)
+        rho *= norm(cross(row_of(family.ground_axes, anchor), away)) / norm(away)
+        if not rho > 0.0:
+            return WORLD, anchor
     still = turning = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
@@ -162,10 +170,12 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
     kind, anchor = best_frame(family, axis_field, row)
-    frame = frame_at(family.points_m, kind, anchor, centre, half, basis)
+    frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
-    if family.denominator_isotropic.shape[0] == 1:
+    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes.shape[0] > 0:
+        add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
+    elif family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)
         rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
@@ -200,7 +210,7 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     if split_axes and is_free:
         return _BY_AXIS, 1
     if primal >= 1.0:
-        workspace.rests[0] = math.inf
+        workspace.rest[0] = math.inf
     return _FORESEEN, 1
 
 
@@ -249,7 +259,7 @@ def workspace_of(family):
     return Workspace(
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
         np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
-        np.empty(6), np.empty((3, 6)), np.empty(2),
+        np.empty(6), np.empty((3, 6)), np.empty(6),
     )  # fmt: skip
 
 

@@ -2,7 +2,8 @@
 
 With ``u = o + M p`` and ``r = q - p`` the link is ``f = n / (|u|^2 |r|^4)``, ``n = |u x r|^2 + l (u.r)^2``
 with the antenna's leak l being the sum of the squares of the entries of ``u x r`` and of ``sqrt(l) u.r``: a
-quotient of polynomials, whose second derivatives are bounded by interval arithmetic. Hessians are kept as
+quotient of polynomials, whose second derivatives are bounded by interval arithmetic. That with a dipole along
+v is ``B^2 / (|u|^2 |r|^6)``, ``B = (u x r).(v x r)``, and what leaks. Hessians are kept as
 (xx, yy, zz, xy, xz, yz).
 """
 
@@ -10,10 +11,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from nullpose.solve.kernels.forms import entry
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
+from nullpose.solve.kernels.vectors import cross, dot
 
 JET = 18  # value, gradient (3), the Hessian's midpoint (6) and radius (6), least and greatest value
 
@@ -89,7 +94,7 @@ def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
 
 
 @inner_kernel
-def enclose_entries(count, half, c, dc, hc, boxed):
+def enclose_entries(count, half, c, dc, hc, hr, boxed):
     """Fill bounds on each entry and on its gradient over the box; return n at the centre, and its bounds."""
     n_low = n_high = n = 0.0
     for m in range(count):
@@ -97,7 +102,7 @@ def enclose_entries(count, half, c, dc, hc, boxed):
         for i in range(3):
             bend = 0.0
             for k in range(3):
-                bend += abs(hc[m, i, k]) * half[k]
+                bend += (abs(hc[m, i, k]) + hr[m, i, k]) * half[k]
             boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
             swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
         boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
@@ -129,22 +134,56 @@ def turned_field(axis_field, turn, j, offset, matrix):
 
 
 @inner_kernel
-def of_gradients(i, k, dn, beta, sigma):
+def of_gradients(i, k, power, dn, beta, sigma):
     """Return bounds on ``n_i l_k + l_i n_k`` and on q without its share of the second derivatives (lemma 3).
 
-    ``l = -beta - 2 sigma`` is the gradient of the logarithm of w, and ``q`` is ``2 beta beta^T + 2 (beta
-    sigma^T + sigma beta^T) + 6 sigma sigma^T``.
+    ``l = -beta - power sigma`` is the gradient of the logarithm of w, and ``q`` is ``2 beta beta^T + power
+    (beta sigma^T + sigma beta^T) + power (power + 1) sigma sigma^T``.
     """
     beta_i, beta_k, sigma_i, sigma_k = bounds(beta, i), bounds(beta, k), bounds(sigma, i), bounds(sigma, k)
-    fall_i = (-beta_i[1] - 2.0 * sigma_i[1], -beta_i[0] - 2.0 * sigma_i[0])
-    fall_k = (-beta_k[1] - 2.0 * sigma_k[1], -beta_k[0] - 2.0 * sigma_k[0])
+    fall_i = (-beta_i[1] - power * sigma_i[1], -beta_i[0] - power * sigma_i[0])
+    fall_k = (-beta_k[1] - power * sigma_k[1], -beta_k[0] - power * sigma_k[0])
     one, other = product(bounds(dn, i), fall_k), product(bounds(dn, k), fall_i)
     bb = square(beta_i) if i == k else product(beta_i, beta_k)
     ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
     bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
-    low = 2.0 * (bb[0] + bs[0] + sb[0]) + 6.0 * ss[0]
-    high = 2.0 * (bb[1] + bs[1] + sb[1]) + 6.0 * ss[1]
+    low = 2.0 * bb[0] + power * (bs[0] + sb[0] + (power + 1.0) * ss[0])
+    high = 2.0 * bb[1] + power * (bs[1] + sb[1] + (power + 1.0) * ss[1])
     return one[0] + other[0], one[1] + other[1], low, high
+
+
+@inner_kernel
+def dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr):
+    """Fill the axis at the centre, and ``B = (u.v) |r|^2 - (u.r) (v.r)``, its gradient and its Hessian.
+
+    The last with a radius over the box: B is of the third degree in the position.
+    """
+    for m in range(3):
+        u[m] = offset[m]
+        for i in range(3):
+            u[m] += matrix[m, i] * centre[i]
+    uv, ur, vr, s = dot(u, v), dot(u, r), dot(v, r), dot(r, r)
+    slope, ahead, swing = scratch(3), scratch(3), scratch(3)  # of u.v and of u.r; how far the latter moves
+    uv_swing = vr_swing = 0.0
+    for i in range(3):
+        slope[i], ahead[i], swing[i] = 0.0, -u[i], 0.0
+        for m in range(3):
+            slope[i] += matrix[m, i] * v[m]
+            ahead[i] += matrix[m, i] * r[m]
+            swing[i] += abs(matrix[m, i] + matrix[i, m]) * half[m]
+        uv_swing += abs(slope[i]) * half[i]
+        vr_swing += abs(v[i]) * half[i]
+    c[0] = dot(cross(u, r), cross(v, r))
+    for i in range(3):
+        dc[0, i] = slope[i] * s - 2.0 * uv * r[i] - ahead[i] * vr + ur * v[i]
+        for k in range(3):
+            both = matrix[i, k] + matrix[k, i]
+            hc[0, i, k] = both * vr - 2.0 * (slope[i] * r[k] + slope[k] * r[i])
+            hc[0, i, k] += ahead[i] * v[k] + ahead[k] * v[i]
+            hr[0, i, k] = abs(both) * vr_swing + 2.0 * (abs(slope[i]) * half[k] + abs(slope[k]) * half[i])
+            hr[0, i, k] += swing[i] * abs(v[k]) + swing[k] * abs(v[i])
+        hc[0, i, i] += 2.0 * uv
+        hr[0, i, i] += 2.0 * uv_swing
 
 
 @kernel
@@ -162,10 +201,42 @@ def link_jet(family, j, axis_field, centre, half, jet):
     offset, matrix = scratch(3), scratch(3, 3)
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)
-    dc, hc = scratch(4, 3), scratch(4, 3, 3)
+    dc, hc, hr = scratch(4, 3), scratch(4, 3, 3), zeroed(4, 3, 3)
     for i in range(3):
         r[i] = family.points_m[j, i] - centre[i]
-    count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
+    if not has_dipole(family, j):
+        count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
+        quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+        return
+    v = family.ground_axes[j]
+    dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr)
+    quotient_jet(matrix, r, u, half, np.int64(1), 3.0, c, dc, hc, hr, jet)
+    if family.leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
+        leaking, still = scratch(JET), zeroed(3, 3)
+        entries(0.0, v, still, r, centre, u, c, dc, hc)
+        hr[:, :, :] = 0.0
+        quotient_jet(still, r, u, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
+        for m in range(JET):
+            jet[m] = (1.0 - family.leak) * jet[m] + family.leak * leaking[m]
+
+
+@inner_kernel
+def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
+    """Fill the jet of ``n / (|u|^2 s^power)``, ``s = |r|^2``, n being the sum of the squares of entries.
+
+    Args:
+        matrix: (3, 3), the derivative of u; that of r is -I.
+        r: (3,) at the centre.
+        u: (3,) likewise.
+        half: (3,) the box's half sides.
+        count: how many entries there are.
+        power: 2 or 3.
+        c: (4,) the entries at the centre.
+        dc: (4, 3) their gradients.
+        hc: (4, 3, 3) their Hessians there.
+        hr: (4, 3, 3) how far these may be off in the box.
+        jet: output, (JET,).
+    """
     # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
     s = s_low = s_high = b = b_low = b_high = 0.0
     for m in range(3):
@@ -178,8 +249,9 @@ def link_jet(family, j, axis_field, centre, half, jet):
         b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
     sigma, beta, dn = scratch(3, 2), scratch(3, 2), scratch(3, 2)
     boxed = scratch(4, 4, 2)
-    n, n_low, n_high = enclose_entries(count, half, c, dc, hc, boxed)
-    w = 1.0 / (b * s * s)
+    n, n_low, n_high = enclose_entries(count, half, c, dc, hc, hr, boxed)
+    third = power == 3.0
+    w = 1.0 / (b * s * s * (s if third else 1.0))
     jet[0] = n * w
     for i in range(3):
         db = swing = slope = low = high = 0.0
@@ -191,29 +263,32 @@ def link_jet(family, j, axis_field, centre, half, jet):
             db += 2.0 * matrix[m, i] * u[m]
             for k in range(3):
                 swing += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
-        jet[1 + i] = w * (slope - n * (db / b - 4.0 * r[i] / s))
+        jet[1 + i] = w * (slope - n * (db / b - 2.0 * power * r[i] / s))
         dn[i, 0], dn[i, 1] = low, high
         sigma[i, 0], sigma[i, 1] = relative_slopes(s, -2.0 * r[i], 2.0 * half[i], s_low, s_high)
         beta[i, 0], beta[i, 1] = relative_slopes(b, db, swing, b_low, b_high)
-    w_range = (1.0 / (b_high * s_high * s_high), 1.0 / (b_low * s_low * s_low))
+    w_range = (
+        1.0 / (b_high * s_high * s_high * (s_high if third else 1.0)),
+        1.0 / (b_low * s_low * s_low * (s_low if third else 1.0)),
+    )
     jet[16], jet[17] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_low)
     for e in range(6):
         i, k = entry(e)
-        first_low, first_high, low, high = of_gradients(i, k, dn, beta, sigma)
+        first_low, first_high, low, high = of_gradients(i, k, power, dn, beta, sigma)
         gram = 0.0
         for m in range(count):
             left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
             x, y = product(left, right) if i != k else square(left)
             first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
-            bent = 2.0 * hc[m, i, k]
-            x, y = bent * boxed[m, 0, 0], bent * boxed[m, 0, 1]
-            first_low, first_high = first_low + min(x, y), first_high + max(x, y)
+            bent = (2.0 * (hc[m, i, k] - hr[m, i, k]), 2.0 * (hc[m, i, k] + hr[m, i, k]))
+            x, y = product(bent, (boxed[m, 0, 0], boxed[m, 0, 1]))
+            first_low, first_high = first_low + x, first_high + y
         for m in range(3):
             gram += 2.0 * matrix[m, i] * matrix[m, k]
         low -= gram / (b_low if gram > 0.0 else b_high)
         high -= gram / (b_high if gram > 0.0 else b_low)
         if i == k:
-            low, high = low - 4.0 / s_low, high - 4.0 / s_high
+            low, high = low - 2.0 * power / s_low, high - 2.0 * power / s_high
         x, y = product((n_low, n_high), (low, high))
         low, high = product(w_range, (first_low + x, first_high + y))
         jet[4 + e], jet[10 + e] = 0.5 * (low + high), 0.5 * (high - low)

@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from nullpose.solve.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
 from nullpose.solve.kernels.denominators import (
     ROUNDING,
     add_mixed_denominators,
-    add_scaled,
+    add_scaled as add_with_slopes,
     sharpen,
 )
+from nullpose.solve.kernels.dipoles import Shear, add_constant, add_links, centre_form, shear_at
 from nullpose.solve.kernels.expansion import expand_point, min_square
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
@@ -41,7 +44,7 @@ from nullpose.solve.kernels.node import (
 )
 from nullpose.solve.kernels.records import WORLD
 from nullpose.solve.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solve.kernels.symmetric import copy_into, copy_table, top_eigenvector
+from nullpose.solve.kernels.symmetric import add_scaled, copy_into, copy_table, top_eigenvector
 from nullpose.solve.kernels.zones import MOST_ALTERNATIVES
 
 _HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
@@ -101,7 +104,7 @@ def mended(matrix, slopes, half, corner, most, level_axes):
 def will_fail(forecast, row, part, level_axes):
     """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
     middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
-    if forecast.rests[0] == math.inf:
+    if forecast.rest[0] == math.inf:
         return True
     whole = square = 0.0
     for i in range(3):
@@ -109,11 +112,8 @@ def will_fail(forecast, row, part, level_axes):
         whole += row[HALF + i] ** 2
         square += half[i] ** 2
     share = _HOPED * square / whole
-    everywhere, across = share * forecast.rests[0], share * forecast.rests[1]
     copy_into(forecast.matrix, matrix)
-    matrix[0] += everywhere + across
-    matrix[1] += everywhere + across
-    matrix[2] += everywhere
+    add_scaled(share, forecast.rest, matrix)
     return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
 
 
@@ -165,7 +165,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
         isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
         j = family.numerator_point[k]
         up, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
-        add_scaled(weight * strength, form, form_slopes, matrix, slopes)
+        add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
         for m in range(3):
             matrix[m] += weight * isotropic
         size = isotropic + strength * (form[0] + form[1] + form[2])
@@ -178,6 +178,65 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
                 everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
     everywhere += radius * add_band(axis_field, frame, row, matrix, slopes)
     return everywhere + 4.0 * ROUNDING * abs(row[BAND])
+
+
+@inner_kernel
+def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest; return how much of the rest is the denominators'."""
+    copy_into(below[0], matrix)
+    copy_table(below[1], slopes)
+    below_rest, across = below[2]
+    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
+        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
+    rest[:] = 0.0
+    rest[0] = rest[1] = everywhere + across
+    rest[2] = everywhere
+    return below_rest
+
+
+@inner_kernel
+def add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest where points have dipoles."""
+    v, q, turned = scratch(3), scratch(6), scratch(6)
+    shear = shear_at(
+        family, frame, row[CENTRE:HALF], row[HALF:LEVEL],
+        Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
+    )  # fmt: skip
+    matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
+    jamming = centre_form(family, frame, row, matrix)
+    half = row[HALF:LEVEL]
+    for constraint in range(3):
+        weight = constraint_of(axis_field, row, constraint, q)
+        if weight > 0.0:
+            congruence(q, frame.basis, turned)
+            add_scaled(weight, turned, matrix)
+    top_eigenvector(matrix, v)
+    matrix[:] = 0.0
+    for constraint in range(3):
+        weight = constraint_of(axis_field, row, constraint, q)
+        if weight > 0.0:
+            congruence(q, frame.basis, turned)
+            add_constant(shear, half, weight, turned, matrix, slopes, rest)
+    add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
+
+
+@inner_kernel
+def constraint_of(axis_field, row, number, form):
+    """Fill the form of a cell's side (0 or 1) or of the band (2); return its multiplier, or zero."""
+    if number < 2:
+        if row[FACE] < 0.0 or not row[SIDE + number] > 0.0:
+            return 0.0
+        cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
+        return row[SIDE + number]
+    if axis_field.kind < 2 or is_level(axis_field):
+        return 0.0
+    upper = row[BAND] > 0.0
+    end = axis_field.offset[1] if upper else -axis_field.offset[0]
+    form[:] = 0.0
+    form[0] = form[1] = form[2] = end
+    form[2] += -1.0 if upper else 1.0
+    return abs(row[BAND])
 
 
 @inner_kernel
@@ -197,26 +256,22 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     if not row[COUNT] > 0.0:
         return False
     matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
-    copy_into(below[0], matrix)
-    copy_table(below[1], slopes)
-    below_rest, across = below[2]
-    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
-        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
-    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
-    row[NU] = 0.0
+    dipoles = family.ground_axes.shape[0] > 0
+    row[NU] = below_rest = 0.0
     half, level_axes = row[HALF:LEVEL], is_level(axis_field)
+    if dipoles:
+        add_dipole_sum(family, axis_field, frame, row, matrix, slopes, forecast.rest)
+    else:
+        below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
     if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):
-        forecast.rests[0] = math.inf
+        forecast.rest[0] = math.inf
         return False
     copy_into(matrix, forecast.matrix)
-    forecast.rests[0], forecast.rests[1] = everywhere, across
-    matrix[0] += everywhere + across
-    matrix[1] += everywhere + across
-    matrix[2] += everywhere
+    add_scaled(1.0, forecast.rest, matrix)
     corner = failing_corner(matrix, slopes, still, half, level_axes)
     if corner < 0:
         return True
-    if mended(matrix, slopes, half, corner, below_rest, level_axes):
+    if not dipoles and mended(matrix, slopes, half, corner, below_rest, level_axes):
         if level_axes:  # what is off the level plane does not count
             matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
             matrix[4] = matrix[5] = 0.0

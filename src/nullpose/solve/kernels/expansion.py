@@ -15,9 +15,11 @@ import math
 
 from nullpose.solve.kernels.forms import seen_from
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.links import has_dipole
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
+from nullpose.solve.kernels.vectors import along, dot, row, store, unit
 
 
 @inner_kernel
@@ -37,8 +39,12 @@ def min_distance(points, j, centre, half):
 
 
 @kernel
-def frame_at(points, kind, anchor, centre, half, basis):
-    """Return a frame at the centre, whose axes are filled into ``basis``."""
+def frame_at(family, kind, anchor, centre, half, basis):
+    """Return a frame at the centre, whose axes are filled into ``basis``.
+
+    The third points at the anchor, or along the form of an anchor with a dipole.
+    """
+    points = family.points_m
     if kind == WORLD:
         for i in range(3):
             for m in range(3):
@@ -48,6 +54,9 @@ def frame_at(points, kind, anchor, centre, half, basis):
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
     rho = math.sqrt(x * x + y * y + z * z)
     c[0], c[1], c[2] = x / rho, y / rho, z / rho
+    if has_dipole(family, anchor):
+        v = family.ground_axes[anchor]
+        store(unit(along(row(family.ground_axes, anchor), -dot(v, c), c)), c)
     tangents(c, a, b)
     for i in range(3):
         basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.links import has_dipole
 from nullpose.solve.kernels.scratch import scratch
 
 
@@ -84,16 +85,22 @@ def turned_back(turn, j, x, y, z):
 
 
 @inner_kernel
+def in_frame(basis, v):
+    """Return a vector of the world in a frame."""
+    return (
+        basis[0, 0] * v[0] + basis[1, 0] * v[1] + basis[2, 0] * v[2],
+        basis[0, 1] * v[0] + basis[1, 1] * v[1] + basis[2, 1] * v[2],
+        basis[0, 2] * v[0] + basis[1, 2] * v[1] + basis[2, 2] * v[2],
+    )
+
+
+@inner_kernel
 def seen_from(points, turn, j, p, basis):
     """Return the direction from p to point j in a frame; in its own coordinates if points are turned."""
     x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
     if turn.shape[0] > 0:
         return turned_back(turn, j, x, y, z)
-    return (
-        basis[0, 0] * x + basis[1, 0] * y + basis[2, 0] * z,
-        basis[0, 1] * x + basis[1, 1] * y + basis[2, 1] * z,
-        basis[0, 2] * x + basis[1, 2] * y + basis[2, 2] * z,
-    )
+    return in_frame(basis, (x, y, z))
 
 
 @inner_kernel
@@ -111,11 +118,57 @@ def add_form(x, y, z, leak, weight, isotropic, out):
 
 
 @inner_kernel
+def add_dipole_form(x, y, z, v, leak, weight, isotropic, out):
+    """Add what ``add_form`` does for a point with a dipole along v, in the coordinates of r."""
+    rho2, ahead = x * x + y * y + z * z, v[0] * x + v[1] * y + v[2] * z
+    a, b, c = v[0] * rho2 - ahead * x, v[1] * rho2 - ahead * y, v[2] * rho2 - ahead * z
+    s = weight / (rho2 * rho2 * rho2)
+    bent = (1.0 - leak) * s
+    level = isotropic + leak * s * (a * a + b * b + c * c)
+    out[0] += level + bent * a * a
+    out[1] += level + bent * b * b
+    out[2] += level + bent * c * c
+    out[3] += bent * a * b
+    out[4] += bent * a * c
+    out[5] += bent * b * c
+
+
+@inner_kernel
+def add_point(family, j, p, basis, weight, isotropic, out):
+    """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
+    x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
+    if has_dipole(family, j):
+        v = family.ground_axes[j]
+        if family.turn.shape[0] > 0:
+            seen = turned_back(family.turn, j, v[0], v[1], v[2])
+        else:
+            seen = in_frame(basis, v)
+        add_dipole_form(x, y, z, seen, family.leak, weight, isotropic, out)
+    else:
+        add_form(x, y, z, family.leak, weight, isotropic, out)
+
+
+@inner_kernel
+def add_denominator(family, g, weight, p, basis, out):
+    """Add ``weight * D_g``, in a frame, to a form of six numbers."""
+    for m in range(3):
+        out[m] += weight * family.denominator_isotropic[g]
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        scale = weight * family.denominator_weight[e]
+        add_point(family, family.denominator_point[e], p, basis, scale, 0.0, out)
+
+
+@inner_kernel
 def fill_form(family, j, p, weight, isotropic, out):
     """Add ``weight * M(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
     point = family.points_m[j]
     x, y, z = turned_back(family.turn, j, point[0] - p[0], point[1] - p[1], point[2] - p[2])
-    add_form(x, y, z, family.leak, weight, isotropic, out)
+    if has_dipole(family, j):
+        v = family.ground_axes[j]
+        seen = turned_back(family.turn, j, v[0], v[1], v[2])
+        add_dipole_form(x, y, z, seen, family.leak, weight, isotropic, out)
+    else:
+        add_form(x, y, z, family.leak, weight, isotropic, out)
 
 
 @kernel

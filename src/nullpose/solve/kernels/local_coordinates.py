@@ -2,7 +2,7 @@
 
 A pose is six numbers, the position and the axis. It is an affine function of the search variables: a step in
 position, scaled by the distance to the nearest node; for a free axis a step in its tangent plane and a part
-that rotates with the position (see ``rotation_rate``), the axis being renormalised after every step. On a
+that rotates with the position (see ``rotation_rates``), the axis being renormalised after every step. On a
 cone about the vertical the axis has one variable, and is put back on the cone.
 
 The slacks of a pose are those of six faces, of the keep-out balls, of the chosen side of each forbidden
@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
+from nullpose.solve.kernels.links import has_dipole
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import (
     add_scaled,
@@ -23,7 +24,9 @@ from nullpose.solve.kernels.symmetric import (
     squared_distance,
     tangents,
 )
-from nullpose.solve.kernels.vectors import dot
+from nullpose.solve.kernels.vectors import along, dot, minus, row, scaled
+
+_TIP = 1e-6  # squared sine from a dipole's own null below which nothing follows it
 
 AFFINE, BAND, CONE = 1, 2, 3  # kinds of axis field, 0 being any axis
 
@@ -67,29 +70,45 @@ def nearest_node(family, p):
 
 
 @kernel
-def rotation_rate(family, p, u):
-    """Return the rate, per metre and with its sign, at which the axis should rotate with a step in position.
+def rotation_rates(family, p, u, out):
+    """Fill how the axis should change with a step along each world axis, (3, 3), per metre.
 
     A straight step ``(dp, -dp / rho)`` keeps an axis that points at the strongest interferer on it exactly,
-    where a step in the tangent plane alone leaves it at second order, times that interferer's power.
+    where a step in the tangent plane alone leaves it at second order, times that interferer's power. Where
+    that has a dipole, its link vector a is what the axis stays across: ``du = -a (u.da) / |a|^2``.
     """
-    strongest = rate = 0.0
+    out[:, :] = 0.0
+    strongest, j = 0.0, -1
     if family.turn.shape[0] > 0:  # points that see different axes have no common rotation
-        return rate
+        return
     for e in range(family.denominator_weight.shape[0]):
-        point = family.points_m[family.denominator_point[e]]
-        rho2 = squared_distance(point, p)
+        rho2 = squared_distance(family.points_m[family.denominator_point[e]], p)
         if family.denominator_weight[e] / rho2 > strongest:
-            strongest = family.denominator_weight[e] / rho2
-            rate = math.copysign(1.0 / math.sqrt(rho2), dot(u, p) - dot(u, point))
-    return rate
+            strongest, j = family.denominator_weight[e] / rho2, family.denominator_point[e]
+    if j < 0:
+        return
+    r = minus(row(family.points_m, j), p)
+    rho2 = dot(r, r)
+    if not has_dipole(family, j):
+        for i in range(3):
+            out[i, i] = math.copysign(1.0 / math.sqrt(rho2), -dot(u, r))
+        return
+    v = row(family.ground_axes, j)
+    ahead = dot(v, r)
+    a = along(scaled(rho2, v), -ahead, r)  # link vector times |r|^3
+    size = dot(a, a)
+    for i in range(3 if size > _TIP * rho2 * rho2 else 0):
+        change = u[i] * ahead + dot(u, v) * r[i] + dot(u, r) * (v[i] - 3.0 * ahead * r[i] / rho2)
+        for m in range(3):
+            out[i, m] = -a[m] * change / size
 
 
 @kernel
 def local_coordinates(family, axis_field, pose, free, directions):
     """Fill the change of the pose by each search variable, (5, 6); return how many there are."""
     p, u = pose[:3], pose[3:]
-    length, rate = nearest_node(family, p), rotation_rate(family, p, u)
+    length, rates = nearest_node(family, p), scratch(3, 3)
+    rotation_rates(family, p, u, rates)
     directions[:, :] = 0.0
     n = 0
     for i in range(3):
@@ -98,7 +117,7 @@ def local_coordinates(family, axis_field, pose, free, directions):
             if axis_field.kind == AFFINE:
                 add_scaled(length, axis_field.matrix[:, i], directions[n, 3:])
             elif axis_field.kind != CONE:
-                directions[n, 3 + i] = length * rate
+                add_scaled(length, rates[i], directions[n, 3:])
             n += 1
     if axis_field.kind == CONE:
         across = math.hypot(u[0], u[1])

@@ -57,7 +57,7 @@ class Workspace(NamedTuple):
         log_denominators: (denominators,).
         matrix: (6,) the last sum of forms at a box's centre.
         slopes: (3, 6) its slopes.
-        rests: (2,) its remainders over the box: of the second order, and that on the first two axes alone.
+        rest: (6,) a form that is no less than what is left out of both over the box.
     """
 
     weights: FloatArray
@@ -68,4 +68,4 @@ class Workspace(NamedTuple):
     log_denominators: FloatArray
     matrix: FloatArray
     slopes: FloatArray
-    rests: FloatArray
+    rest: FloatArray

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.solve.kernels.exclusion import is_level
-from nullpose.solve.kernels.forms import add_form, congruence, inverse_factor, seen_from
+from nullpose.solve.kernels.forms import add_denominator, add_point, congruence, inverse_factor
 from nullpose.solve.kernels.jit import inner_kernel
 from nullpose.solve.kernels.links import denominator_at, numerator_at
 from nullpose.solve.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
@@ -31,11 +31,7 @@ def fill_denominators(family, basis, centre, denominators, mean):
     denominators[:, :] = 0.0
     mean[:] = 0.0
     for g in range(groups):
-        for m in range(3):
-            denominators[g, m] = family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            x, y, z = seen_from(family.points_m, family.turn, family.denominator_point[e], centre, basis)
-            add_form(x, y, z, family.leak, family.denominator_weight[e], 0.0, denominators[g])
+        add_denominator(family, g, 1.0, centre, basis, denominators[g])
         for m in range(6):
             mean[m] += denominators[g, m] / groups
 
@@ -63,8 +59,8 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
     several = family.denominator_isotropic.shape[0] > 1
     for m in range(6):
         raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
-    x, y, z = seen_from(family.points_m, family.turn, family.numerator_point[k], row[CENTRE:HALF], basis)
-    add_form(x, y, z, family.leak, family.numerator_weight[k], family.numerator_isotropic[k], raw)
+    weight, isotropic = family.numerator_weight[k], family.numerator_isotropic[k]
+    add_point(family, family.numerator_point[k], row[CENTRE:HALF], basis, weight, isotropic, raw)
     congruence(raw, back, out)
     if level_axes:  # no weight on the vertical: whitening leaves its direction alone
         out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level

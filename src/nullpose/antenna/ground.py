@@ -1,0 +1,39 @@
+"""Antennas on the ground: how much of what the drone sends or receives they take part in."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+GROUND_ANTENNAS = {"isotropic": 1.0, "circular": 0.5, "dipole": 1.0}
+"""By the kind in a scenario file: the largest share of the power that it takes.
+
+An isotropic antenna takes part with all of the power whatever its polarisation (paper eq. 2.1), a circular one,
+either way round, with half of it. A short dipole takes what its own pattern and its polarisation let through.
+"""
+
+
+class GroundAntennas(NamedTuple):
+    """The antennas of some ground points.
+
+    Args:
+        axes: (m, 3) unit axis of a point's short dipole; zero where the point has none.
+        shares: (m,) the largest share of the power that each takes.
+    """
+
+    axes: NDArray[np.float64]
+    shares: NDArray[np.float64]
+
+
+def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
+    """Return a dipole's axis at unit length; the vertical one if none is given.
+
+    Args:
+        axis: of any length but zero.
+    """
+    if axis is None:
+        return np.array([0.0, 0.0, 1.0])
+    given = np.array(axis) / np.max(np.abs(axis))  # or squares may overflow
+    return np.asarray(given / np.linalg.norm(given))

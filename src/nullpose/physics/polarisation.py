@@ -1,0 +1,73 @@
+"""What a link between the drone's antenna and one on the ground loses to both patterns and to polarisation."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
+from nullpose.physics.gain import antenna_gain
+from nullpose.physics.types import FloatArray
+
+
+def dipole_gain(
+    position_m: ArrayLike,
+    axis: ArrayLike,
+    points_m: ArrayLike,
+    ground_axes: ArrayLike,
+    antenna: QuadraticAntenna = SHORT_DIPOLE,
+) -> FloatArray:
+    """Return the power gain between the drone's antenna and a short dipole at each point.
+
+    With unit vectors u of the drone's axis, v of the ground dipole's and d of the way between them, ``P = I -
+    d d^T`` and the drone's leak e along its axis, it is ``(1 - e) (u^T P v)^2 + e |P v|^2``: both patterns
+    and the angle between both fields; what leaks has no known polarisation. The product is evaluated as
+    ``(r x u).(r x v) / |r|^2``, which keeps its digits beside the nulls.
+
+    Source: paper eqs. 1.2 to 1.4 for each dipole; the effective heights of both for the product.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
+        ground_axes: unit axes of the dipoles there, shape ``(m, 3)``.
+        antenna: which antenna the drone has.
+
+    Returns:
+        Array of shape ``(..., m)``, between 0 and 1.
+    """
+    r = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    square = np.sum(r * r, axis=-1)
+    across = np.cross(r, np.asarray(ground_axes, dtype=float))
+    product = np.sum(np.cross(r, np.asarray(axis, dtype=float)[..., None, :]) * across, axis=-1) / square
+    leaking = antenna.leak * np.sum(across * across, axis=-1) / square
+    return np.asarray((1.0 - antenna.leak) * product**2 + leaking)
+
+
+def link_gain(
+    position_m: ArrayLike,
+    axis: ArrayLike,
+    points_m: ArrayLike,
+    antenna: QuadraticAntenna = SHORT_DIPOLE,
+    ground: GroundAntennas | None = None,
+) -> FloatArray:
+    """Return the power gain between the drone's antenna and that at each point, polarisation included.
+
+    The drone's gain alone for an isotropic antenna (paper eq. 2.1), half of it for a circular one, and
+    :func:`dipole_gain` for a dipole.
+
+    Args:
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
+        antenna: which antenna the drone has.
+        ground: the antennas at the points; None where all are isotropic.
+
+    Returns:
+        Array of shape ``(..., m)``, between 0 and 1.
+    """
+    gain = antenna_gain(position_m, axis, points_m, antenna)
+    if ground is None:
+        return gain
+    of_dipoles = dipole_gain(position_m, axis, points_m, ground.axes, antenna)
+    return np.asarray(ground.shares * np.where(np.any(ground.axes, axis=-1), of_dipoles, gain))
