@@ -53,6 +53,7 @@ def unpack(reals, counts):
         reals[d:e],
         np.zeros((0, 3, 3)),
         0.0,
+        None,
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

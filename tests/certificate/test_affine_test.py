@@ -19,6 +19,8 @@ seeds = st.integers(0, 2**32 - 1)
 
 SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 POINTS = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0], [17.0, 15.0, 4.0], [31.7, -8.3, 1.1]])
+NO_DIPOLE = np.zeros((1, 3))
+DIPOLES = (NO_DIPOLE, np.array([[0.0, 0.0, 1.0]]), np.array([[0.36, -0.48, 0.8]]))
 FIELDS = [
     AxisField.vertical(),
     AxisField.towards(POINTS[2]),
@@ -27,9 +29,12 @@ FIELDS = [
 ]
 
 
-def exact_link(field: AxisField, point: np.ndarray, p: Exact, leak: float = 0.0) -> Fraction:
+def exact_link(
+    field: AxisField, point: np.ndarray, p: Exact, leak: float = 0.0, dipole: np.ndarray = NO_DIPOLE
+) -> Fraction:
     """Return a link's gain over ``|r|^2`` at a position with the field's axis, exactly."""
-    return link(exact(point), p, exact(field.offset) + exact(field.matrix) @ p, Fraction(leak))
+    axis = exact(field.offset) + exact(field.matrix) @ p
+    return link(exact(point), p, axis, Fraction(leak), exact(dipole[0]))
 
 
 def plain_link(field: AxisField, point: np.ndarray, p: np.ndarray) -> float:
@@ -57,21 +62,22 @@ def times(x: Interval, factor: Fraction) -> tuple[Fraction, Fraction]:
     return min(low, high), max(low, high)
 
 
+@pytest.mark.parametrize("dipole", DIPOLES)
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS)
 @given(seed=seeds)
-def test_expansions_enclose_the_links(field: AxisField, leak: float, seed: int) -> None:
+def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.ndarray, seed: int) -> None:
     """The exact link at any position of a box lies within value, slopes and second derivatives."""
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
-    value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[j][None], leak)
+    value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[j][None], leak, dipole)
     if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
     centre, half = exact(boxes.centre[0]), exact(boxes.half[0])
-    assert ends(value)[0] <= exact_link(field, POINTS[j], centre, leak) <= ends(value)[1]
+    assert ends(value)[0] <= exact_link(field, POINTS[j], centre, leak, dipole) <= ends(value)[1]
     for shares in rng.integers(-8, 9, (4, 3)):
         x = [Fraction(int(s), 8) * h for s, h in zip(shares, half, strict=True)]
-        there = exact_link(field, POINTS[j], centre + np.array(x), leak)
+        there = exact_link(field, POINTS[j], centre + np.array(x), leak, dipole)
         terms = [ends(value)] + [times(slopes[i], d) for i, d in enumerate(x)]
         for entry, (i, k) in enumerate(SIX):
             terms.append(times(hessian[entry], x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
@@ -79,14 +85,17 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, seed: int) 
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
 
 
+@pytest.mark.parametrize("dipole", DIPOLES)
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS)
 @given(seed=seeds)
-def test_hessians_contain_finite_differences(field: AxisField, leak: float, seed: int) -> None:
+def test_hessians_contain_finite_differences(
+    field: AxisField, leak: float, dipole: np.ndarray, seed: int
+) -> None:
     """Second differences anywhere in the box, and first ones at its centre, lie within the bounds."""
     rng = np.random.default_rng(seed)
     boxes, j, step = one_box(rng), int(rng.integers(4)), Fraction(1, 1000)
-    _, slopes, hessian, _ = link_jet(field, boxes, POINTS[j][None], leak)
+    _, slopes, hessian, _ = link_jet(field, boxes, POINTS[j][None], leak, dipole)
     centre = exact(boxes.centre[0])
     p = [
         c + Fraction(float(s)) * h
@@ -97,7 +106,7 @@ def test_hessians_contain_finite_differences(field: AxisField, leak: float, seed
         place = np.array(base)
         for i, sign in moves:
             place[i] += sign * step
-        return exact_link(field, POINTS[j], place, leak)
+        return exact_link(field, POINTS[j], place, leak, dipole)
 
     scale = float(1.0 / np.sum((POINTS[j] - boxes.centre[0]) ** 2))
     for i in range(3):
@@ -118,7 +127,7 @@ def test_small_boxes_have_narrow_bounds() -> None:
         boxes = Boxes(
             leaf=np.zeros(1, dtype=np.int64), centre=np.array([[9.0, 21.0, 12.0]]), half=np.full((1, 3), 1e-6)
         )
-        value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[0][None], 0.0)
+        value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[0][None], 0.0, NO_DIPOLE)
         there = plain_link(field, POINTS[0], boxes.centre[0])
         for x in (value, *(slopes[i] for i in range(3)), *(hessian[i] for i in range(6))):
             assert x.high[0] - x.low[0] <= 1e-5 * there

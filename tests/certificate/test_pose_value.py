@@ -126,6 +126,7 @@ def test_several_denominators(seed: int) -> None:
         denominator_point=np.array([2, 3]),
         denominator_weight=rng.uniform(size=2),
         leak=0.0,
+        ground_axes=None,
     )
     p, u = np.array([1.0, 2.0, 20.0]), rng.normal(size=3)
     gains = [np.sum(np.cross(q - p, u) ** 2) / (u @ u * np.sum((q - p) ** 2) ** 2) for q in points]

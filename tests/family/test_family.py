@@ -19,6 +19,7 @@ def family(random_scene: Callable) -> Family:
     plain = build_family(random_scene(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
     return plain.changed(
         turn=np.tile(np.eye(3), (len(plain.points_m), 1, 1)),
+        ground_axes=np.tile([0.6, 0.0, 0.8], (len(plain.points_m), 1)),
         piece_start=np.array([0, 1]),
         piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
         zone_kind=np.array([1]),

@@ -38,12 +38,13 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
 
 @pytest.fixture(scope="session")
 def ratios_over() -> Callable[..., Ratios]:
-    """Returns a builder: one ratio over some points, for what asks for no more than points and leak."""
+    """Returns a builder: one ratio over some points, for what asks for points, leak and dipoles only."""
 
-    def build(points_m: np.ndarray, leak: float) -> Ratios:
+    def build(points_m: np.ndarray, leak: float, axes: np.ndarray | None = None) -> Ratios:
         none, first = np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
         one, start = np.ones(1), np.zeros(2, dtype=np.int64)
-        return Ratios(points_m, np.zeros(1), one, first, first, one, start, none, np.zeros(0), leak=leak)
+        numbers = (np.zeros(1), one, first, first, one, start, none, np.zeros(0))
+        return Ratios(points_m, *numbers, leak=leak, ground_axes=axes)
 
     return build
 

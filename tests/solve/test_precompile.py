@@ -20,8 +20,8 @@ KERNELS = (branch, search_and_climb, min_log_ratio, keep_largest, cut_box)
 
 def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
     """Compiled by hand, the halves serve every solve, whatever the axes."""
-    compile_search()
-    compile_proof()
+    compile_search(dipoles=False)
+    compile_proof(dipoles=False)
     before = [len(kernel.signatures) for kernel in KERNELS]
     family = build_family(paper(1.0))
     for field in (AxisField.free(), AxisField.vertical(), AxisField.within(0.0, 0.1)):
@@ -31,10 +31,10 @@ def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
 
 def test_no_process_is_started_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Once this process has the kernels, there is nothing left to do."""
-    precompile()
+    precompile(dipoles=False)
 
     def refuse(*arguments: object, **options: object) -> None:
         raise AssertionError("a process was started")
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
-    precompile()
+    precompile(dipoles=False)

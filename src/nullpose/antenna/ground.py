@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 GROUND_ANTENNAS = {"isotropic": 1.0, "circular": 0.5, "dipole": 1.0}
 """By the kind in a scenario file: the largest share of the power that it takes.
 
-An isotropic antenna takes part with all of the power whatever its polarisation (paper eq. 2.1), a circular one,
-either way round, with half of it. A short dipole takes what its own pattern and its polarisation let through.
+An isotropic antenna takes part with all of the power whatever the polarisation (paper eq. 2.1), a circular
+one, either way round, with half of it. A short dipole takes what its pattern and its polarisation let
+through.
 """
 
 
@@ -28,7 +30,9 @@ class GroundAntennas(NamedTuple):
 
 
 def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
-    """Return a dipole's axis at unit length; the vertical one if none is given.
+    """Return a dipole's axis at unit length, not a hair longer; the vertical one if none is given.
+
+    What bounds a link by its distance holds for it to the last bit then.
 
     Args:
         axis: of any length but zero.
@@ -36,4 +40,7 @@ def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
     if axis is None:
         return np.array([0.0, 0.0, 1.0])
     given = np.array(axis) / np.max(np.abs(axis))  # or squares may overflow
-    return np.asarray(given / np.linalg.norm(given))
+    unit = given / np.linalg.norm(given)
+    while sum(Fraction(x) ** 2 for x in unit.tolist()) > 1:
+        unit = np.nextafter(unit, 0.0)
+    return np.asarray(unit)

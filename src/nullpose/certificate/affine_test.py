@@ -177,7 +177,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     """
     identity, above, below = weighted_sum(family, leaves)
     terms = above + [(point, -scale) for point, scale in below]
-    dipoles = family.ground_axes if len(family.ground_axes) else np.zeros_like(family.points_m)
+    dipoles = np.zeros_like(family.points_m) if family.ground_axes is None else family.ground_axes
     at = ((scale, family.points_m[point], dipoles[point]) for point, scale in terms)
     jets = [(scale, link_jet(field, boxes, place, family.leak, axes)) for scale, place, axes in at]
     zero = Interval(np.zeros((6, len(boxes))))

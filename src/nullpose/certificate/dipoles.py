@@ -1,8 +1,8 @@
 """Sums of forms where points have dipoles: link vectors over boxes, to the second order.
 
-The same lemmas as the solver's (see "The certificate explained", "Dipoles on the ground"), written down again in
-interval arithmetic. Vectors have their components along the first axis, derivatives theirs along the second,
-boxes lie along the last.
+The same lemmas as the solver's (see "The certificate explained", "Dipoles on the ground"), written down again
+in interval arithmetic. Vectors have their components along the first axis, derivatives theirs along the
+second, boxes lie along the last.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ class Shear:
         first: (3, 3, 3, b) the derivatives of E along the world's axes, on the third axis.
         second: (3, 3, 6, b) its second derivatives.
         most: (4, b) bounds on E and on its first three derivatives along any unit direction.
-        basis: (3, 3, b) columns: the coordinates that definiteness is asked in. The anchor's form has no entry
-            but the third's, or none of the third's.
+        basis: (3, 3, b) columns: the coordinates that definiteness is asked in. The anchor's form has one
+            entry, the third's, if it has a dipole, and no third row otherwise.
         gram: (6, b) basis^T basis.
         anchored: (6, b) the anchor's form at the centre; times the squared distance if it has no dipole.
         pull: (3, b) derivatives of that form, over the form.
@@ -343,7 +343,7 @@ def square_over(jet: Jet, boxes: Boxes, top: FloatArray, scale: Interval, sign: 
 
 def _spread(vectors: Interval, weight: FloatArray) -> Interval:
     """Return ``sum_s d_s d_s^T / weight_s``, (6, b)."""
-    total = squares(vectors[:, 0]) / weight[0]
+    total: Interval = squares(vectors[:, 0]) / weight[0]
     for s in range(1, len(weight)):
         total = total + squares(vectors[:, s]) / weight[s]
     return total
@@ -426,7 +426,8 @@ def constant_form(shear: Shear, q: Interval) -> Linear:
 def _turned(shear: Shear) -> Interval:
     """Return the derivatives of ``E basis``, (3, 3, 3, b): row, column of the basis, world axis."""
     parts = [shear.first[:, n][:, None] * shear.basis[n][None, :, None] for n in range(3)]
-    return parts[0] + parts[1] + parts[2]
+    total: Interval = parts[0] + parts[1] + parts[2]
+    return total
 
 
 def _jamming(family: Family, shear: Shear, below: list[Multiple]) -> FloatArray:

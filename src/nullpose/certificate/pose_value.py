@@ -96,10 +96,9 @@ def link(point: Exact, position: Exact, axis: Exact, leak: Fraction, dipole: Exa
     """
     r = point - position
     if dipole is not None and np.any(dipole != 0):
-        square, across = Fraction(r @ r), np.cross(dipole, r)
-        both = Fraction(np.cross(axis, r) @ across)
-        kept = (1 - leak) * both**2 / Fraction(axis @ axis)
-        return (kept / square + leak * Fraction(across @ across)) / square**2
+        across, square = np.cross(dipole, r), r @ r
+        kept = (1 - leak) * (np.cross(axis, r) @ across) ** 2 / (axis @ axis)
+        return Fraction((kept / square + leak * (across @ across)) / square**2)
     return (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
 
 
@@ -112,7 +111,8 @@ def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
         axis: the antenna's axis, of any length.
     """
     leak = Fraction(family.leak)
-    dipoles = exact(family.ground_axes) if len(family.ground_axes) else [None] * len(family.points_m)
+    axes = family.ground_axes
+    dipoles = [None] * len(family.points_m) if axes is None else exact(axes)
     pairs = zip(exact(family.points_m), dipoles, strict=True)
     links = np.array([link(point, position, axis, leak, dipole) for point, dipole in pairs])
     entries = exact(family.denominator_weight) * links[family.denominator_point]

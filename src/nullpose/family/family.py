@@ -72,6 +72,8 @@ class Family:
         """SHA-256 of every number in the family: two families with the same digest are the same problem."""
         sha = hashlib.sha256()
         for name, value in sorted(self.fields.items()):
+            if value is None:
+                continue
             array = np.ascontiguousarray(value)
             sha.update(f"{name}:{array.dtype.str}:{array.shape};".encode())
             sha.update(array.tobytes())

@@ -42,13 +42,13 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         cases: one or more.
     """
     nominal, moved = build_family(scenario), interferer_field(scenario, "offsets")
-    copies: dict[bytes, tuple[FloatArray, FloatArray]] = {}  # each moved point with its rotation once
+    copies: dict[bytes, tuple[FloatArray, FloatArray, int]] = {}  # each moved point with its rotation once
     places: dict[bytes, int] = {}
 
-    def copied(point_m: FloatArray, rotation: FloatArray) -> int:
+    def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
         """Return the index of a copy, new or not."""
         key = point_m.tobytes() + rotation.tobytes()
-        copies.setdefault(key, (point_m, rotation))
+        copies.setdefault(key, (point_m, rotation, point))
         return places.setdefault(key, len(places))
 
     groups: dict[tuple[int, bytes], int] = {}
@@ -60,21 +60,25 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         offsets_m = _of_points(nominal, scenario, getattr(each.case, moved))
         moved_m = nominal.points_m - each.case.position_offset_m + offsets_m
         rotation = each.case.rotation_world
-        numerator_point.append(copied(moved_m[nominal.numerator_point[each.ratio]], rotation))
+        point = int(nominal.numerator_point[each.ratio])
+        numerator_point.append(copied(point, moved_m[point], rotation))
         group = int(nominal.denominator_of[each.ratio])
         bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
-        disturbers_m = moved_m[nominal.denominator_point[bounds]]
+        disturbers = nominal.denominator_point[bounds]
+        disturbers_m = moved_m[disturbers]
         key = (group, disturbers_m.tobytes() + rotation.tobytes())
         if key not in groups:
             groups[key] = len(groups)
             of_group.append(group)
-            entries += [copied(point_m, rotation) for point_m in disturbers_m]
+            pairs = zip(disturbers.tolist(), disturbers_m, strict=True)
+            entries += [copied(point, point_m, rotation) for point, point_m in pairs]
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([each.ratio for each in cases], dtype=np.int64)
-    points_m, rotations = (np.array(each) for each in zip(*copies.values(), strict=True))
+    points_m, rotations, originals = (np.array(each) for each in zip(*copies.values(), strict=True))
     return nominal.changed(
+        ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],

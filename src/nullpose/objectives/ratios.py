@@ -14,11 +14,11 @@ IntArray: TypeAlias = NDArray[np.int64]
 class Ratios(NamedTuple):
     """Ratios over the link forms of points.
 
-    With ``r_j = points[j] - p`` and ``M(r) = (|r|^2 I - (1 - l) r r^T) / |r|^4``, or for a point with a dipole
-    along the unit vector v ``M(r) = (1 - l) a a^T + l |a|^2 I``, ``a = (|r|^2 v - (v.r) r) / |r|^3``, ratio k is
-    ``N_k = n_k I + w_k M(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e M(r_j(e))``, the sum being over the
-    entries e from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a denominator.
-    Everything is dimensionless but the positions.
+    With ``r_j = points[j] - p`` and ``M(r) = (|r|^2 I - (1 - l) r r^T) / |r|^4``, or for a point with a
+    dipole along the unit vector v ``M(r) = (1 - l) a a^T + l |a|^2 I``, ``a = (|r|^2 v - (v.r) r) / |r|^3``,
+    ratio k is ``N_k = n_k I + w_k M(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e M(r_j(e))``, the sum being
+    over the entries e from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a
+    denominator. Everything is dimensionless but the positions.
 
     Args:
         points_m: (m, 3) ground points, metres.
@@ -32,8 +32,8 @@ class Ratios(NamedTuple):
         denominator_weight: (e,) ``b_e``, m^2.
         turn: (m, 3, 3) rotations: point j sees the axis ``turn[j] u``; or (0, 3, 3), where all see u itself.
         leak: l, the antenna's gain along its axis; it is 1 across it.
-        ground_axes: (m, 3) v, the unit axis of a point's dipole, zero where it has none; or (0, 3), where no
-            point has one.
+        ground_axes: (m, 3) v, the unit axis of a point's dipole, zero where it has none; None where no point
+            has one.
     """
 
     points_m: FloatArray
@@ -47,17 +47,19 @@ class Ratios(NamedTuple):
     denominator_weight: FloatArray
     turn: FloatArray = np.zeros((0, 3, 3))
     leak: float = 0.0
-    ground_axes: FloatArray = np.zeros((0, 3))
+    ground_axes: FloatArray | None = None
 
 
-def ground_of(scenario: Any, *kinds: str) -> tuple[FloatArray, FloatArray]:
-    """Return the dipoles' axes, (m, 3) or (0, 3) if there are none, and the points' shares of power, (m,).
+def ground_of(scenario: Any, *kinds: str) -> tuple[FloatArray | None, FloatArray]:
+    """Return the dipoles' axes, (m, 3), None if there are none, and the points' shares of power, (m,).
 
     Args:
         scenario: with its points.
         kinds: whose points, in order, as in ``"node"``.
     """
     groups = [(getattr(scenario, f"{k}_antennas"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
+    if all(some is None for some, _ in groups):
+        return None, np.ones(sum(n for _, n in groups))
     shares = np.concatenate([np.ones(n) if some is None else some.shares for some, n in groups])
     axes = np.vstack([np.zeros((n, 3)) if some is None else some.axes for some, n in groups])
-    return (axes if np.any(axes) else axes[:0]), shares
+    return (axes if np.any(axes) else None), shares

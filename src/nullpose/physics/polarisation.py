@@ -1,4 +1,4 @@
-"""What a link between the drone's antenna and one on the ground loses to both patterns and to polarisation."""
+"""The gain of a link between the drone's antenna and one on the ground, polarisation included."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
 from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
+from nullpose.scenario import Eavesdropper, Jammer, Scenario
 
 
 def dipole_gain(
@@ -71,3 +72,25 @@ def link_gain(
         return gain
     of_dipoles = dipole_gain(position_m, axis, points_m, ground.axes, antenna)
     return np.asarray(ground.shares * np.where(np.any(ground.axes, axis=-1), of_dipoles, gain))
+
+
+def worst_polarised(scenario: Scenario) -> Scenario:
+    """Return a scenario whose jammers and eavesdroppers have no dipoles, itself if it has none.
+
+    An isotropic antenna is the worst that they could have: no dipole lets more through, at any pose.
+
+    Args:
+        scenario: any.
+    """
+    changed = {
+        kind: tuple(_isotropic(point) for point in getattr(scenario, kind))
+        for kind in ("jammers", "eavesdroppers")
+        if any(point.antenna == "dipole" for point in getattr(scenario, kind))
+    }
+    return scenario.model_copy(update=changed) if changed else scenario
+
+
+def _isotropic(point: Jammer | Eavesdropper) -> Jammer | Eavesdropper:
+    if point.antenna != "dipole":
+        return point
+    return point.model_copy(update={"antenna": "isotropic", "antenna_axis": None})

@@ -54,6 +54,9 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
         )
     if scenario.array is not None and scenario.antenna_record != SHORT_DIPOLE:
         yield ("antenna",), "the elements of an array are short dipoles; remove this table or [array]"
+    for place, point in points.items() if scenario.array is not None else ():
+        if point.antenna not in (None, "isotropic"):
+            yield (*place, "antenna"), "an array hears isotropic antennas only; remove this key or [array]"
     airspace = scenario.airspace
     if airspace is not None:
         zones: dict[Place, Any] = {

@@ -169,7 +169,7 @@ def _run(
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     multipliers = np.empty(len(family.numerator_point))
-    log_value, starts, evaluations = entry_of(search_and_climb)(
+    log_value, starts, evaluations = entry_of(search_and_climb, family.arrays)(
         family.arrays,
         family.domain,
         axis_field.arrays,

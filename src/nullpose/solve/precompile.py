@@ -18,29 +18,33 @@ from nullpose.family import AxisField, Family
 
 _WAIT_S = 300.0  # the other process is ended then, and what it compiled is compiled again
 _ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
-_PROGRAM = "from nullpose.solve.precompile import compile_proof as c; c()"
+_PROGRAM = "from nullpose.solve.precompile import compile_proof as c; c({})"
 
 
-def precompile() -> None:
+def precompile(dipoles: bool) -> None:
     """Compile search and proof if this process has not, or load them from the cache.
 
     Without a second process, or without a cache, this one compiles both: nothing depends on that but time.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles, whose kernels are others.
     """
     from nullpose.solve.kernels.branch import branch
 
-    if _is_compiled(branch):
+    if _is_compiled(branch, dipoles):
         return
     with _ONE_AT_A_TIME:
-        if not _is_compiled(branch):
-            _compile_both(branch)
+        if not _is_compiled(branch, dipoles):
+            _compile_both(branch, dipoles)
 
 
-def _compile_both(branch: Any) -> None:
+def _compile_both(branch: Any, dipoles: bool) -> None:
     cache_path = branch.stats.cache_path
-    cached = cache_path is None or any(Path(cache_path).glob("branch.branch-*.nbi"))
-    other = None if cached else _started()
+    # two where both kinds are known; if it is not this one that is, the other process has less to do
+    cached = cache_path is None or len(list(Path(cache_path).glob("branch.branch-*.nbc"))) > dipoles
+    other = None if cached else _started(dipoles)
     try:
-        compile_search()
+        compile_search(dipoles)
         if other is not None:
             other.wait(_WAIT_S)
     except subprocess.TimeoutExpired:
@@ -49,28 +53,32 @@ def _compile_both(branch: Any) -> None:
         if other is not None:
             other.kill()
             other.wait()
-    compile_proof()
+    compile_proof(dipoles)
 
 
-def _started() -> subprocess.Popen[bytes] | None:
+def _started(dipoles: bool) -> subprocess.Popen[bytes] | None:
     try:
-        command = [sys.executable, "-c", _PROGRAM]
+        command = [sys.executable, "-c", _PROGRAM.format(dipoles)]
         return subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     except OSError:
         return None
 
 
-def _is_compiled(kernel: Any) -> bool:
+def _is_compiled(kernel: Any, dipoles: bool) -> bool:
     """Return whether there is nothing to compile in this process: done, or told not to."""
-    return isinstance(kernel, FunctionType) or bool(kernel.overloads)
+    return isinstance(kernel, FunctionType) or dipoles in kernel.entries
 
 
-def compile_proof() -> None:
-    """Compile the branch and bound by giving it no box to work off."""
+def compile_proof(dipoles: bool) -> None:
+    """Compile the branch and bound by giving it no box to work off.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
     from nullpose.solve.kernels import branch, node
     from nullpose.solve.kernels.records import Goal
 
-    family, field = _smallest_family(), AxisField.free()
+    family, field = _smallest_family(dipoles), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     with _collecting_no_garbage():
         branch.branch(
@@ -89,17 +97,21 @@ def compile_proof() -> None:
         )
 
 
-def compile_search() -> None:
-    """Compile what is needed beside that, by a search of no round and a climb of no step."""
+def compile_search(dipoles: bool) -> None:
+    """Compile what is needed beside that, by a search of no round and a climb of no step.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
     from nullpose.solve.kernels.links import min_log_ratio
     from nullpose.solve.kernels.multistart import search_and_climb
     from nullpose.solve.kernels.node import COLUMNS, keep_largest
     from nullpose.solve.kernels.search import cut_box
     from nullpose.solve.multistart import climb
 
-    if _is_compiled(search_and_climb):
+    if _is_compiled(search_and_climb, dipoles):
         return
-    family, none, one = _smallest_family(), np.empty(3), np.ones(1)
+    family, none, one = _smallest_family(dipoles), np.empty(3), np.ones(1)
     up, high_m = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0])
     with _collecting_no_garbage():
         climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
@@ -120,9 +132,10 @@ def _collecting_no_garbage() -> Iterator[None]:
             gc.enable()
 
 
-def _smallest_family() -> Family:
+def _smallest_family(dipoles: bool) -> Family:
     """Return a family of one ratio: its arrays have the types of any other's."""
     return Family(
+        ground_axes=np.zeros((1, 3)) if dipoles else None,
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),

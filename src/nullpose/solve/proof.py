@@ -77,7 +77,7 @@ class _Run:
         from nullpose.solve.kernels.linked import entry_of
 
         self.family, self.axis_field = family, axis_field
-        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch)
+        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch, family.arrays)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
         self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
@@ -111,7 +111,9 @@ class _Run:
             level = min(level + math.log1p(self.target), math.log(self.proved))  # the bound that is stated
         # a hair wider than the cut, which is rounded
         level -= 1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
-        entry_of(cut_box)(self.family.arrays, self.family.low_m, self.family.high_m, level, low, high)
+        entry_of(cut_box, self.family.arrays)(
+            self.family.arrays, self.family.low_m, self.family.high_m, level, low, high
+        )
         high = np.maximum(low, high)  # empty where two ratios are out of reach of each other: any place does
         row = self.favourite.copy()
         row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)

@@ -62,7 +62,7 @@ def solve_and_prove(
         SolveError: no pose reaches every node.
     """
     # compiling must not count against the time limit
-    (precompile if options.certify else compile_search)()
+    (precompile if options.certify else compile_search)(family.ground_axes is not None)
     began = time.perf_counter()
     each = [known or _searched(family, field, options) for field in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)

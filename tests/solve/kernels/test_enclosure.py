@@ -10,6 +10,7 @@ from nullpose.objectives import Ratios
 from nullpose.solve.kernels.enclosure import JET, axis_clearance, link_jet
 
 POINT = np.array([[17.0, 15.0, 4.0]])
+DIPOLES = (None, np.array([[0.0, 0.0, 1.0]]), np.array([[0.36, -0.48, 0.8]]))
 FIELDS = {
     "vertical": AxisField.vertical(),
     "null on the point itself's neighbour": AxisField.towards([-5.0, 30.0, 2.0]),
@@ -18,10 +19,13 @@ FIELDS = {
 PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
-def link(field: AxisField, p: np.ndarray, leak: float) -> float:
+def link(field: AxisField, p: np.ndarray, leak: float, dipole: np.ndarray | None) -> float:
     """Return gain over ``|r|^2`` at a position, from the definition."""
     offset, matrix = field.arrays.offset, field.arrays.matrix
     axis, r = offset + matrix @ p, POINT[0] - p
+    if dipole is not None:
+        a = dipole[0] / np.linalg.norm(r) - (dipole[0] @ r) * r / np.linalg.norm(r) ** 3
+        return float((1.0 - leak) * (axis @ a) ** 2 / (axis @ axis) + leak * (a @ a))
     sine = np.linalg.norm(np.cross(axis, r)) / (np.linalg.norm(axis) * np.linalg.norm(r))
     return float((leak + (1.0 - leak) * sine**2) / (r @ r))
 
@@ -33,38 +37,43 @@ def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(rng.uniform(low, high), 10.0 ** rng.uniform(-2.5, 0.4, size=3)) for _ in range(count)]
 
 
+@pytest.mark.parametrize("dipole", DIPOLES)
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
 def test_value_and_gradient_at_the_centre(
-    field: AxisField, leak: float, ratios_over: Callable[..., Ratios]
+    field: AxisField, leak: float, dipole: np.ndarray | None, ratios_over: Callable[..., Ratios]
 ) -> None:
     """They agree with the definition and its central differences."""
     jet, step = np.empty(JET), 1e-4
     for centre, half in boxes(1, 30):
-        link_jet(ratios_over(POINT, leak), 0, field.arrays, centre, half, jet)
-        assert jet[0] == pytest.approx(link(field, centre, leak), rel=1e-9, abs=1e-15)
+        link_jet(ratios_over(POINT, leak, dipole), 0, field.arrays, centre, half, jet)
+        assert jet[0] == pytest.approx(link(field, centre, leak, dipole), rel=1e-9, abs=1e-15)
         slopes = [
-            (link(field, centre + step * e, leak) - link(field, centre - step * e, leak)) / (2 * step)
+            (link(field, centre + step * e, leak, dipole) - link(field, centre - step * e, leak, dipole))
+            / (2 * step)
             for e in np.eye(3)
         ]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
 
 
+@pytest.mark.parametrize("dipole", DIPOLES)
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
-def test_the_box_is_enclosed(field: AxisField, leak: float, ratios_over: Callable[..., Ratios]) -> None:
+def test_the_box_is_enclosed(
+    field: AxisField, leak: float, dipole: np.ndarray | None, ratios_over: Callable[..., Ratios]
+) -> None:
     """Anywhere in a box the value is within its bounds and every second difference within the Hessian's."""
     rng = np.random.default_rng(2)
     jet, step = np.empty(JET), 1e-3
     for centre, half in boxes(3, 40):
-        link_jet(ratios_over(POINT, leak), 0, field.arrays, centre, half, jet)
+        link_jet(ratios_over(POINT, leak, dipole), 0, field.arrays, centre, half, jet)
         for _ in range(6):
             p = centre + rng.uniform(-1.0, 1.0, size=3) * half
-            assert jet[16] * (1.0 - 1e-12) <= link(field, p, leak) <= jet[17] * (1.0 + 1e-12)
+            assert jet[16] * (1.0 - 1e-12) <= link(field, p, leak, dipole) <= jet[17] * (1.0 + 1e-12)
             for entry, (i, k) in enumerate(PAIRS):
                 a, b = step * np.eye(3)[i], step * np.eye(3)[k]
-                second = link(field, p + a + b, leak) - link(field, p + a - b, leak)
-                second -= link(field, p - a + b, leak) - link(field, p - a - b, leak)
+                second = link(field, p + a + b, leak, dipole) - link(field, p + a - b, leak, dipole)
+                second -= link(field, p - a + b, leak, dipole) - link(field, p - a - b, leak, dipole)
                 error = abs(second / (4.0 * step * step) - jet[4 + entry])
                 assert error <= jet[10 + entry] * (1.0 + 1e-3) + 1e-8
 

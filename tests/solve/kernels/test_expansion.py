@@ -52,7 +52,7 @@ def test_expansion_encloses_the_forms(
         centre = rng.uniform([-30.0, -30.0, 10.0], [50.0, 50.0, 25.0])
         half = rng.uniform(0.05, 1.5, size=3)
         basis = np.empty((3, 3))
-        turning = frame_at(POINTS, kind, anchor, centre, half, basis)
+        turning = frame_at(ratios, kind, anchor, centre, half, basis)
         assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-12)
         p = centre + rng.uniform(-1.0, 1.0, size=3) * half
         frame = carried_frame(kind, anchor, centre, basis, p)

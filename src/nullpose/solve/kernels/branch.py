@@ -88,6 +88,14 @@ def strongest_point(family, centre):
 
 
 @inner_kernel
+def own_sine(axes, j, away):
+    """Return the sine of the angle between point j's dipole and a direction."""
+    if axes is not None:
+        return norm(cross(axes[j], away)) / norm(away)
+    return 1.0
+
+
+@inner_kernel
 def best_frame(family, axis_field, row):
     """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
 
@@ -99,9 +107,8 @@ def best_frame(family, axis_field, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
-    if has_dipole(family, anchor):  # its direction turns faster the nearer it is to its own null
-        away = minus(row_of(points, anchor), centre)
-        rho *= norm(cross(row_of(family.ground_axes, anchor), away)) / norm(away)
+    if has_dipole(family.ground_axes, anchor):  # the nearer to its own null, the faster its form turns
+        rho *= own_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
         if not rho > 0.0:
             return WORLD, anchor
     still = turning = 0.0
@@ -173,7 +180,7 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
-    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes.shape[0] > 0:
+    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes is not None:
         add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
     elif family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)

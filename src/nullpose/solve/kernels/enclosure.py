@@ -204,20 +204,27 @@ def link_jet(family, j, axis_field, centre, half, jet):
     dc, hc, hr = scratch(4, 3), scratch(4, 3, 3), zeroed(4, 3, 3)
     for i in range(3):
         r[i] = family.points_m[j, i] - centre[i]
-    if not has_dipole(family, j):
-        count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
-        quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+    if has_dipole(family.ground_axes, j):
+        dipole_jet(family.leak, family.ground_axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, jet)
         return
-    v = family.ground_axes[j]
-    dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr)
-    quotient_jet(matrix, r, u, half, np.int64(1), 3.0, c, dc, hc, hr, jet)
-    if family.leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
-        leaking, still = scratch(JET), zeroed(3, 3)
-        entries(0.0, v, still, r, centre, u, c, dc, hc)
-        hr[:, :, :] = 0.0
-        quotient_jet(still, r, u, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
-        for m in range(JET):
-            jet[m] = (1.0 - family.leak) * jet[m] + family.leak * leaking[m]
+    count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
+    quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+
+
+@inner_kernel
+def dipole_jet(leak, axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, jet):
+    """Fill the jet of point j, which has a dipole; the arrays from u to hr are room."""
+    if axes is not None:
+        v = axes[j]
+        dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr)
+        quotient_jet(matrix, r, u, half, np.int64(1), 3.0, c, dc, hc, hr, jet)
+        if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
+            leaking, still = scratch(JET), zeroed(3, 3)
+            entries(0.0, v, still, r, centre, u, c, dc, hc)
+            hr[:, :, :] = 0.0
+            quotient_jet(still, r, u, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
+            for m in range(JET):
+                jet[m] = (1.0 - leak) * jet[m] + leak * leaking[m]
 
 
 @inner_kernel

@@ -17,13 +17,16 @@ from nullpose.solve.kernels.borders import border_multipliers, borders, choose_b
 from nullpose.solve.kernels.denominators import (
     ROUNDING,
     add_mixed_denominators,
-    add_scaled as add_with_slopes,
     sharpen,
 )
-from nullpose.solve.kernels.dipoles import Shear, add_constant, add_links, centre_form, shear_at
+from nullpose.solve.kernels.denominators import (
+    add_scaled as add_with_slopes,
+)
+from nullpose.solve.kernels.dipoles import add_constant, add_links, centre_form
 from nullpose.solve.kernels.expansion import expand_point, min_square
 from nullpose.solve.kernels.forms import congruence, form_value
 from nullpose.solve.kernels.jit import inner_kernel
+from nullpose.solve.kernels.link_vectors import Shear, shear_at
 from nullpose.solve.kernels.node import (
     ANCHOR,
     BALL,
@@ -196,29 +199,30 @@ def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
 
 
 @inner_kernel
-def add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest):
+def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
     """Fill the row's sum and its slopes and rest where points have dipoles."""
-    v, q, turned = scratch(3), scratch(6), scratch(6)
-    shear = shear_at(
-        family, frame, row[CENTRE:HALF], row[HALF:LEVEL],
-        Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
-    )  # fmt: skip
-    matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
-    jamming = centre_form(family, frame, row, matrix)
-    half = row[HALF:LEVEL]
-    for constraint in range(3):
-        weight = constraint_of(axis_field, row, constraint, q)
-        if weight > 0.0:
-            congruence(q, frame.basis, turned)
-            add_scaled(weight, turned, matrix)
-    top_eigenvector(matrix, v)
-    matrix[:] = 0.0
-    for constraint in range(3):
-        weight = constraint_of(axis_field, row, constraint, q)
-        if weight > 0.0:
-            congruence(q, frame.basis, turned)
-            add_constant(shear, half, weight, turned, matrix, slopes, rest)
-    add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
+    if axes is not None:
+        v, q, turned = scratch(3), scratch(6), scratch(6)
+        shear = shear_at(
+            family, frame, row[CENTRE:HALF], row[HALF:LEVEL],
+            Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
+        )  # fmt: skip
+        matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
+        jamming = centre_form(family, frame, row, matrix)
+        half = row[HALF:LEVEL]
+        for constraint in range(3):
+            weight = constraint_of(axis_field, row, constraint, q)
+            if weight > 0.0:
+                congruence(q, frame.basis, turned)
+                add_scaled(weight, turned, matrix)
+        top_eigenvector(matrix, v)
+        matrix[:] = 0.0
+        for constraint in range(3):
+            weight = constraint_of(axis_field, row, constraint, q)
+            if weight > 0.0:
+                congruence(q, frame.basis, turned)
+                add_constant(shear, half, weight, turned, matrix, slopes, rest)
+        add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
 
 
 @inner_kernel
@@ -256,11 +260,11 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     if not row[COUNT] > 0.0:
         return False
     matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
-    dipoles = family.ground_axes.shape[0] > 0
+    dipoles = family.ground_axes is not None
     row[NU] = below_rest = 0.0
     half, level_axes = row[HALF:LEVEL], is_level(axis_field)
     if dipoles:
-        add_dipole_sum(family, axis_field, frame, row, matrix, slopes, forecast.rest)
+        add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
     else:
         below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
     if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):

@@ -38,6 +38,14 @@ def min_distance(points, j, centre, half):
     return math.sqrt(min_square(points, j, centre, half))
 
 
+@inner_kernel
+def turn_to_form(axes, j, c):
+    """Put the direction along which point j's dipole is seen in place of that to the point."""
+    if axes is not None:
+        v = row(axes, j)
+        store(unit(along(v, -dot(v, c), c)), c)
+
+
 @kernel
 def frame_at(family, kind, anchor, centre, half, basis):
     """Return a frame at the centre, whose axes are filled into ``basis``.
@@ -54,9 +62,8 @@ def frame_at(family, kind, anchor, centre, half, basis):
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
     rho = math.sqrt(x * x + y * y + z * z)
     c[0], c[1], c[2] = x / rho, y / rho, z / rho
-    if has_dipole(family, anchor):
-        v = family.ground_axes[anchor]
-        store(unit(along(row(family.ground_axes, anchor), -dot(v, c), c)), c)
+    if has_dipole(family.ground_axes, anchor):
+        turn_to_form(family.ground_axes, anchor, c)
     tangents(c, a, b)
     for i in range(3):
         basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]

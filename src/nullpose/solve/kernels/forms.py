@@ -6,7 +6,8 @@ import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.links import has_dipole
-from nullpose.solve.kernels.scratch import scratch
+from nullpose.solve.kernels.scratch import scratch, zeroed
+from nullpose.solve.kernels.vectors import along, dot, scaled
 
 
 @inner_kernel
@@ -118,32 +119,29 @@ def add_form(x, y, z, leak, weight, isotropic, out):
 
 
 @inner_kernel
-def add_dipole_form(x, y, z, v, leak, weight, isotropic, out):
-    """Add what ``add_form`` does for a point with a dipole along v, in the coordinates of r."""
-    rho2, ahead = x * x + y * y + z * z, v[0] * x + v[1] * y + v[2] * z
-    a, b, c = v[0] * rho2 - ahead * x, v[1] * rho2 - ahead * y, v[2] * rho2 - ahead * z
-    s = weight / (rho2 * rho2 * rho2)
-    bent = (1.0 - leak) * s
-    level = isotropic + leak * s * (a * a + b * b + c * c)
-    out[0] += level + bent * a * a
-    out[1] += level + bent * b * b
-    out[2] += level + bent * c * c
-    out[3] += bent * a * b
-    out[4] += bent * a * c
-    out[5] += bent * b * c
+def add_dipole_form(family, axes, j, basis, r, weight, isotropic, out):
+    """Add what ``add_form`` does for point j, which has a dipole; r is in the frame."""
+    if axes is not None:
+        v = in_frame(basis, axes[j])
+        if family.turn.shape[0] > 0:
+            v = turned_back(family.turn, j, axes[j, 0], axes[j, 1], axes[j, 2])
+        rho2 = dot(r, r)
+        a = along(scaled(rho2, v), -dot(v, r), r)
+        s = weight / (rho2 * rho2 * rho2)
+        level = isotropic + family.leak * s * dot(a, a)
+        for m in range(3):
+            out[m] += level
+        for k in range(6):
+            m, n = entry(k)
+            out[k] += (1.0 - family.leak) * s * a[m] * a[n]
 
 
 @inner_kernel
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
     x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
-    if has_dipole(family, j):
-        v = family.ground_axes[j]
-        if family.turn.shape[0] > 0:
-            seen = turned_back(family.turn, j, v[0], v[1], v[2])
-        else:
-            seen = in_frame(basis, v)
-        add_dipole_form(x, y, z, seen, family.leak, weight, isotropic, out)
+    if has_dipole(family.ground_axes, j):
+        add_dipole_form(family, family.ground_axes, j, basis, (x, y, z), weight, isotropic, out)
     else:
         add_form(x, y, z, family.leak, weight, isotropic, out)
 
@@ -163,10 +161,10 @@ def fill_form(family, j, p, weight, isotropic, out):
     """Add ``weight * M(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
     point = family.points_m[j]
     x, y, z = turned_back(family.turn, j, point[0] - p[0], point[1] - p[1], point[2] - p[2])
-    if has_dipole(family, j):
-        v = family.ground_axes[j]
-        seen = turned_back(family.turn, j, v[0], v[1], v[2])
-        add_dipole_form(x, y, z, seen, family.leak, weight, isotropic, out)
+    if has_dipole(family.ground_axes, j):
+        still = zeroed(3, 3)
+        still[0, 0] = still[1, 1] = still[2, 2] = 1.0
+        add_dipole_form(family, family.ground_axes, j, still, (x, y, z), weight, isotropic, out)
     else:
         add_form(x, y, z, family.leak, weight, isotropic, out)
 

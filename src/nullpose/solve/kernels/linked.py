@@ -19,6 +19,8 @@ from numba.core.compiler import CompilerBase, Flags
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
 
+from nullpose.objectives import Ratios
+
 
 class _Whole(JITCodeLibrary):
     """Machine code of a kernel and of all its parts."""
@@ -154,7 +156,7 @@ class LinkedDispatcher(CPUDispatcher):
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
-        self.entries: list[Any] = []
+        self.entries: dict[bool, Any] = {}
         self._part = Part(function, options)
 
     @property
@@ -168,17 +170,20 @@ class LinkedDispatcher(CPUDispatcher):
     def add_overload(self, cres: Any) -> None:
         """Keep the machine code for one choice of types."""
         super().add_overload(cres)
-        self.entries.append(cres.entry_point)
+        for first in cres.signature.args[:1]:
+            if isinstance(first, types.NamedTuple) and first.instance_class is Ratios:
+                has_dipoles = first.types[Ratios._fields.index("ground_axes")] is not types.none
+                self.entries[has_dipoles] = cres.entry_point
 
 
-def entry_of(kernel: Any) -> Any:
-    """Return what Python calls where a kernel's arguments are always of the same types.
+def entry_of(kernel: Any, ratios: Ratios) -> Any:
+    """Return what Python calls where a kernel's arguments but the ratios are always of the same types.
 
     That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
     as a short kernel, is left out.
 
     Args:
-        kernel: any.
+        kernel: any whose first argument are ratios.
+        ratios: those it will be called with.
     """
-    entries: list[Any] = getattr(kernel, "entries", [])
-    return entries[0] if len(entries) == 1 else kernel
+    return getattr(kernel, "entries", {}).get(ratios.ground_axes is not None, kernel)

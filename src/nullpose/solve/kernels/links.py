@@ -1,8 +1,9 @@
 """Ratios of a family at a pose, and their derivatives.
 
 With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
-antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a point
-with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4`` with ``B = (u x r).(v x r)``. Ratio k is
+antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a
+point with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4``, ``B = (u x r).(v x r)``.
+Ratio k is
 ``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not depend on the
 length of ``u``, so an axis that is an affine function of the position needs no normalising and no second
 derivative of its own.
@@ -33,12 +34,24 @@ def seen_axis(turn, j, u):
 
 
 @inner_kernel
-def has_dipole(family, j):
-    """Return whether point j has a dipole; otherwise its antenna is isotropic."""
-    if family.ground_axes.shape[0] == 0:
-        return False
-    v = family.ground_axes[j]
-    return v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0
+def has_dipole(axes, j):
+    """Return whether point j has a dipole; otherwise its antenna is isotropic.
+
+    Where no point has one, the axes are None, and what dipoles need is not even compiled.
+    """
+    if axes is not None:
+        return axes[j, 0] != 0.0 or axes[j, 1] != 0.0 or axes[j, 2] != 0.0
+    return False
+
+
+@inner_kernel
+def dipole_link(leak, axes, j, r, u):
+    """Return the link of point j, which has a dipole, seen along r."""
+    if axes is not None:
+        other, square = cross(axes[j], r), dot(r, r)
+        both, leaking = dot(cross(u, r), other), leak * dot(u, u) * dot(other, other)
+        return ((1.0 - leak) * both * both / square + leaking) / (square * square)
+    return 0.0
 
 
 @kernel
@@ -52,12 +65,8 @@ def link_form(family, j, p, u):
     cy = uz * rx - ux * rz
     cz = ux * ry - uy * rx
     rho2 = rx * rx + ry * ry + rz * rz
-    if has_dipole(family, j):
-        v = family.ground_axes[j]
-        vx, vy, vz = v[1] * rz - v[2] * ry, v[2] * rx - v[0] * rz, v[0] * ry - v[1] * rx
-        both, length = cx * vx + cy * vy + cz * vz, ux * ux + uy * uy + uz * uz
-        leaking = family.leak * length * (vx * vx + vy * vy + vz * vz)
-        return ((1.0 - family.leak) * both * both / rho2 + leaking) / (rho2 * rho2)
+    if has_dipole(family.ground_axes, j):
+        return dipole_link(family.leak, family.ground_axes, j, (rx, ry, rz), (ux, uy, uz))
     return (cx * cx + cy * cy + cz * cz + family.leak * ahead * ahead) / (rho2 * rho2)
 
 
@@ -106,14 +115,14 @@ def add_form(family, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_seen_form`` does for the axis seen."""
     turn = family.turn
     if turn.shape[0] == 0:
-        if has_dipole(family, j):
-            return add_dipole_form(family, j, weight, p, u, grad, hess, second)
+        if has_dipole(family.ground_axes, j):
+            return add_dipole_form(family, family.ground_axes, j, weight, p, u, grad, hess, second)
         return add_seen_form(family, j, weight, p, u, grad, hess, second)
     q = turn[j]
     v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
     v[0], v[1], v[2] = seen_axis(turn, j, u)
-    if has_dipole(family, j):
-        value = add_dipole_form(family, j, weight, p, v, g, h, second)
+    if has_dipole(family.ground_axes, j):
+        value = add_dipole_form(family, family.ground_axes, j, weight, p, v, g, h, second)
     else:
         value = add_seen_form(family, j, weight, p, v, g, h, second)
     for i in range(3):
@@ -186,61 +195,63 @@ def add_seen_form(family, j, weight, p, u, grad, hess, second):
 
 
 @inner_kernel
-def add_dipole_form(family, j, weight, p, u, grad, hess, second):
+def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
     """Do what ``add_seen_form`` does, for a point with a dipole.
 
     The form is ``(1 - l) B^2 s^-3 + l C uu s^-2`` with ``s = |r|^2``, ``B = (u.v) s - (u.r) (v.r)``, ``uu =
     |u|^2`` and ``C = |v x r|^2``.
     """
-    leak, r, v = family.leak, scratch(3), family.ground_axes[j]
-    for i in range(3):
-        r[i] = family.points_m[j, i] - p[i]
-    s, uu = dot(r, r), dot(u, u)
-    uv, ur, vr = dot(u, v), dot(u, r), dot(v, r)
-    side, other = cross(u, r), cross(v, r)
-    b, c = dot(side, other), dot(other, other)
-    i2 = 1.0 / s
-    i4 = i2 * i2
-    whole, leaking = (1.0 - leak) * weight * i4 * i2, leak * weight * i4
-    br, bu, cr = scratch(3), scratch(3), scratch(3)
-    for i in range(3):
-        br[i] = 2.0 * uv * r[i] - vr * u[i] - ur * v[i]
-        bu[i] = s * v[i] - vr * r[i]
-        cr[i] = 2.0 * (r[i] - vr * v[i])
-        grad[i] -= 2.0 * whole * b * (br[i] - 3.0 * b * i2 * r[i])
-        grad[i] -= leaking * uu * (cr[i] - 4.0 * c * i2 * r[i])
-        grad[3 + i] += 2.0 * (whole * b * bu[i] + leaking * c * u[i])
-    if second:
+    if axes is not None:
+        leak, r, v = family.leak, scratch(3), axes[j]
         for i in range(3):
-            for k in range(3):
-                same = 1.0 if i == k else 0.0
-                bent = 2.0 * uv * same - u[i] * v[k] - v[i] * u[k]
-                far = r[i] * r[k]
-                hess[i, k] += (
-                    2.0
-                    * whole
-                    * (
-                        br[i] * br[k]
-                        + b * (bent - 6.0 * i2 * (br[i] * r[k] + r[i] * br[k]))
-                        + b * b * i2 * (24.0 * i2 * far - 3.0 * same)
+            r[i] = family.points_m[j, i] - p[i]
+        s, uu = dot(r, r), dot(u, u)
+        uv, ur, vr = dot(u, v), dot(u, r), dot(v, r)
+        side, other = cross(u, r), cross(v, r)
+        b, c = dot(side, other), dot(other, other)
+        i2 = 1.0 / s
+        i4 = i2 * i2
+        whole, leaking = (1.0 - leak) * weight * i4 * i2, leak * weight * i4
+        br, bu, cr = scratch(3), scratch(3), scratch(3)
+        for i in range(3):
+            br[i] = 2.0 * uv * r[i] - vr * u[i] - ur * v[i]
+            bu[i] = s * v[i] - vr * r[i]
+            cr[i] = 2.0 * (r[i] - vr * v[i])
+            grad[i] -= 2.0 * whole * b * (br[i] - 3.0 * b * i2 * r[i])
+            grad[i] -= leaking * uu * (cr[i] - 4.0 * c * i2 * r[i])
+            grad[3 + i] += 2.0 * (whole * b * bu[i] + leaking * c * u[i])
+        if second:
+            for i in range(3):
+                for k in range(3):
+                    same = 1.0 if i == k else 0.0
+                    bent = 2.0 * uv * same - u[i] * v[k] - v[i] * u[k]
+                    far = r[i] * r[k]
+                    hess[i, k] += (
+                        2.0
+                        * whole
+                        * (
+                            br[i] * br[k]
+                            + b * (bent - 6.0 * i2 * (br[i] * r[k] + r[i] * br[k]))
+                            + b * b * i2 * (24.0 * i2 * far - 3.0 * same)
+                        )
                     )
-                )
-                hess[i, k] += (
-                    leaking
-                    * uu
-                    * (
-                        2.0 * (same - v[i] * v[k])
-                        - 4.0 * i2 * (cr[i] * r[k] + r[i] * cr[k])
-                        + c * i2 * (24.0 * i2 * far - 4.0 * same)
+                    hess[i, k] += (
+                        leaking
+                        * uu
+                        * (
+                            2.0 * (same - v[i] * v[k])
+                            - 4.0 * i2 * (cr[i] * r[k] + r[i] * cr[k])
+                            + c * i2 * (24.0 * i2 * far - 4.0 * same)
+                        )
                     )
-                )
-                hess[3 + i, 3 + k] += 2.0 * (whole * bu[i] * bu[k] + leaking * c * same)
-                mixed = whole * (br[k] - 6.0 * b * i2 * r[k]) * bu[i]
-                mixed += whole * b * (2.0 * v[i] * r[k] - v[k] * r[i] - vr * same)
-                mixed += leaking * u[i] * (cr[k] - 4.0 * c * i2 * r[k])
-                hess[3 + i, k] -= 2.0 * mixed
-                hess[k, 3 + i] -= 2.0 * mixed
-    return whole * b * b + leaking * uu * c
+                    hess[3 + i, 3 + k] += 2.0 * (whole * bu[i] * bu[k] + leaking * c * same)
+                    mixed = whole * (br[k] - 6.0 * b * i2 * r[k]) * bu[i]
+                    mixed += whole * b * (2.0 * v[i] * r[k] - v[k] * r[i] - vr * same)
+                    mixed += leaking * u[i] * (cr[k] - 4.0 * c * i2 * r[k])
+                    hess[3 + i, k] -= 2.0 * mixed
+                    hess[k, 3 + i] -= 2.0 * mixed
+        return whole * b * b + leaking * uu * c
+    return 0.0
 
 
 @kernel

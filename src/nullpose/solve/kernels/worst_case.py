@@ -17,6 +17,7 @@ from nullpose.solve.kernels.vectors import (
     along,
     combination,
     components,
+    cross,
     dot,
     minus,
     norm,
@@ -24,6 +25,7 @@ from nullpose.solve.kernels.vectors import (
     row,
     scaled,
     store,
+    unit,
 )
 from nullpose.solve.kernels.worst_case_links import Sets, root_link, strongest_link
 
@@ -40,7 +42,8 @@ Vector = tuple[float, float, float]
 class Ratio(NamedTuple):
     """A ratio ``(a + c (|y x v|^2 + l (y.v)^2)) / (1 + sum_j b_j L_j)``.
 
-    v is the node's inverted point, L_j the link of set j, and l the antenna's leak.
+    v is the node's inverted point, L_j the link of set j, and l the antenna's leak. A node with a dipole has
+    ``(1 - l) (y.a)^2 + l |a|^2`` in place of the bracket, a being its link vector (lemma 5).
     """
 
     isotropic: float  # a
@@ -50,6 +53,7 @@ class Ratio(NamedTuple):
     centres: FloatArray  # (n, 3) of the sets
     sets: Sets
     leak: float  # l
+    dipole: Vector  # the node's axis; zero where it has none
 
 
 class Errors(NamedTuple):
@@ -73,6 +77,27 @@ def link_slopes(scale, leak, y, q):
 
 
 @inner_kernel
+def has_dipole(ratio):
+    """Return whether the node has a dipole."""
+    return dot(ratio.dipole, ratio.dipole) > 0.0
+
+
+@inner_kernel
+def node_link(ratio, y, q):
+    """Return the node's link, y being of unit length, and its derivatives by axis and offset."""
+    square, v = dot(q, q), ratio.dipole
+    if not has_dipole(ratio):
+        return root_link(y, q, ratio.leak) ** 2, *link_slopes(1.0, ratio.leak, y, q)
+    kept, leak, other = (1.0 - ratio.leak) / square**3, ratio.leak / square**2, cross(v, q)
+    ahead, both, own = dot(v, q), dot(cross(y, q), other), dot(other, other)
+    by_axis = along(scaled(2.0 * leak * own, y), 2.0 * kept * both, along(scaled(square, v), -ahead, q))
+    turned = along(along(scaled(2.0 * dot(y, v), q), -ahead, y), -dot(y, q), v)
+    by_place = scaled(2.0 * kept * both, along(turned, -3.0 * both / square, q))
+    by_place = along(by_place, 2.0 * leak, along(along(q, -ahead, v), -2.0 * own / square, q))
+    return kept * both * both + leak * own, by_axis, scaled(-1.0, by_place)
+
+
+@inner_kernel
 def ratio_at(ratio, y, offset, places):
     """Return the ratio at an axis y (unit) and an offset, the sets at their worst, and its derivatives.
 
@@ -92,8 +117,9 @@ def ratio_at(ratio, y, offset, places):
     square = dot(q, q)
     if not (square > 0.0 and below < math.inf):
         return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    value = (ratio.isotropic + ratio.weight * root_link(y, q, ratio.leak) ** 2) / below
-    by_axis, by_offset = link_slopes(ratio.weight, ratio.leak, y, q)
+    link, by_axis, by_offset = node_link(ratio, y, q)
+    value = (ratio.isotropic + ratio.weight * link) / below
+    by_axis, by_offset = scaled(ratio.weight, by_axis), scaled(ratio.weight, by_offset)
     return value, over(along(by_axis, -value, below_y), below), over(along(by_offset, -value, below_d), below)
 
 
@@ -166,9 +192,22 @@ def null_within_reach(node, errors):
 
 
 @inner_kernel
+def crossed_within_reach(ratio, errors):
+    """Return whether an error of the axis alone crosses the node's dipole, and that axis."""
+    nominal, q = errors.frame[0], ratio.node
+    a = along(scaled(dot(q, q), ratio.dipole), -dot(ratio.dipole, q), q)
+    lean, square = dot(nominal, a), dot(a, a)
+    reached = lean * lean <= errors.sine**2 * square or errors.cosine <= 0.0
+    return reached, unit(along(nominal, -lean / square if square > 0.0 else 0.0, a))
+
+
+@inner_kernel
 def worst_found(ratio, errors, places):
     """Return the smallest ratio that descents from several errors end at, and the axis and offset there."""
     silent, y, offset = null_within_reach(ratio.node, errors)
+    if has_dipole(ratio) and not silent:
+        silent, y = crossed_within_reach(ratio, errors)
+        offset = _NO_OFFSET
     if ratio.isotropic == ratio.leak == 0.0 and silent:
         return 0.0, y, offset
     nominal, first, second = errors.frame

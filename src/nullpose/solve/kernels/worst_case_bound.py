@@ -16,11 +16,13 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solve.kernels.link_vectors import SLOPE
 from nullpose.solve.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
 from nullpose.solve.kernels.worst_case import (
     FloatArray,
     Vector,
     descend,
+    has_dipole,
     into_ball,
     into_cone,
     ratio_at,
@@ -121,6 +123,15 @@ def empty_of_errors(errors, cell):
 
 
 @inner_kernel
+def least_dipole_link(ratio, y, q):
+    """Return the link of a node with a dipole for an axis y of any length, rounding taken off."""
+    square, length, other = dot(q, q), norm(y), cross(ratio.dipole, q)
+    both = max(0.0, abs(dot(cross(y, q), other)) - 4.0 * ROUND * length * square)
+    own = max(0.0, norm(other) - ROUND * norm(q))
+    return ((1.0 - ratio.leak) * both * both / square + ratio.leak * (length * own) ** 2) / (square * square)
+
+
+@inner_kernel
 def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
     """Fill what holds at the corners; return False near a jammer. The node's weight is 0 if left out."""
     n_axes, n_offsets = corners.values.shape
@@ -133,7 +144,9 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
             y, square, length = axis_at(errors, cell.face, x), dot(x, x), norm(x)
             corners.cone[m] = x[ahead(cell.face)] ** 2 - errors.cosine**2 * square
             signal, noise = ratio.isotropic * square, square
-            if weight > 0.0:
+            if weight > 0.0 and has_dipole(ratio):
+                signal += weight * least_dipole_link(ratio, y, node)
+            elif weight > 0.0:
                 rounding = ROUND * length * norm(node)
                 across = max(0.0, norm(cross(y, node)) - rounding) / dot(node, node)
                 leaking = max(0.0, abs(dot(y, node)) - rounding) / dot(node, node)
@@ -153,13 +166,15 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
 
 @inner_kernel
 def curvatures(ratio, weight, level, cell, across):
-    """Return lemma 4's A, B and C; infinite unless the cell keeps clear of all sets."""
+    """Return lemma 4's A, B and C, or those of a dipole; infinite unless the cell keeps clear of all sets."""
     lean, swing, length = norm(cell.x_half), norm(cell.d_half), norm(farthest(cell.x, cell.x_half))
     kappa = 1.0 / (norm(minus(ratio.node, cell.d)) - swing) if weight > 0.0 else 0.0
     square = kappa * kappa
     a = 2.0 * max(0.0, ratio.isotropic - level + weight * square)
     b = 4.0 * weight * length * kappa * square
     c = 6.0 * weight * (length * square) ** 2
+    if has_dipole(ratio):
+        b, c = b * SLOPE, c * (1.0 + SLOPE * SLOPE / 3.0)
     for j in range(ratio.shares.shape[0]):
         near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
         if not near > 0.0:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
+from nullpose.physics.polarisation import worst_polarised
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.inner import Inner, RatioGuarantee
 
@@ -74,7 +75,8 @@ def guarantee(
     in its set. Branch and bound over axis and position, with closed forms for the rest; see docs/robust.md.
 
     Args:
-        scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted.
+        scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted. Who has a dipole
+            among jammers and eavesdroppers counts as isotropic.
         position_m: (3,) the commanded position, metres.
         axis: (3,) the commanded antenna axis, of any length but zero.
         accuracy: relative distance of each bound from the worst case found, 1e-6 to 0.5. A bound that would
@@ -83,7 +85,7 @@ def guarantee(
     Raises:
         UsageError: a pose or an accuracy that is none, or an array in place of the dipole.
     """
-    return guarantee_of(Inner(require_dipole(scenario)), position_m, axis, accuracy)
+    return guarantee_of(Inner(worst_polarised(require_dipole(scenario))), position_m, axis, accuracy)
 
 
 def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy: float) -> Guarantee:

@@ -97,7 +97,7 @@ class Inner:
         group = family.denominator_of[ratio]
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
-        noise = float(family.denominator_isotropic[group])
+        noise, axes = float(family.denominator_isotropic[group]), family.ground_axes
         node_m = family.points_m[family.numerator_point[ratio]] - p
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
@@ -109,6 +109,7 @@ class Inner:
             if np.any(self.radii < 0.0)
             else Sets(self.radii[points], None, None),
             leak=family.leak,
+            dipole=(0.0, 0.0, 0.0) if axes is None else tuple(axes[family.numerator_point[ratio]].tolist()),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:

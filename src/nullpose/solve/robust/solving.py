@@ -9,6 +9,7 @@ from typing import Unpack
 
 from nullpose.family import AxisField
 from nullpose.physics import Pose, evaluate
+from nullpose.physics.polarisation import worst_polarised
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
 from nullpose.solve.options import SolveKeywords, SolveOptions
@@ -25,6 +26,9 @@ from nullpose.solve.robust.solution import GuardedPose, RobustDetails
 ROBUST_GAP = 1e-2
 """The relative gap asked for unless another is."""
 
+POLARISATION = "jammers and eavesdroppers with a dipole count as isotropic, the worst that they could be"
+"""The note of a solution whose scenario states such."""
+
 
 def solve_robust(
     scenario: Scenario,
@@ -37,7 +41,8 @@ def solve_robust(
     Maximises the smallest margin or secrecy rate over all errors together: an actual axis within
     ``attitude_error_deg`` and an actual position within ``position_error_m`` of the commanded ones, every
     jammer or eavesdropper anywhere in its set. What the pose guarantees is proved; that no pose guarantees
-    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned.
+    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned. Nothing is
+    made to rest on how a jammer or an eavesdropper is polarised: with a dipole it counts as isotropic.
 
     Args:
         scenario: with errors or without, which makes the guaranteed value the nominal one.
@@ -49,13 +54,14 @@ def solve_robust(
         SolveError: no pose reaches every node.
     """
     limits = SolveOptions(**options, on_progress=on_progress).of(scenario, ROBUST_GAP)
-    inner = Inner(require_dipole(scenario))
+    stated, scenario = scenario, worst_polarised(require_dipole(scenario))
+    inner = Inner(scenario)
     began = time.perf_counter()
     nominal = solve(scenario, certify=False, seed=limits.seed).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
-        precompile()  # compiling must not count against the time limit
+        precompile(inner.family.ground_axes is not None)  # compiling must not count against the time limit
     clock = time.perf_counter()
     try:
         again = True
@@ -84,6 +90,7 @@ def solve_robust(
             boxes=exchange.boxes,
         ),
         provenance=provenance(limits.seed) | {"gap": limits.target},
+        note="" if scenario is stated else POLARISATION,
         details=RobustDetails(robust=robust, nominal=_guarded(exchange, nominal), cases=len(exchange.cases)),
     )
 

@@ -1,0 +1,96 @@
+"""The gain of a link between two antennas: patterns and polarisation."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.antenna import GroundAntennas, QuadraticAntenna, unit_axis
+from nullpose.physics import antenna_gain
+from nullpose.physics.polarisation import dipole_gain, link_gain
+
+SEEDS = st.integers(0, 2**32 - 1)
+LEAKING = QuadraticAntenna(name="dipole", label="a dipole with a frame", leak=0.01)
+
+
+def random_pose(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return a position, an axis, four points and a dipole's axis at each."""
+    rng = np.random.default_rng(seed)
+    axes = rng.normal(size=(5, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    points_m = rng.uniform([-50.0, -50.0, 0.0], [50.0, 50.0, 4.0], (4, 3))
+    return rng.uniform([-20.0, -20.0, 8.0], [20.0, 20.0, 30.0]), axes[0], points_m, axes[1:]
+
+
+@given(seed=SEEDS)
+def test_a_dipole_takes_three_factors(seed: int) -> None:
+    """Both dipoles' sin^2 and the squared cosine of the angle between their fields, no more and no less."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    gains = dipole_gain(position_m, axis, points_m, axes)
+    for gain, point_m, own in zip(gains, points_m, axes, strict=True):
+        d = (point_m - position_m) / np.linalg.norm(point_m - position_m)
+        one, other = np.cross(d, np.cross(d, axis)), np.cross(d, np.cross(d, own))
+        cosine = one @ other / (np.linalg.norm(one) * np.linalg.norm(other))
+        wanted = np.linalg.norm(one) ** 2 * np.linalg.norm(other) ** 2 * cosine**2
+        assert gain == pytest.approx(wanted, abs=1e-13)
+
+
+@given(seed=SEEDS)
+def test_links_are_reciprocal(seed: int) -> None:
+    """Drone and ground may change places with their dipoles."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    for point_m, own in zip(points_m, axes, strict=True):
+        there = dipole_gain(position_m, axis, [point_m], [own])
+        back = dipole_gain(point_m, own, [position_m], [axis])
+        assert there == pytest.approx(back, abs=1e-14)
+
+
+@given(seed=SEEDS)
+def test_turning_the_world_changes_nothing(seed: int) -> None:
+    """Positions, axes and dipoles turned together have the same gains."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    turn = Rotation.random(rng=np.random.default_rng(seed)).as_matrix().T
+    here = dipole_gain(position_m, axis, points_m, axes, LEAKING)
+    there = dipole_gain(position_m @ turn, axis @ turn, points_m @ turn, axes @ turn, LEAKING)
+    np.testing.assert_allclose(here, there, atol=1e-13)
+
+
+@given(seed=SEEDS)
+def test_three_dipoles_across_each_other_miss_nothing(seed: int) -> None:
+    """Their gains add up to that of an isotropic antenna, what leaks counted twice."""
+    position_m, axis, points_m, _ = random_pose(seed)
+    frame = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
+    total = sum(dipole_gain(position_m, axis, points_m, np.tile(own, (4, 1)), LEAKING) for own in frame)
+    whole = antenna_gain(position_m, axis, points_m, LEAKING)
+    np.testing.assert_allclose(total, whole + LEAKING.leak, atol=1e-13)
+
+
+@given(seed=SEEDS)
+def test_each_point_has_the_antenna_it_states(seed: int) -> None:
+    """Isotropic: the drone's gain; circular: half of it; dipole: its own."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    ground = GroundAntennas(
+        np.array([np.zeros(3), np.zeros(3), axes[2], axes[3]]), np.array([1.0, 0.5, 1.0, 1.0])
+    )
+    gains = link_gain(position_m, axis, points_m, LEAKING, ground)
+    whole = antenna_gain(position_m, axis, points_m, LEAKING)
+    assert gains[:2].tolist() == [whole[0], 0.5 * whole[1]]
+    assert gains[2:].tolist() == dipole_gain(position_m, axis, points_m, axes, LEAKING)[2:].tolist()
+
+
+def test_a_flat_dipole_does_not_hear_a_whip() -> None:
+    """Crossed polarisations: nothing arrives, however strong both patterns are; only a leak does."""
+    here = ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [[30.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
+    assert dipole_gain(*here) == 0.0
+    assert dipole_gain(*here, LEAKING) == pytest.approx(0.01)
+
+
+@given(axis=st.lists(st.floats(-1e9, 1e9), min_size=3, max_size=3).filter(any))
+def test_axes_are_of_unit_length(axis: list[float]) -> None:
+    """Any direction that a file may state is brought to unit length, and none a hair longer."""
+    from fractions import Fraction
+
+    unit = unit_axis((axis[0], axis[1], axis[2]))
+    assert np.linalg.norm(unit) == pytest.approx(1.0, abs=1e-15)
+    assert sum(Fraction(x) ** 2 for x in unit.tolist()) <= 1

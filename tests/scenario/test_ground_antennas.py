@@ -1,0 +1,73 @@
+"""Antennas on the ground in scenario files."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Scenario
+
+
+def stated(paper: Callable, **keys: object) -> Scenario:
+    """Return the paper's scene with these keys at its first node."""
+    data = paper().to_dict()
+    data["nodes"][0].update(keys)
+    return Scenario.from_dict(data)
+
+
+def test_all_are_isotropic_unless_stated(paper: Callable) -> None:
+    """Without the key there is nothing to be told of antennas, neither in numbers nor in the file."""
+    scenario = stated(paper, antenna="isotropic")
+    assert scenario == paper()
+    assert scenario.node_antennas is scenario.jammer_antennas is scenario.eavesdropper_antennas is None
+    assert "antenna" not in scenario.to_toml()
+
+
+def test_axes_are_upright_or_as_stated(paper: Callable) -> None:
+    """A dipole is upright; an axis of any length is brought to unit length; others have none."""
+    upright, leaning = (
+        stated(paper, antenna="dipole"),
+        stated(paper, antenna="dipole", antenna_axis=[3, 0, 4]),
+    )
+    np.testing.assert_allclose(upright.node_antennas.axes, [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(leaning.node_antennas.axes[0], [0.6, 0.0, 0.8], atol=1e-15)
+    circular = stated(paper, antenna="circular").node_antennas
+    assert circular.shares.tolist() == [0.5, 1.0]
+    assert not np.any(circular.axes)
+    assert Scenario.from_dict(leaning.to_dict()) == leaning
+
+
+@pytest.mark.parametrize(
+    ("keys", "path", "words"),
+    [
+        ({"antenna": "whip"}, "nodes[0].antenna", '"isotropic" or "circular" or "dipole"'),
+        ({"antenna_axis": [0, 0, 1]}, "nodes[0].antenna_axis", 'antenna = "isotropic" has no axis'),
+        (
+            {"antenna": "circular", "antenna_axis": [0, 0, 1]},
+            "nodes[0].antenna_axis",
+            'write antenna = "dipole"',
+        ),
+        ({"antenna": "dipole", "antenna_axis": [0, 0, 0]}, "nodes[0].antenna_axis", "length 0"),
+        ({"antenna": "dipole", "antenna_axis": [0, 1]}, "nodes[0].antenna_axis", "three numbers"),
+        (
+            {"antenna": "dipole", "antenna_axis": [0, 0, float("nan")]},
+            "nodes[0].antenna_axis[2]",
+            "direction",
+        ),
+    ],
+)
+def test_faults_are_told_by_their_place(keys: dict, path: str, words: str, paper: Callable) -> None:
+    """One message each, with what was given and what is allowed."""
+    with pytest.raises(ScenarioError) as fault:
+        stated(paper, **keys)
+    assert [each.path for each in fault.value.faults] == [path]
+    assert words in str(fault.value)
+
+
+def test_an_array_hears_isotropic_antennas_only(paper: Callable) -> None:
+    """Several elements with dipoles on the ground are refused, by the place of the first."""
+    data = paper().to_dict() | {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5}}
+    data["jammers"][0]["antenna"] = "dipole"
+    with pytest.raises(ScenarioError, match=r"jammers\[0\]\.antenna"):
+        Scenario.from_dict(data)
