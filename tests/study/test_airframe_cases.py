@@ -70,3 +70,13 @@ def test_a_case_replaces_vehicle_and_array(paper: Scenario, case) -> None:
     varied = case.on(own)
     assert (varied.airframe, varied.array) == (case.airframe, None)
     assert varied.model_copy(update={"airframe": None}) == paper
+
+
+def test_arrays_are_compared_with_the_papers_antennas_only() -> None:
+    """With other antennas at either end there is no array beside the dipoles."""
+    data = load(EXAMPLES / "paper.toml").to_dict()
+    assert any(case.array for case in cases_of(Scenario.from_dict(data)))
+    leaking = data | {"antenna": {"null_depth_db": 30.0}}
+    circular = data | {"nodes": [node | {"antenna": "circular"} for node in data["nodes"]]}
+    for other in (leaking, circular):
+        assert not any(case.array for case in cases_of(Scenario.from_dict(other)))

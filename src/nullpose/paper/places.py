@@ -72,7 +72,13 @@ def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     scenario, position_m = row.scenario, row.pose.position_m
     places_m, gain = scenario.jammer_positions_m, scenario.receiver.reference_gain
     received_w = received_power_w(
-        position_m, row.pose.antenna_axis, places_m, scenario.jammer_powers_w, gain, scenario.antenna_record
+        position_m,
+        row.pose.antenna_axis,
+        places_m,
+        scenario.jammer_powers_w,
+        gain,
+        scenario.antenna_record,
+        scenario.jammer_antennas,
     )
     return {
         RATIO: level,

@@ -38,6 +38,7 @@ from nullpose.physics.maximum_gain import (
     maximum_gain_sinr_as_printed,
 )
 from nullpose.physics.objective import margin, objective_value
+from nullpose.physics.polarisation import dipole_gain, link_gain
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import (
     antenna_axis,
@@ -66,6 +67,7 @@ __all__ = [
     "beam_sinr",
     "digital_sinr",
     "digital_weights",
+    "dipole_gain",
     "eavesdropper_snr",
     "element_positions",
     "elevation_cosine",
@@ -73,6 +75,7 @@ __all__ = [
     "flu_from_frd",
     "frd_from_flu",
     "from_db",
+    "link_gain",
     "margin",
     "margins_of_many",
     "maximum_gain_axis",

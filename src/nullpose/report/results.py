@@ -9,6 +9,7 @@ from nullpose.physics import (
     Pose,
     antenna_gain,
     eavesdropper_snr,
+    link_gain,
     pose_frames,
     received_power_w,
     to_db,
@@ -93,6 +94,10 @@ def solution_view(solution: Result) -> View:
     rate = objective.quantity.is_rate
     at = (pose.position_m, pose.antenna_axis, scenario.node_positions_m)
     gains = antenna_gain(*at, scenario.antenna_record)
+    columns = {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}
+    if scenario.node_antennas is not None:
+        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
+        columns["with the ground's (dB)"] = [fixed(gain_db, 2) for gain_db in to_db(both)]
     leaning = f"azimuth {azimuth_text(pose)} deg (0 east, 90 north)"
     airframe = scenario.airframe
     own = [
@@ -104,7 +109,7 @@ def solution_view(solution: Result) -> View:
     return document(
         _head(solution, solution.label, requirement_words(solution), solution.note),
         pairs("", _pose_rows(scenario, pose, own)),
-        _links_table(solution, {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}),
+        _links_table(solution, columns),
         _nulls_table(scenario, pose),
         note if scenario.jammers and rate else None,
     )
@@ -252,8 +257,8 @@ def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
         names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
         link = (pose.position_m, pose.antenna_axis, points, powers_w, receiver.reference_gain)
-        antenna = scenario.antenna_record
-        ratios = received_power_w(*link, antenna) / receiver.noise_power_w
+        antennas = (scenario.antenna_record, scenario.jammer_antennas)
+        ratios = received_power_w(*link, *antennas) / receiver.noise_power_w
     columns = {
         noun: names,
         f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points],

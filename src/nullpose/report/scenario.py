@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from nullpose.antenna import GROUND_ANTENNAS
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
@@ -59,11 +60,12 @@ def _points(
         if own_noise_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(own_noise_w[i])
             own = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
-        ratio = receiver.reference_gain * sent_w / nearest_m**2 / noise_w
+        ratio = GROUND_ANTENNAS[point.antenna] * receiver.reference_gain * sent_w / nearest_m**2 / noise_w
         told.append(
             {
                 "name": point.name,
                 "position_m": list(point.position_m),
+                "antenna": _antenna_words(point) or point.antenna,
                 "power_w": power_w,
                 "power_dbm": None if power_w is None else _dbm(power_w),
                 "nearest_m": nearest_m,
@@ -174,12 +176,15 @@ def _points_table(
     noun: str, points: Sequence[_Point], numbers: Sequence[Mapping[str, Any]], best: str
 ) -> View | None:
     """Return a row for each point: what points of its kind state, and what its link carries at best."""
+    words = [_antenna_words(point) for point in points]
+    antennas = words if any(words) else []  # beside which there is room for one unit of power
     columns: dict[str, Sequence[str | None]] = {
         noun: [point.name for point in points],
         **{f"{axis} (m)": [f"{point.position_m[i]:g}" for point in points] for i, axis in enumerate("xyz")},
         "noise (dBm)": [stated(each.get("noise_dbm"), ".2f") for each in numbers],
         "power (dBm)": [stated(each["power_dbm"], ".2f") for each in numbers],
-        "power (W)": [stated(each["power_w"], ".6g") for each in numbers],
+        "power (W)": [None if antennas else stated(each["power_w"], ".6g") for each in numbers],
+        "antenna": antennas or [None] * len(points),
         "requires (dB)": [stated(getattr(point, "min_sinr_db", None), ".6g") for point in points],
         "weight": [stated(getattr(point, "weight", None), ".6g") for point in points],
         "uncertainty (m)": [_extents(point) for point in points],
@@ -188,6 +193,14 @@ def _points_table(
         columns["closest (m)"] = [stated(each["nearest_m"], ".6g") for each in numbers]
         columns[best] = [stated(each["best_power_to_noise_db"], ".2f") for each in numbers]
     return table(f"{noun.capitalize()}s", rows(columns))
+
+
+def _antenna_words(point: _Point) -> str | None:
+    """Return which antenna a point has and how it lies; None for an isotropic one."""
+    if point.antenna != "dipole":
+        return None if point.antenna == "isotropic" else point.antenna
+    axis = point.antenna_axis
+    return "dipole" if axis is None else f"dipole along {', '.join(f'{x:g}' for x in axis)}"
 
 
 def _extents(point: _Point) -> str | None:

@@ -227,6 +227,12 @@ class Scenario(Section):
         return _antennas_of(self.eavesdroppers)
 
     @property
+    def states_antennas(self) -> bool:
+        """Whether any antenna is another than the paper's: the drone's, or one on the ground."""
+        points = (*self.nodes, *self.jammers, *self.eavesdroppers)
+        return self.antenna_record != SHORT_DIPOLE or any(point.antenna != "isotropic" for point in points)
+
+    @property
     def is_uncertain(self) -> bool:
         """Whether any position, or the pose that the vehicle holds, is known only up to an error."""
         points = (*self.jammers, *self.eavesdroppers)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.family import build_family
-from nullpose.physics import antenna_gain, objective_value, to_db
+from nullpose.physics import antenna_gain, link_gain, objective_value, to_db
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer
 
@@ -174,7 +174,7 @@ def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> Fl
     """Return how well the nodes are served, the jammers ignored."""
     nodes = scenario.node_positions_m
     loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
-    gain = antenna_gain(positions_m, axes, nodes, scenario.antenna_record)
+    gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
     received = gain * scenario.node_powers_w / loss
     return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
 

@@ -65,8 +65,9 @@ _COMBINING = {"digital": "with digital combining", "analogue": "with one analogu
 def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     """Return the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
 
-    Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only; their layout and
-    spacing are those that the scenario states, or a line with half a wavelength from one to the next.
+    Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only, with the paper's
+    antennas at both ends; their layout and spacing are those that the scenario states, or a line with half a
+    wavelength from one to the next.
 
     Args:
         scenario: with or without an airframe or an array.
@@ -76,7 +77,9 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
         tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
         vehicles = tuple(tilting)
     sizes = sorted({*ARRAY_SIZES, array.elements})
-    arrays = () if scenario.objective_record.transmits else product(_COMBINING, sizes)
+    arrays = (
+        () if scenario.objective_record.transmits or scenario.states_antennas else product(_COMBINING, sizes)
+    )
     return (*vehicles, *(_array_case(array, size, combining) for combining, size in arrays))
 
 
