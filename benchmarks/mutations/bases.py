@@ -61,6 +61,19 @@ _WEIGHTED = [
     {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0, "weight": 0.5},
     {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0, "min_sinr_db": 3.0},
 ]
+_WHIPS = [
+    {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0, "antenna": "dipole"},
+    {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0, "antenna": "circular"},
+]
+_TILTED = [
+    {
+        "name": "M",
+        "position_m": [17.0, 15.0, 4.0],
+        "power_w": 1.0,
+        "antenna": "dipole",
+        "antenna_axis": [0.3, -0.4, 0.5],
+    }
+]
 
 KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
     "free axis": [
@@ -86,6 +99,11 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("maximum-gain", 0.4, _scene() | _within(**_SQUARE)),
     ],
     "margins": [("optimum", 0.2, _scene(nodes=_WEIGHTED) | _within(**_SQUARE))],
+    "dipoles": [
+        ("optimum", 0.3, _scene(0.1, nodes=_WHIPS, antenna={"null_depth_db": 25.0})),
+        ("optimum", 0.5, _scene(jammers=_TILTED)),
+        ("vertical", 0.4, _scene(nodes=_WHIPS, jammers=_TILTED)),
+    ],
 }
 """Scheme, gap and scenario of the certificates of each kind."""
 

@@ -53,6 +53,15 @@ class Problem:
             self.node = np.arange(len(nodes))
             self.below = np.tile(scale * scenario.jammer_powers_w, (len(nodes), 1))
         self.first, self.points = len(nodes), np.vstack([nodes, others, last])
+        hearers = scenario.eavesdroppers if scenario.objective == "secrecy-rate" else scenario.jammers
+        antennas = [*scenario.nodes, *hearers, *scenario.jammers][: len(self.points)]
+        halved = np.array([0.5 if one.antenna == "circular" else 1.0 for one in antennas])
+        self.above = self.above * halved[: self.first][self.node]
+        self.below = self.below * halved[self.first : self.first + self.below.shape[1]]
+        axes = [one.antenna_axis or (0.0, 0.0, 1.0) for one in antennas]
+        self.axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
+        self.is_dipole = np.array([one.antenna == "dipole" for one in antennas])
+        self.leak = scenario.antenna_record.leak
         nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
         self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
         self.zones = [
@@ -68,6 +77,15 @@ class Problem:
         r = self.points - p[..., None, :]
         square = np.sum(r * r, axis=-1)[..., None, None]
         links = np.eye(3) / square - r[..., :, None] * r[..., None, :] / square**2
+        own = np.einsum("...mij,mj->...mi", links, self.axes) * np.sqrt(
+            square[..., 0]
+        )  # paper eq. 1.4, twice
+        polarised = own[..., :, None] * own[..., None, :]
+        links = np.where(self.is_dipole[:, None, None], polarised, links)
+        whole = np.where(
+            self.is_dipole[:, None, None], np.sum(own**2, axis=-1)[..., None, None], 1.0 / square
+        )
+        links = (1.0 - self.leak) * links + self.leak * whole * np.eye(3)
         above = self.isotropic * np.eye(3) + self.above[:, None, None] * links[..., self.node, :, :]
         others = links[..., self.first : self.first + self.below.shape[1], :, :]
         return above, np.eye(3) + np.einsum("ke,...eij->...kij", self.below, others)

@@ -215,6 +215,20 @@ def _tilts(rng: np.random.Generator) -> Table:
     return _plain(rng) | {"airframe": {"tilt_max_deg": rng.choice(ends), "mount_deg": rng.choice(ends)}}
 
 
+def _antennas(rng: np.random.Generator) -> Table:
+    """Dipoles tilted anyhow, circular antennas and nulls of finite depth, with and without other features."""
+    makers = (_plain, _plain, _airframe, _secrecy, _together)
+    table = makers[int(rng.integers(len(makers)))](rng)
+    for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
+        kind = rng.choice(["isotropic", "circular", "dipole", "dipole", "dipole"])
+        point["antenna"] = str(kind)
+        if kind == "dipole" and rng.uniform() < 0.6:
+            point["antenna_axis"] = rng.normal(size=3).tolist()
+    if rng.uniform() < 0.5:
+        table["antenna"] = {"null_depth_db": float(rng.uniform(10.0, 50.0))}
+    return table
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -224,6 +238,7 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "no-fly": _no_fly,
     "fence": _fence,
     "together": _together,
+    "antennas": _antennas,
     "extremes": _extremes,
     "one-node-secrecy": _one_node_secrecy,
     "points": _points,

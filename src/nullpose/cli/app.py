@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from nullpose.cli.antenna import antenna
 from nullpose.cli.check import check
 from nullpose.cli.compare import compare
 from nullpose.cli.faults import FaultReportingGroup
@@ -59,6 +60,7 @@ for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 study.command()(report)
 app.add_typer(study)
+app.add_typer(antenna)
 
 
 def main() -> None:

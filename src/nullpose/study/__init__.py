@@ -7,6 +7,7 @@ from nullpose.study.airframe_comparison import (
     Guaranteed,
     compare_airframes,
 )
+from nullpose.study.antenna_comparison import AntennaComparison, compare_antennas
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
 from nullpose.study.table import SweepRow, SweepTable
@@ -16,12 +17,14 @@ __all__ = [
     "AirframeCase",
     "AirframeComparison",
     "AirframeResult",
+    "AntennaComparison",
     "Guaranteed",
     "SweepPlan",
     "SweepRow",
     "SweepTable",
     "cases_of",
     "compare_airframes",
+    "compare_antennas",
     "plan_sweep",
     "spaced",
     "sweep",

@@ -1,0 +1,48 @@
+"""The verb `antenna compare`."""
+
+import json
+from collections.abc import Callable
+
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+def test_table_and_answer(run: Run, paper: str) -> None:
+    """What is promised, received and possible, and the answer in a sentence at the end."""
+    result = run("antenna", "compare", paper.replace("paper", "whips"))
+    assert result.exit_code == 0
+    for words in (
+        "promised: the paper's antennas",
+        "received: that pose",
+        "possible: the best pose for them",
+    ):
+        assert words in result.stdout
+    assert "24.11 dB less than it promises" in result.stdout
+
+
+def test_json(run: Run, paper: str) -> None:
+    """One object with the values, both solutions and the answer."""
+    result = run("antenna", "compare", paper.replace("paper", "whips"), "--fast", "--json")
+    assert result.exit_code == 0
+    data = json.loads(result.stdout)
+    keys = [
+        "scenario",
+        "promised",
+        "possible",
+        "received",
+        "with_ground",
+        "with_null",
+        "provenance",
+        "answer",
+    ]
+    assert list(data) == keys
+    assert data["received"]["value"] < data["possible"]["objective"]["value"]
+
+
+def test_the_papers_antennas_are_refused(run: Run, paper: str) -> None:
+    """A file that states no other antenna is a fault of usage, told in one message."""
+    result = run("antenna", "compare", paper)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "null_depth_db" in result.stderr
