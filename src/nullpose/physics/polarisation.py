@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
 from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import Eavesdropper, Jammer, Scenario
+from nullpose.scenario import Scenario
 
 
 def dipole_gain(
@@ -83,14 +83,10 @@ def worst_polarised(scenario: Scenario) -> Scenario:
         scenario: any.
     """
     changed = {
-        kind: tuple(_isotropic(point) for point in getattr(scenario, kind))
+        kind: tuple(
+            point.isotropic if point.antenna == "dipole" else point for point in getattr(scenario, kind)
+        )
         for kind in ("jammers", "eavesdroppers")
         if any(point.antenna == "dipole" for point in getattr(scenario, kind))
     }
     return scenario.model_copy(update=changed) if changed else scenario
-
-
-def _isotropic(point: Jammer | Eavesdropper) -> Jammer | Eavesdropper:
-    if point.antenna != "dipole":
-        return point
-    return point.model_copy(update={"antenna": "isotropic", "antenna_axis": None})

@@ -96,6 +96,13 @@ class GroundPoint(Section):
                 f'given, but antenna = "{self.antenna}" has no axis; remove it, or write antenna = "dipole"',
             )
 
+    @property
+    def isotropic(self) -> Self:
+        """The point with an isotropic antenna; itself if it has one."""
+        if self.antenna == "isotropic":
+            return self
+        return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None})
+
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Returns a copy with some values replaced; a new position takes the place of a latitude too.
 

@@ -108,8 +108,7 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
     """
     changed: dict[str, Any] = {} if drone else {"antenna": None}
     for kind in () if ground else _POINTS:
-        plain = {"antenna": "isotropic", "antenna_axis": None}
-        changed[kind] = tuple(point.model_copy(update=plain) for point in getattr(scenario, kind))
+        changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)
 
 

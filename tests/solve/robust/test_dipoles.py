@@ -63,6 +63,7 @@ def test_a_robust_pose_is_certified(ratio: float, paper: Callable) -> None:
     solution = solve_robust(erring(paper(ratio), None))
     assert solution.status == "certified"
     assert solution.note == POLARISATION
+    assert solution.scenario == erring(paper(ratio), None)
     nodes_only = erring(paper(ratio), None).to_dict()
     del nodes_only["jammers"][0]["antenna"]
     assert solve_robust(Scenario.from_dict(nodes_only)).note == ""

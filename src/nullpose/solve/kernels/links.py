@@ -3,10 +3,9 @@
 With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
 antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a
 point with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4``, ``B = (u x r).(v x r)``.
-Ratio k is
-``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not depend on the
-length of ``u``, so an axis that is an affine function of the position needs no normalising and no second
-derivative of its own.
+Ratio k is ``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not
+depend on the length of ``u``, so an axis that is an affine function of the position needs no normalising and
+no second derivative of its own.
 """
 
 from __future__ import annotations

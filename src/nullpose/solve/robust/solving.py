@@ -75,13 +75,13 @@ def solve_robust(
     status, reason = _status(exchange, robust.guarantee.lower)
     objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
     return Result(
-        scenario=scenario,
+        scenario=stated,
         scheme="robust",
         status=status,
         # what is guaranteed rests on a floating-point proof, whether a bound is asked for or not
         objective=replace(objective, rigour=Rigour.FLOATING_POINT),
         pose=robust.pose,
-        links=evaluate(scenario, robust.pose),
+        links=evaluate(stated, robust.pose),
         reason=reason,
         stats=Stats(
             wall_s=time.perf_counter() - began,
