@@ -36,10 +36,9 @@ def build_family(scenario: Scenario) -> Family:
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
-    points = family.points_m[family.denominator_point]
-    away = np.linalg.norm(points - np.clip(points, family.low_m, family.high_m), axis=1)
-    over_noise = family.denominator_weight / np.maximum(away, family.keep_out_m) ** 2
-    if not np.any(over_noise > LOUDEST):
+    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
+    over_noise = family.denominator_weight / np.maximum(distance_m, family.keep_out_m) ** 2
+    if not (over_noise > LOUDEST).any():
         return
     index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)
     record = scenario.objective_record
@@ -71,15 +70,20 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
     return {
         "low_m": low_m,
         "high_m": high_m,
-        "keep_out_points_m": reachable_points(points_m, low_m, high_m, airspace.keep_out_m),
+        # of the points those whose ball reaches into the airspace
+        "keep_out_points_m": points_m[distances_m(points_m, low_m, high_m) < airspace.keep_out_m],
         "keep_out_m": float(airspace.keep_out_m),
         **airspace_zones(airspace),
     }
 
 
-def reachable_points(
-    points_m: FloatArray, low_m: FloatArray, high_m: FloatArray, radius_m: float
-) -> FloatArray:
-    """Return the points, shape (q, 3), whose keep-out ball reaches into the airspace."""
-    nearest = np.clip(points_m, low_m, high_m)
-    return np.asarray(points_m[np.linalg.norm(points_m - nearest, axis=1) < radius_m])
+def distances_m(points_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> FloatArray:
+    """Return how far each point is from a box, (m,), metres.
+
+    Args:
+        points_m: (m, 3).
+        low_m: (3,) lowest corner of the box.
+        high_m: (3,) highest corner.
+    """
+    outside = points_m - np.minimum(np.maximum(points_m, low_m), high_m)
+    return np.asarray(np.sqrt(np.einsum("ij,ij->i", outside, outside)))

@@ -26,8 +26,7 @@ class Family:
     domain: Domain
 
     def __init__(self, **fields: Any) -> None:
-        values = Ratios._field_defaults | Domain._field_defaults | fields
-        kept = {name: _read_only(value) for name, value in values.items()}
+        kept = _DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
         object.__setattr__(self, "arrays", Ratios(**{name: kept.pop(name) for name in Ratios._fields}))
         object.__setattr__(self, "domain", Domain(**kept))
 
@@ -87,3 +86,8 @@ def _read_only(value: Any) -> Any:
     array = np.array(value, dtype=np.int64 if whole else np.float64, order="C")
     array.flags.writeable = False
     return array
+
+
+_DEFAULTS = {
+    name: _read_only(value) for name, value in (Ratios._field_defaults | Domain._field_defaults).items()
+}

@@ -66,17 +66,16 @@ def links_of(scenario: Scenario, ratios: FloatArray, rates: FloatArray | None = 
         ratios: (n_nodes,) power ratios.
         rates: (n_nodes,) secrecy rates, bits/s/Hz, if the objective is one.
     """
-    margins = ratios / scenario.node_required_sinr if scenario.has_margins else None
+    columns = {"sinr": ratios, "sinr_db": to_db(ratios)}
+    if scenario.has_margins:
+        margins = ratios / scenario.node_required_sinr
+        columns |= {"margin": margins, "margin_db": to_db(margins)}
+    if rates is not None:
+        columns["secrecy_rate_bps_hz"] = rates
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return tuple(
-        Link(
-            node=name,
-            sinr=float(ratios[i]),
-            sinr_db=float(to_db(ratios[i])),
-            margin=None if margins is None else float(margins[i]),
-            margin_db=None if margins is None else float(to_db(margins[i])),
-            secrecy_rate_bps_hz=None if rates is None else float(rates[i]),
-        )
-        for i, name in enumerate(scenario.node_names)
+        Link(name, **dict(zip(columns, row, strict=True)))
+        for name, row in zip(scenario.node_names, rows, strict=True)
     )
 
 

@@ -54,7 +54,8 @@ def antenna_gain(
         Array of shape ``(..., m)``, between 0 and 1.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-    (x, y, z), u = np.moveaxis(to_points, -1, 0), np.asarray(axis, dtype=float)
+    u = np.asarray(axis, dtype=float)
+    x, y, z = to_points[..., 0], to_points[..., 1], to_points[..., 2]
     ux, uy, uz = u[..., 0, None], u[..., 1, None], u[..., 2, None]
     across_sq = (y * uz - z * uy) ** 2 + (z * ux - x * uz) ** 2 + (x * uy - y * ux) ** 2  # m^2
     return np.asarray(antenna.gain(across_sq / (x * x + y * y + z * z)))

@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from nullpose.family import AxisField, Family
+from nullpose.family.build import distances_m
 from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import climb
@@ -283,9 +284,9 @@ def prove(
 
 def _reach(family: Family) -> tuple[float, int]:
     """Return a bound from distances alone, and the ratio that it is from: the most distant node's."""
-    points = family.points_m[family.numerator_point]
-    nearest = np.clip(points, family.low_m, family.high_m)
-    distance_m = np.maximum(np.linalg.norm(points - nearest, axis=1), family.keep_out_m)
+    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.numerator_point]
+    distance_m = np.maximum(distance_m, family.keep_out_m)
     isotropic = family.denominator_isotropic[family.denominator_of]
     ratios = (family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic
-    return float(np.min(ratios)) * (1.0 + 1e-9), int(np.argmin(ratios))
+    farthest = int(ratios.argmin())
+    return float(ratios[farthest]) * (1.0 + 1e-9), farthest
