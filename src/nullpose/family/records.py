@@ -51,6 +51,24 @@ class Axes(NamedTuple):
     matrix: FloatArray
 
 
+class Reach(NamedTuple):
+    """Which attitudes of an antenna with a pattern the airframe reaches.
+
+    Args:
+        tilt_max_rad: largest angle between the body's vertical and the world's.
+        mount_rad: angle between the antenna's axis and the body's vertical.
+        up: (3,) the body's vertical in the antenna's axes.
+        spins: whether the antenna is the same all round its axis, so that any spin about it does.
+        even: whether it is the same upside down, too.
+    """
+
+    tilt_max_rad: float
+    mount_rad: float
+    up: FloatArray
+    spins: bool
+    even: bool
+
+
 class ArrayProblem(NamedTuple):
     """What an array on a level vehicle hears; m points, the nodes first, and k elements."""
 

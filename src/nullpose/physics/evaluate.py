@@ -52,7 +52,7 @@ def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
         pose: where the drone is and how it is turned.
     """
-    at = (scenario, pose.position_m, pose.antenna_axis)
+    at = (scenario, pose.position_m, pose.orientation(scenario.antenna_record))
     record = scenario.objective_record
     rates = secrecy_rate(*at) if record.quantity(scenario).is_rate else None
     return links_of(scenario, node_snr(*at) if record.transmits else sinr(*at), rates)
@@ -86,7 +86,7 @@ def min_sinr(scenario: Scenario, pose: Pose) -> float:
         scenario: nodes, jammers and receiver.
         pose: where the drone is and how it is turned.
     """
-    return float(np.min(sinr(scenario, pose.position_m, pose.antenna_axis)))
+    return float(np.min(sinr(scenario, pose.position_m, pose.orientation(scenario.antenna_record))))
 
 
 def min_margin(scenario: Scenario, pose: Pose) -> float:
@@ -96,7 +96,7 @@ def min_margin(scenario: Scenario, pose: Pose) -> float:
         scenario: nodes, jammers and receiver.
         pose: where the drone is and how it is turned.
     """
-    return float(np.min(margin(scenario, pose.position_m, pose.antenna_axis)))
+    return float(np.min(margin(scenario, pose.position_m, pose.orientation(scenario.antenna_record))))
 
 
 def min_secrecy_rate(scenario: Scenario, pose: Pose) -> float:
@@ -109,4 +109,4 @@ def min_secrecy_rate(scenario: Scenario, pose: Pose) -> float:
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    return float(np.min(secrecy_rate(scenario, pose.position_m, pose.antenna_axis)))
+    return float(np.min(secrecy_rate(scenario, pose.position_m, pose.orientation(scenario.antenna_record))))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, QuadraticAntenna
+from nullpose.antenna import SHORT_DIPOLE, Antenna, PatternAntenna
 from nullpose.physics.types import FloatArray
 
 
@@ -33,7 +33,7 @@ def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike
 
 
 def antenna_gain(
-    position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: QuadraticAntenna = SHORT_DIPOLE
+    position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: Antenna = SHORT_DIPOLE
 ) -> FloatArray:
     """Return the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
 
@@ -46,13 +46,17 @@ def antenna_gain(
 
     Args:
         position_m: the drone's position, shape ``(..., 3)``, metres.
-        axis: unit antenna axis, shape ``(..., 3)``.
+        axis: unit antenna axis, shape ``(..., 3)``; for an antenna with a pattern its attitude, the rotation
+            to the world from its own axes, shape ``(..., 3, 3)``, as :meth:`Pose.orientation` has them.
         points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
         antenna: which antenna the drone has.
 
     Returns:
-        Array of shape ``(..., m)``, between 0 and 1.
+        Array of shape ``(..., m)``: between 0 and 1 for a dipole.
     """
+    if isinstance(antenna, PatternAntenna):
+        ways = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+        return antenna.gain(np.matmul(_unit(ways), np.asarray(axis, dtype=float)))
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     u = np.asarray(axis, dtype=float)
     x, y, z = to_points[..., 0], to_points[..., 1], to_points[..., 2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
+from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas, PatternAntenna, QuadraticAntenna
 from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -49,7 +49,7 @@ def link_gain(
     position_m: ArrayLike,
     axis: ArrayLike,
     points_m: ArrayLike,
-    antenna: QuadraticAntenna = SHORT_DIPOLE,
+    antenna: Antenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
 ) -> FloatArray:
     """Return the power gain between the drone's antenna and that at each point, polarisation included.
@@ -70,6 +70,8 @@ def link_gain(
     gain = antenna_gain(position_m, axis, points_m, antenna)
     if ground is None:
         return gain
+    if isinstance(antenna, PatternAntenna):
+        return np.asarray(ground.shares * gain)  # of a dipole on the ground it says nothing: there is none
     of_dipoles = dipole_gain(position_m, axis, points_m, ground.axes, antenna)
     return np.asarray(ground.shares * np.where(np.any(ground.axes, axis=-1), of_dipoles, gain))
 

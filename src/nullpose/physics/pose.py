@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.physics.rotation import antenna_axis, attitude_from_axis, attitude_within_tilt
+from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.physics.rotation import (
+    antenna_axis,
+    attitude_from_axis,
+    attitude_of,
+    attitude_within_tilt,
+    rotation_world_from_body,
+)
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -71,12 +78,16 @@ class Pose:
         Args:
             scenario: with its airframe.
             position_m: shape ``(3,)``, metres.
-            axis: the dipole's direction, shape ``(3,)``, of any length but zero; one that is reached.
+            axis: the dipole's direction, shape ``(3,)``, of any length but zero; one that is reached. Or the
+                rotation to the world from the antenna's axes, shape ``(3, 3)``: then the attitude is this one.
         """
         airframe = scenario.airframe
+        mount_rad = 0.0 if airframe is None else airframe.mount_rad
+        if np.ndim(axis) == 2:
+            body = np.asarray(axis) @ rotation_world_from_body(0.0, mount_rad, 0.0).T
+            return cls(np.asarray(position_m, dtype=float), *attitude_of(body), mount_rad)
         if airframe is None:
             return cls.from_axis(position_m, axis)
-        mount_rad = airframe.mount_rad
         roll, pitch, yaw = attitude_within_tilt(axis, airframe.tilt_max_rad, mount_rad)
         return cls(np.asarray(position_m, dtype=float), float(roll), float(pitch), float(yaw), mount_rad)
 
@@ -84,6 +95,20 @@ class Pose:
     def antenna_axis(self) -> FloatArray:
         """Unit vector along the dipole, shape ``(3,)``, world frame (paper eq. 1.1)."""
         return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
+
+    def orientation(self, antenna: Antenna) -> FloatArray:
+        """Return what an antenna's gain depends on: its axis, or its attitude if it has a pattern.
+
+        Args:
+            antenna: that of the drone.
+
+        Returns:
+            Unit axis, shape ``(3,)``, or the rotation to the world from the antenna's axes, ``(3, 3)``.
+        """
+        if not isinstance(antenna, PatternAntenna):
+            return self.antenna_axis
+        body = rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
+        return np.asarray(body @ rotation_world_from_body(0.0, self.mount_rad, 0.0))
 
     @property
     def tilt_rad(self) -> float:

@@ -40,6 +40,19 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
     return matrix.transpose(*range(2, matrix.ndim), 0, 1)
 
 
+def attitude_of(rotation: ArrayLike) -> tuple[float, float, float]:
+    """Return the roll, pitch and yaw of a rotation, radians, the pitch in [-pi/2, pi/2].
+
+    The inverse of :func:`rotation_world_from_body`.
+
+    Args:
+        rotation: to the world from the body's axes, shape ``(3, 3)``.
+    """
+    r = np.asarray(rotation, dtype=float)
+    pitch = np.arctan2(-r[2, 0], np.hypot(r[2, 1], r[2, 2]))
+    return float(np.arctan2(r[2, 1], r[2, 2])), float(pitch), float(np.arctan2(r[1, 0], r[0, 0]))
+
+
 def antenna_axis(
     roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike = 0.0, mount_rad: float = 0.0
 ) -> FloatArray:

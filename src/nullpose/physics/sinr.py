@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, QuadraticAntenna
+from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas
 from nullpose.physics.polarisation import link_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -17,7 +17,7 @@ def received_power_w(
     points_m: ArrayLike,
     powers_w: ArrayLike,
     reference_gain: ArrayLike,
-    antenna: QuadraticAntenna = SHORT_DIPOLE,
+    antenna: Antenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
 ) -> FloatArray:
     """Return the power that the drone receives from each ground transmitter.

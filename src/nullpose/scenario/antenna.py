@@ -2,32 +2,60 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from pathlib import Path, PurePath
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from nullpose.antenna import ANTENNAS, SHORT_DIPOLE, QuadraticAntenna
-from nullpose.scenario.rules import Choice
+from nullpose import antenna as antennas
+from nullpose.antenna import PatternAntenna, short_dipole
+from nullpose.antenna.pattern import (
+    half_wave_harmonics,
+    harmonics_of_rows,
+    normalised,
+    profile_harmonics,
+    table_harmonics,
+)
+from nullpose.scenario.faults import Place
+from nullpose.scenario.rules import Choice, ListOf
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import NullDepthDecibels
+from nullpose.scenario.units import Coefficient, Hertz, NullDepthDecibels
 
-_Kind = Annotated[str, Choice("an antenna", tuple(ANTENNAS))]
+_KINDS = ("dipole", "half-wave", "profile", "pattern")
+_FILED = ("profile", "pattern")
+_MOST_ROWS = 65
+
+_Kind = Annotated[str, Choice("an antenna", _KINDS)]
+_Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
+_Row = Annotated[
+    tuple[Coefficient, ...], ListOf("a list of 2 l + 1 numbers for degree l", 1, 2 * _MOST_ROWS - 1)
+]
+_Rows = Annotated[tuple[_Row, ...], ListOf("a list of lists, one for each degree from 0", 1, _MOST_ROWS)]
 
 
 class Antenna(Section):
     """The drone's antenna.
 
     Args:
-        kind: the name of an antenna in :mod:`nullpose.antenna`.
-        null_depth_db: how far its gain along the axis is below that across it [dB]; None for a perfect null.
+        kind: dipole, half-wave, profile or pattern.
+        null_depth_db: how far a dipole's gain along the axis is below that across it [dB]; None for a perfect
+            null.
+        file: name of the file that a profile or a pattern is from, relative to the scenario's.
+        format: the file's format; None where the file tells it.
+        frequency_hz: which of a file's frequencies [Hz].
+        normalise: "peak" for a largest gain of 1, "none" for the file's gain.
+        harmonics: what was read of the file: the terms of its spherical harmonics, by degree.
     """
 
-    unstated: ClassVar[frozenset[str]] = frozenset({"kind"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"kind", "normalise"})
 
     kind: _Kind = Field(
-        default=SHORT_DIPOLE.name,
-        description='Which antenna: "dipole", a short dipole.',
-        examples=list(ANTENNAS),
+        default="dipole",
+        description='Which antenna: "dipole", a short dipole; "half-wave", a thin half-wave dipole; "profile", '
+        'one that is the same all round, by its gain over the angle from its axis; "pattern", any other.',
+        examples=list(_KINDS),
     )
     null_depth_db: NullDepthDecibels | None = Field(
         default=None,
@@ -35,8 +63,86 @@ class Antenna(Section):
         "Left out: the null is perfect.",
         examples=[30.0],
     )
+    file: str | None = Field(
+        default=None,
+        description="Name of a file in the scenario's folder or below it: for a profile a CSV file of "
+        "angle_deg and gain_dbi, for a pattern a file of a format below.",
+        examples=["hexarotor.out"],
+    )
+    format: str | None = Field(
+        default=None,
+        description='The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi", "csv" or "emane". '
+        "Left out: the file tells it.",
+        examples=["nec"],
+    )
+    frequency_hz: Hertz | None = Field(
+        default=None,
+        description="Which of several frequencies in the file, in Hz.",
+        examples=[2.4e9],
+    )
+    normalise: _Normalise = Field(
+        default="none",
+        description='"none": gains are over an isotropic antenna, as in the file; "peak": the largest gain is '
+        "1, like that of the paper's dipole.",
+        examples=["none", "peak"],
+    )
+    harmonics: _Rows | None = Field(
+        default=None,
+        description="What was read of the file, written by nullpose: for each degree of the gain's spherical "
+        "harmonics its cosine terms, then its sine terms. With them the file is not needed.",
+    )
 
-    @property
-    def record(self) -> QuadraticAntenna:
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns keys that have no meaning for the kind, and what a profile or a pattern lacks."""
+        if self.kind is None:
+            return
+        allowed = {"dipole": {"null_depth_db"}, "half-wave": set()}.get(
+            self.kind, {"file", "format", "frequency_hz", "normalise", "harmonics"}
+        )
+        for key in stated.keys() - {"kind"} - allowed:
+            if stated[key] is not None:
+                yield (key,), f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
+        if self.kind in _FILED and "harmonics" not in stated:
+            if "file" not in stated:
+                yield ("file",), f'missing, but kind = "{self.kind}" needs it; add the name of a file'
+            else:
+                yield (
+                    ("file",),
+                    "only a scenario file on this machine may name another; load that file by its path",
+                )
+        for l, row in enumerate(self.harmonics or ()):
+            if len(row) != 2 * l + 1:
+                yield ("harmonics", l), f"got {len(row)} numbers, must be {2 * l + 1}: 2 l + 1 for degree l"
+
+    @cached_property
+    def record(self) -> antennas.Antenna:
         """What the antenna states of itself."""
-        return ANTENNAS[self.kind](self.null_depth_db)
+        if self.kind == "dipole":
+            return short_dipole(self.null_depth_db)
+        if self.kind == "half-wave":
+            return PatternAntenna(self.kind, "half-wave dipole", half_wave_harmonics())
+        harmonics = harmonics_of_rows(self.harmonics or ())
+        if self.normalise == "peak":
+            harmonics = normalised(harmonics)
+        of_file = f" of {PurePath(self.file).name}" if self.file else ""
+        return PatternAntenna(self.kind, f"{self.kind}{of_file}", harmonics)
+
+
+def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """Return a raw table with what its file holds.
+
+    Args:
+        table: of a profile or a pattern.
+        path: of its file.
+
+    Raises:
+        PatternError: the file cannot be read as stated.
+    """
+    from nullpose.antenna.files import read_pattern, read_profile
+
+    if table.get("kind") == "profile":
+        harmonics = profile_harmonics(*read_profile(path))
+    else:
+        frequency = table.get("frequency_hz")
+        harmonics = table_harmonics(read_pattern(path, table.get("format"), frequency))
+    return {**table, "harmonics": PatternAntenna("", "", harmonics).rows()}

@@ -57,6 +57,14 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
     for place, point in points.items() if scenario.array is not None else ():
         if point.antenna not in (None, "isotropic"):
             yield (*place, "antenna"), "an array hears isotropic antennas only; remove this key or [array]"
+    kind = getattr(scenario.antenna, "kind", "dipole")
+    for place, point in points.items() if kind != "dipole" else ():
+        if point.antenna == "dipole":
+            yield (
+                (*place, "antenna"),
+                f'a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that of '
+                f'antenna.kind = "{kind}" is not; write "circular" or "isotropic"',
+            )
     airspace = scenario.airspace
     if airspace is not None:
         zones: dict[Place, Any] = {

@@ -7,6 +7,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.listed_nodes import ListedNode, retold
 from nullpose.scenario.nodes_csv import nodes_from_csv
@@ -33,6 +34,7 @@ def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenar
     source = os.fspath(path)
     try:
         tables = tables_of(file_text(Path(source)))
+        tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
         if _KEY in tables and "nodes" not in tables:
             return _with_nodes_from(tables, Path(source).parent, allow_outside)
         return Scenario.from_dict(tables)
@@ -67,8 +69,9 @@ def files_of(path: Path) -> dict[str, Path]:
     Args:
         path: of a scenario file that loads.
     """
-    nodes = tables_of(file_text(path)).get(_KEY)
-    return {"the scenario": path} | ({} if nodes is None else {_KEY: path.parent / nodes})
+    tables = tables_of(file_text(path))
+    named = {_KEY: tables.get(_KEY), "antenna.file": tables.get("antenna", {}).get("file")}
+    return {"the scenario": path} | {key: path.parent / file for key, file in named.items() if file}
 
 
 def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Path:
@@ -92,6 +95,16 @@ def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Pat
             "allow this by --allow-outside (in Python allow_outside=True)",
         )
     return folder / file
+
+
+def _with_antenna_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> dict[str, Any]:
+    """Returns the tables with what the file of an antenna holds."""
+    antenna = tables.get("antenna")
+    file = antenna.get("file") if isinstance(antenna, dict) else None
+    if not isinstance(antenna, dict) or not isinstance(file, str) or "harmonics" in antenna:
+        return tables
+    path = inside(folder, file, allow_outside, "antenna.file")
+    return tables | {"antenna": with_harmonics(antenna, path)}
 
 
 def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> Scenario:

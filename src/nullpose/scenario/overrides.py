@@ -99,6 +99,8 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     found = (step.groups(default="") for step in _STEP.finditer(path))
     steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
+    if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
+        data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
     if steps[0] == "origin":  # the points stay where they are on the Earth
         for points in map(data.get, POINT_LISTS):
             for point in points if isinstance(points, list) else ():

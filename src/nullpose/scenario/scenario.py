@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, QuadraticAntenna, unit_axis
+from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, unit_axis
+from nullpose.antenna import Antenna as AnyAntenna
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
@@ -134,7 +135,7 @@ class Scenario(Section):
         return RECORDS[self.objective]
 
     @property
-    def antenna_record(self) -> QuadraticAntenna:
+    def antenna_record(self) -> AnyAntenna:
         """What the drone's antenna states of itself."""
         return SHORT_DIPOLE if self.antenna is None else self.antenna.record
 

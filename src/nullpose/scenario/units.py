@@ -62,6 +62,7 @@ Weight = Annotated[
 Component = Annotated[
     float, Quantity("a component of a direction", -1e9, 1e9, "[0, 0, 1] is upright, [1, 0, 0] points east")
 ]
+Coefficient = Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are linear here")]
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 Latitude = Annotated[

@@ -42,4 +42,5 @@ OPTIMUM = SchemeRecord(
     fields=_fields,
     any_objective=True,
     any_airframe=True,
+    any_antenna=True,
 )

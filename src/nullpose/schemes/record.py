@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from nullpose.antenna import PatternAntenna
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -55,6 +57,7 @@ class SchemeRecord:
         reason_against: from a scenario: why the scheme has no meaning there, or None.
         any_objective: whether it has a meaning for a drone that transmits.
         any_airframe: whether it has a meaning for a vehicle that does not reach every axis.
+        any_antenna: whether it has a meaning for an antenna that is no dipole.
         nulls_a_jammer: whether the jammer to be nulled may be named.
         axis_at: from a scenario and a position, (3,): the axis there; for schemes without fields. None: the
             axis that serves the nodes best, the jammers ignored.
@@ -74,6 +77,7 @@ class SchemeRecord:
     reason_against: Callable[[Scenario], str | None] = field(default=lambda _: None)
     any_objective: bool = False
     any_airframe: bool = False
+    any_antenna: bool = False
     nulls_a_jammer: bool = False
     axis_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
     ratios_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
@@ -89,4 +93,6 @@ class SchemeRecord:
             return "the paper states it for a drone that receives, and here it transmits"
         if scenario.axis_band != (0.0, 1.0) and not self.any_airframe:
             return "it may ask for any antenna axis, and the airframe does not reach every one"
+        if not self.any_antenna and isinstance(scenario.antenna_record, PatternAntenna):
+            return "it is stated for a dipole, and the drone's antenna has another pattern"
         return self.reason_against(scenario)

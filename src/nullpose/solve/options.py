@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
+from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
@@ -29,9 +30,13 @@ def default_gap(n_nodes: int) -> float:
 def default_gap_of(scenario: Scenario) -> float:
     """Return the default gap of a scenario, by its nodes, each counted once for every eavesdropper.
 
+    For an antenna with a pattern 1e-3 to 3 nodes, and 2e-2 beyond.
+
     Args:
         scenario: what is to be solved.
     """
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        return 1e-3 if len(scenario.nodes) <= 3 else 2e-2
     return default_gap(len(scenario.nodes) * max(1, len(scenario.eavesdroppers)))
 
 

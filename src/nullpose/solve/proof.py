@@ -85,7 +85,7 @@ class _Run:
         self.nodes, self.threads = 0, limits.threads or processors()
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
-        self.proved, self.farthest = _reach(family)
+        self.proved, self.farthest = reach_by_distance(family)
         self.proved = min(self.proved, bound)
         self.doubt, self.axes_above = 0.0, self.kernel.EARLY
         self.target = _INSIDE * limits.ratio_gap(self.value)
@@ -282,8 +282,12 @@ def prove(
     return run.result(root, leaves, reason)
 
 
-def _reach(family: Family) -> tuple[float, int]:
-    """Return a bound from distances alone, and the ratio that it is from: the most distant node's."""
+def reach_by_distance(family: Family) -> tuple[float, int]:
+    """Return a bound from distances alone, and the ratio that it is from: the most distant node's.
+
+    Args:
+        family: ratios and domain; no gain is above 1.
+    """
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.numerator_point]
     distance_m = np.maximum(distance_m, family.keep_out_m)
     isotropic = family.denominator_isotropic[family.denominator_of]

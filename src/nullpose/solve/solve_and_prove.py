@@ -25,6 +25,7 @@ class Outcome:
         proofs: one for each axis field, in order; empty if none was asked for.
         upper_bound: no pose under any of the fields exceeds this; None if nothing is proved.
         reason: why the target gap was not reached, or not aimed at; empty if it was.
+        cells: what was examined by a proof that leaves no leaves.
     """
 
     incumbent: Incumbent
@@ -32,11 +33,12 @@ class Outcome:
     proofs: tuple[Proof, ...] = ()
     upper_bound: float | None = None
     reason: str = ""
+    cells: int = 0
 
     @property
     def nodes(self) -> int:
         """Nodes examined by all proofs."""
-        return sum(proof.nodes for proof in self.proofs)
+        return self.cells + sum(proof.nodes for proof in self.proofs)
 
 
 def solve_and_prove(

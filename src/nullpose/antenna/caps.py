@@ -1,0 +1,177 @@
+"""What a pattern does within caps of directions: its least and largest gain, and how fast it bends there."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.antenna.harmonics import FloatArray, Harmonics, recurrence
+
+_ROWS = 128  # of the table, twice as many columns: powers of two
+_DIRECTIONS = 16  # round half a circle, along which derivatives are taken
+_ORDER = 4  # highest derivative that is looked at; the next is bounded by the degree
+
+_Rotated = dict[tuple[int, int, int], NDArray[np.complex128]]
+
+
+class PatternArrays(NamedTuple):
+    """A pattern as the kernels take it.
+
+    Args:
+        cosine: (d + 1, d + 1) its harmonics.
+        sine: likewise.
+        start: (d + 1,) first Legendre function of each order.
+        a: (d + 1, d + 1) the recurrence to the next.
+        b: likewise.
+        orders: how many orders are not zero, counted from 0.
+        caps: (n, 5) over blocks of directions: minus the least gain, the largest, and the largest first,
+            second and third derivative along a great circle.
+        offset: (rows' levels, columns' levels) where the blocks of a size begin: level k joins 2^k.
+        rows: rows of the finest blocks; there are twice as many columns.
+    """
+
+    cosine: FloatArray
+    sine: FloatArray
+    start: FloatArray
+    a: FloatArray
+    b: FloatArray
+    orders: int
+    caps: FloatArray
+    offset: NDArray[np.int64]
+    rows: int
+
+
+def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
+    """Return a pattern for the kernels, with the table of what it does within caps.
+
+    Args:
+        harmonics: the pattern.
+    """
+    used = np.any(harmonics.cosine != 0.0, axis=0) | np.any(harmonics.sine != 0.0, axis=0)
+    finest = _finest(harmonics)
+    blocks, offset = [], []
+    filled = 0
+    while len(finest) > 0:
+        line, offsets = finest, []
+        while True:
+            offsets.append(filled)
+            filled += line.shape[0] * line.shape[1]
+            blocks.append(line.reshape(-1, 5))
+            if line.shape[1] == 1:
+                break
+            line = np.maximum(line[:, ::2], line[:, 1::2])
+        offset.append(offsets)
+        if len(finest) == 1:
+            break
+        finest = np.maximum(finest[::2], finest[1::2])
+    start, a, b = recurrence(harmonics.degree)
+    orders = int(np.max(np.nonzero(used)[0], initial=0)) + 1
+    table = np.ascontiguousarray(np.concatenate(blocks))
+    return PatternArrays(
+        np.ascontiguousarray(harmonics.cosine),
+        np.ascontiguousarray(harmonics.sine),
+        start,
+        a,
+        b,
+        orders,
+        table,
+        np.array(offset, dtype=np.int64),
+        _ROWS,
+    )
+
+
+def _finest(harmonics: Harmonics) -> FloatArray:
+    """Return the five numbers of each cell of the table, (rows, columns, 5).
+
+    The derivative of order m along the great circle that a rotation about the unit vector w makes is ``(w.L)^m
+    g`` with the generators L of rotations, which map harmonics of a degree to such. Its values at a cell's
+    middle for some w, and the bound ``|f'| <= degree max |f|`` of Bernstein for what lies between, make
+    bounds for the cell.
+    """
+    step = math.pi / _ROWS
+    theta, phi = (np.arange(_ROWS) + 0.5) * step, (np.arange(2 * _ROWS) + 0.5) * step
+    radius = math.hypot(step, step) / 2.0
+    degree = max(1, harmonics.degree)
+    angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    st, ct, sp, cp = np.sin(theta), np.cos(theta), np.sin(phi), np.cos(phi)
+    south = np.stack([np.outer(ct, cp), np.outer(ct, sp), np.outer(-st, np.ones_like(phi))], axis=-1)
+    east = np.stack([np.broadcast_to(-sp, south.shape[:2]), np.broadcast_to(cp, south.shape[:2]),
+                     np.zeros(south.shape[:2])], axis=-1)
+    found: _Rotated = {(0, 0, 0): _complex(harmonics)}
+    gain, least = _values(found[0, 0, 0], theta, phi), []
+    for order in range(1, _ORDER + 1):
+        found = _rotated_once_more(found)
+        fields = {power: _values(c, theta, phi) for power, c in found.items()}
+        most = np.zeros(gain.shape)
+        for angle in angles:
+            about = math.cos(angle) * south + math.sin(angle) * east
+            form = sum(
+                f * about[..., 0] ** i * about[..., 1] ** j * about[..., 2] ** k
+                for (i, j, k), f in fields.items()
+            )
+            most = np.maximum(most, np.abs(form))
+        # between the directions: a trigonometric polynomial of this order
+        least.append(most / math.cos(order * math.pi / (2 * _DIRECTIONS)))
+    return _padded(gain, least, radius, degree)
+
+
+def _padded(gain: FloatArray, slopes: list[FloatArray], radius: float, degree: int) -> FloatArray:
+    """Return bounds over cells from what holds at their middles.
+
+    Args:
+        gain: at the middles.
+        slopes: the derivatives of order 1 to 4 there.
+        radius: of a cell.
+        degree: of the pattern.
+    """
+    inside = max(1e-3, 1.0 - radius * degree)  # sup |f| <= max over middles + radius degree sup |f|
+    fifth = degree * float(np.max(slopes[3])) / inside
+    bent = [1.0 + 2.0 * m * radius for m in range(4)]  # turning with the direction mixes in lower orders
+    third = (slopes[2] + radius * slopes[3] + radius**2 / 2.0 * fifth) * bent[3]
+    second = (slopes[1] + radius * third) * bent[2]
+    first = (slopes[0] + radius * second) * bent[1]
+    change = radius * slopes[0] + radius**2 / 2.0 * slopes[1] + radius**3 / 6.0 * third
+    return np.stack([change - gain, gain + change, first, second, third], axis=-1)
+
+
+def _complex(harmonics: Harmonics) -> NDArray[np.complex128]:
+    """Return coefficients by l and degree + m of the orthonormal complex harmonics, m of both signs."""
+    degree = harmonics.degree
+    found = np.zeros((degree + 1, 2 * degree + 1), dtype=complex)
+    found[:, degree] = harmonics.cosine[:, 0]
+    for m in range(1, degree + 1):
+        upper = (harmonics.cosine[:, m] - 1j * harmonics.sine[:, m]) / math.sqrt(2.0)
+        found[:, degree + m] = (-1) ** m * upper
+        found[:, degree - m] = np.conj(upper)
+    return found
+
+
+def _rotated_once_more(found: _Rotated) -> _Rotated:
+    """Return the coefficients of ``(w.L)^(m+1) g`` by powers of w, from those of ``(w.L)^m g``."""
+    more: _Rotated = {}
+    for power, c in found.items():
+        degree = len(c) - 1
+        l, m = np.arange(degree + 1)[:, None], np.arange(-degree, degree + 1)
+        up = np.sqrt(np.maximum(0.0, l * (l + 1) - m * (m + 1))) * c  # L+ takes m to m + 1
+        down = np.sqrt(np.maximum(0.0, l * (l + 1) - m * (m - 1))) * c
+        raised, lowered = np.zeros_like(c), np.zeros_like(c)
+        raised[:, 1:], lowered[:, :-1] = up[:, :-1], down[:, 1:]
+        parts = ((raised + lowered) / 2.0, (raised - lowered) / 2j, m * c)
+        for axis, part in enumerate(parts):
+            name = (power[0] + (axis == 0), power[1] + (axis == 1), power[2] + (axis == 2))
+            more[name] = more.get(name, 0.0) + 1j * part
+    return more
+
+
+def _values(c: NDArray[np.complex128], theta: FloatArray, phi: FloatArray) -> FloatArray:
+    """Return a real function's values on a grid from its complex coefficients."""
+    degree = len(c) - 1
+    cosine, sine = np.zeros((2, degree + 1, degree + 1))
+    cosine[:, 0] = c[:, degree].real
+    for m in range(1, degree + 1):
+        upper = (-1) ** m * c[:, degree + m] * math.sqrt(2.0)
+        cosine[:, m], sine[:, m] = upper.real, -upper.imag
+    return Harmonics(cosine, sine).on_grid(theta, phi)

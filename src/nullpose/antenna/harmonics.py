@@ -1,0 +1,180 @@
+"""A power pattern as a sum of real spherical harmonics, which is smooth and defined in every direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.antenna.table import PatternTable
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Harmonics:
+    """``g(b) = sum_lm P_lm(z) (c_lm Re (x + iy)^m + s_lm Im (x + iy)^m)`` for a direction b = (x, y, z).
+
+    The ``P_lm(z)`` are associated Legendre functions over ``sin^m``, scaled so that the mean square of each
+    term over the sphere is ``c_lm^2`` or ``s_lm^2``: ``c_00`` is the mean gain.
+
+    Args:
+        cosine: (degree + 1, degree + 1) c by l and m, zero where m exceeds l.
+        sine: s, likewise; zero for m = 0.
+    """
+
+    cosine: FloatArray
+    sine: FloatArray
+
+    @property
+    def degree(self) -> int:
+        """The highest l."""
+        return len(self.cosine) - 1
+
+    @property
+    def spectrum(self) -> FloatArray:
+        """Mean square over the sphere of the terms of each degree, (degree + 1,)."""
+        return np.asarray(np.sum(self.cosine**2 + self.sine**2, axis=1))
+
+    @property
+    def is_axisymmetric(self) -> bool:
+        """Whether nothing changes round the z axis, to a millionth of the mean gain."""
+        rest = np.sum(self.cosine[:, 1:] ** 2) + np.sum(self.sine**2)
+        return bool(rest <= (1e-6 * self.cosine[0, 0]) ** 2)
+
+    def gain(self, directions: ArrayLike) -> FloatArray:
+        """Return the gain in each direction, (...).
+
+        Args:
+            directions: (..., 3) unit vectors in body axes.
+        """
+        x, y, z = np.moveaxis(np.asarray(directions, dtype=float), -1, 0)
+        total, power = np.zeros(x.shape), np.ones(x.shape, dtype=complex)
+        for m, columns in enumerate(_legendre(z, self.degree)):
+            for l, column in enumerate(columns, start=m):
+                total += column * (self.cosine[l, m] * power.real + self.sine[l, m] * power.imag)
+            power = power * (x + 1j * y)
+        return total
+
+    def on_grid(self, theta_rad: FloatArray, phi_rad: FloatArray) -> FloatArray:
+        """Return the gain on a grid, (t, p).
+
+        Args:
+            theta_rad: (t,) polar angles.
+            phi_rad: (p,) azimuths.
+        """
+        orders, total = np.arange(self.degree + 1), np.zeros((2, self.degree + 1, len(theta_rad)))
+        for m, columns in enumerate(_legendre(np.cos(theta_rad), self.degree)):
+            waves = np.array([self.cosine[m:, m], self.sine[m:, m]]) @ np.array(columns)
+            total[:, m] = waves * np.sin(theta_rad) ** m
+        angles = np.outer(orders, phi_rad)
+        return np.asarray(total[0].T @ np.cos(angles) + total[1].T @ np.sin(angles))
+
+    def truncated(self, degree: int) -> Harmonics:
+        """Return the terms up to a degree.
+
+        Args:
+            degree: at least 0.
+        """
+        keep = slice(degree + 1)
+        return Harmonics(self.cosine[keep, keep].copy(), self.sine[keep, keep].copy())
+
+
+def recurrence(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the numbers that make the Legendre functions from each other.
+
+    ``P_mm = start_m`` and ``P_lm = a_lm z P_(l-1)m - b_lm P_(l-2)m``.
+
+    Args:
+        degree: the highest l.
+
+    Returns:
+        start, (degree + 1,), and a and b, (degree + 1, degree + 1) by l and m.
+    """
+    l, m = np.mgrid[: degree + 1, : degree + 1].astype(float)
+    start = np.sqrt(np.cumprod([1.0, *((2.0 * k + 1.0) / (2.0 * k) * (2.0 if k == 1 else 1.0)
+                                       for k in range(1, degree + 1))]))
+    a, b = np.zeros((2, degree + 1, degree + 1))
+    below = l > m
+    a[below] = np.sqrt((4.0 * l**2 - 1.0)[below] / (l**2 - m**2)[below])
+    below &= l > m + 1
+    b[below] = np.sqrt(
+        ((2.0 * l + 1.0) * ((l - 1.0) ** 2 - m**2))[below] / ((2.0 * l - 3.0) * (l**2 - m**2))[below]
+    )
+    return start, a, b
+
+
+def _legendre(z: FloatArray, degree: int) -> list[list[FloatArray]]:
+    """Return P_lm(z) by m, then by l from m on."""
+    start, a, b = recurrence(degree)
+    found = []
+    for m in range(degree + 1):
+        columns = [np.full(z.shape, start[m])]
+        before = np.zeros(z.shape)
+        for l in range(m + 1, degree + 1):
+            columns.append(a[l, m] * z * columns[-1] - b[l, m] * before)
+            before = columns[-2]
+        found.append(columns)
+    return found
+
+
+def highest_degree(table: PatternTable) -> int:
+    """Return the highest degree that a table's grid can tell from lower ones.
+
+    Args:
+        table: with equal or unequal steps.
+    """
+    widest_deg = max(np.max(np.diff(table.theta_deg)), np.max(np.diff(table.phi_deg, append=360.0)))
+    return max(0, int(180.0 / widest_deg - 1e-9))
+
+
+def fit(table: PatternTable, degree: int) -> Harmonics:
+    """Return the harmonics of a table's power gain up to a degree, least squares over the sphere.
+
+    A table with phases is interpolated as a field first, whose degree is half of its power's.
+
+    Args:
+        table: on any grid that supports the degree.
+        degree: the highest l.
+    """
+    if table.field is None:
+        return _fit(table.theta_deg, table.phi_deg, table.gain, degree)
+    half = min(degree, highest_degree(table))
+    theta, phi = np.deg2rad(table.theta_deg)[:, None], np.deg2rad(table.phi_deg)
+    along = np.array([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta) + 0.0 * phi])
+    round_z = np.array([-np.sin(phi) + 0.0 * theta, np.cos(phi) + 0.0 * theta, 0.0 * (theta + phi)])
+    field = along * table.field[..., 0] + round_z * table.field[..., 1]
+    fine = np.linspace(0.0, 180.0, 4 * degree + 5), np.arange(0.0, 360.0, 360.0 / (4 * degree + 5))
+    there = directions(*fine)
+    parts = [part for axis in field for part in (axis.real, axis.imag)]
+    gain = sum(_fit(table.theta_deg, table.phi_deg, part, half).gain(there) ** 2 for part in parts)
+    return _fit(*fine, gain, degree)
+
+
+def directions(theta_deg: ArrayLike, phi_deg: ArrayLike) -> FloatArray:
+    """Return unit vectors of a grid, (t, p, 3).
+
+    Args:
+        theta_deg: (t,) polar angles.
+        phi_deg: (p,) azimuths.
+    """
+    theta, phi = np.meshgrid(np.deg2rad(theta_deg), np.deg2rad(phi_deg), indexing="ij")
+    return np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+
+
+def _fit(theta_deg: FloatArray, phi_deg: FloatArray, values: FloatArray, degree: int) -> Harmonics:
+    """Return the harmonics of values on a grid: a Fourier series in azimuth, then each order in theta."""
+    phi, z, s = np.deg2rad(phi_deg), np.cos(np.deg2rad(theta_deg)), np.sin(np.deg2rad(theta_deg))
+    orders = min(degree, (len(phi) - 1) // 2)
+    m = np.arange(orders + 1)
+    waves = np.hstack([np.cos(np.outer(phi, m)), np.sin(np.outer(phi, m[1:]))])
+    series = np.linalg.lstsq(waves, values.T, rcond=None)[0]  # (2 orders + 1, t)
+    weight = np.sqrt(np.maximum(s, 1e-3))
+    cosine, sine = np.zeros((2, degree + 1, degree + 1))
+    for order, columns in enumerate(_legendre(z, degree)[: orders + 1]):
+        matrix = np.stack(columns, axis=1) * (weight * s**order)[:, None]
+        right = np.stack([series[order], series[orders + order] if order else 0.0 * z], axis=1)
+        found = np.linalg.lstsq(matrix, right * weight[:, None], rcond=None)[0]
+        cosine[order:, order], sine[order:, order] = found[:, 0], found[:, 1]
+    return Harmonics(cosine, sine)

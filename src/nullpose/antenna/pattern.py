@@ -1,0 +1,161 @@
+"""Antennas whose gain is any function of the direction, as a sum of spherical harmonics."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
+
+from nullpose.antenna.caps import PatternArrays, pattern_arrays
+from nullpose.antenna.harmonics import FloatArray, Harmonics, directions, fit, highest_degree
+from nullpose.antenna.table import PatternTable
+
+_HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
+_LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
+_HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
+_STEP_DEG = 1.0  # of the grid on which the largest gain is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class PatternAntenna:
+    """An antenna whose gain over the sphere is a sum of spherical harmonics: that sum is the antenna.
+
+    Args:
+        name: as in a scenario file.
+        label: in sentences and tables.
+        harmonics: of its power gain in its own axes, x forward, y left, z up.
+    """
+
+    name: str
+    label: str
+    harmonics: Harmonics
+
+    leak = 0.0
+
+    def gain(self, directions: ArrayLike) -> FloatArray:
+        """Return the power gain in each direction, (...).
+
+        Args:
+            directions: (..., 3) unit vectors in the antenna's axes.
+        """
+        return self.harmonics.gain(directions)
+
+    @cached_property
+    def peak(self) -> float:
+        """A gain that no direction exceeds."""
+        return float(np.max(self.arrays.caps[:, 1]))
+
+    @property
+    def is_even(self) -> bool:
+        """Whether opposite directions have the same gain, to a millionth of the mean."""
+        odd = self.harmonics.spectrum[1::2]
+        return bool(np.sum(odd) <= (1e-6 * self.harmonics.cosine[0, 0]) ** 2)
+
+    @property
+    def arrays(self) -> PatternArrays:
+        """The pattern as the solver takes it, made once for the same harmonics."""
+        return _arrays(*(part.tobytes() for part in (self.harmonics.cosine, self.harmonics.sine)))
+
+    def rows(self) -> list[list[float]]:
+        """Return the harmonics as plain numbers: for each degree the cosine terms, then the sine terms."""
+        cosine, sine = self.harmonics.cosine, self.harmonics.sine
+        return [[*cosine[l, : l + 1], *sine[l, 1 : l + 1]] for l in range(len(cosine))]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, PatternAntenna) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[Any, ...]:
+        return self.name, self.label, self.harmonics.cosine.tobytes(), self.harmonics.sine.tobytes()
+
+
+@lru_cache(maxsize=8)
+def _arrays(cosine: bytes, sine: bytes) -> PatternArrays:
+    side = math.isqrt(len(cosine) // 8)
+    parts = (np.frombuffer(part).reshape(side, side).copy() for part in (cosine, sine))
+    return pattern_arrays(Harmonics(*parts))
+
+
+def harmonics_of_rows(rows: ArrayLike) -> Harmonics:
+    """Return the harmonics that :meth:`PatternAntenna.rows` tells.
+
+    Args:
+        rows: for each degree l, 2 l + 1 numbers.
+
+    Raises:
+        ValueError: a row has another length.
+    """
+    values: list[Any] = list(rows)  # type: ignore[arg-type]
+    cosine, sine = np.zeros((2, len(values), len(values)))
+    for l, row in enumerate(values):
+        if len(row) != 2 * l + 1:
+            raise ValueError(f"harmonics[{l}]: got {len(row)} numbers, must be {2 * l + 1}")
+        cosine[l, : l + 1], sine[l, 1 : l + 1] = row[: l + 1], row[l + 1 :]
+    return Harmonics(cosine, sine)
+
+
+def half_wave_harmonics() -> Harmonics:
+    """Return ``cos^2(pi c / 2) / (1 - c^2)`` of a thin half-wave dipole, 1 broadside, c the cosine to z.
+
+    Source: Balanis, Antenna Theory, eq. 4-85, squared and normalised.
+    """
+    return _axial(lambda c: np.cos(0.5 * np.pi * c) ** 2 / (1.0 - c * c), _HALF_WAVE_DEGREE)
+
+
+def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
+    """Return the harmonics of an antenna that is the same all round, from its gain over the angle.
+
+    Args:
+        angle_deg: (n,) angles from the axis, rising from 0 to 180.
+        gain: (n,) power gain there, linear; it changes linearly between.
+    """
+    whole = _axial(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), _HIGHEST)
+    return _shortened(whole, float(np.max(gain)))
+
+
+def table_harmonics(table: PatternTable) -> Harmonics:
+    """Return the harmonics of a table, of the lowest degree that leaves out next to nothing.
+
+    Args:
+        table: over the whole sphere.
+    """
+    return _shortened(fit(table, min(_HIGHEST, highest_degree(table))), float(np.max(table.gain)))
+
+
+def normalised(harmonics: Harmonics) -> Harmonics:
+    """Return a pattern whose largest gain is 1.
+
+    Args:
+        harmonics: of any pattern.
+    """
+    grid = np.arange(0.0, 180.0 + _STEP_DEG, _STEP_DEG), np.arange(0.0, 360.0, _STEP_DEG)
+    peak = float(np.max(harmonics.gain(directions(*grid))))
+    return Harmonics(harmonics.cosine / peak, harmonics.sine / peak)
+
+
+def _axial(function: Any, degree: int) -> Harmonics:
+    nodes, weights = legendre.leggauss(4 * degree + 40)
+    values = weights * function(nodes)
+    cosine = np.zeros((degree + 1, degree + 1))
+    for l in range(degree + 1):
+        mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[l])) / 2.0
+        cosine[l, 0] = mean * math.sqrt(2.0 * l + 1.0)
+    cosine[np.abs(cosine) < 1e-14] = 0.0
+    return Harmonics(cosine, np.zeros_like(cosine))
+
+
+def _shortened(harmonics: Harmonics, peak: float) -> Harmonics:
+    """Return the harmonics without the high degrees, lifted so that no gain is negative."""
+    left_out = np.sqrt(np.cumsum(harmonics.spectrum[::-1])[::-1])
+    degree = int(np.argmax(np.append(left_out[1:], 0.0) <= _LEFT_OUT * peak))
+    kept = harmonics.truncated(degree)
+    grid = np.arange(0.0, 180.0 + _STEP_DEG, _STEP_DEG), np.arange(0.0, 360.0, _STEP_DEG)
+    kept.cosine[0, 0] += max(0.0, -float(np.min(kept.gain(directions(*grid)))))
+    return kept

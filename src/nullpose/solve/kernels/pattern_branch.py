@@ -1,0 +1,170 @@
+"""Branch and bound over positions and attitudes for an antenna with any pattern."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from nullpose.objectives import FloatArray
+from nullpose.solve.kernels import attitude as ATTITUDE
+from nullpose.solve.kernels.array_branch import is_forbidden
+from nullpose.solve.kernels.attitude import ANCHOR, CHART, HALF, WARM
+from nullpose.solve.kernels.domain import contains
+from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solve.kernels.pattern_bound import (
+    excluded_by_sum,
+    expand,
+    fill_constants,
+    fill_points,
+    hopeless,
+    middle,
+    square_range,
+)
+
+DONE, OUT_OF_BUDGET, BETTER, FULL = 0, 1, 2, 3
+
+_HAIR = 1e-9  # radians
+
+
+class Room(NamedTuple):
+    """Where the kernels of one thread write."""
+
+    caps: FloatArray
+    wide: FloatArray
+    value: FloatArray
+    slope: FloatArray
+    bend: FloatArray
+    frame: FloatArray
+    firsts: FloatArray
+    seconds: FloatArray
+    pull: FloatArray
+    stiff: FloatArray
+    f: FloatArray
+    rest: FloatArray
+    by_l: FloatArray
+    best: FloatArray
+    score: FloatArray
+    at: FloatArray
+    factor: FloatArray
+    parts: FloatArray
+    sum_slope: FloatArray
+    sum_bend: FloatArray
+    one_sided: FloatArray
+
+
+@inner_kernel
+def choose(family, row, room, multipliers):
+    """Return the coordinate to split: the one that adds most to the bound."""
+    anchor = int(row[ANCHOR])
+    near, far = square_range(family.points_m[anchor], row)
+    length = math.sqrt(0.5 * (near + far))
+    total = 0.0
+    for i in range(6):
+        total += row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+    rest = 0.0
+    for k in range(multipliers.shape[0]):
+        rest += multipliers[k] * room.rest[k]
+    most, axis = -1.0, 0
+    for i in range(6):
+        rate = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+        score = rate if not math.isfinite(rest) else room.score[i] + 3.0 * rest * rate / total
+        if score > most:
+            most, axis = score, i
+    return axis
+
+
+@inner_kernel
+def tilt(reach, chart, frame):
+    """Return the least tilt that the attitude at a cell's middle asks of the body, radians."""
+    x, y, z = frame[(2 - chart) % 3]  # of the world's vertical, in the antenna's axes
+    if not reach.spins:
+        return math.acos(max(-1.0, min(1.0, x * reach.up[0] + y * reach.up[1] + z * reach.up[2])))
+    angle = math.acos(max(-1.0, min(1.0, z)))
+    least = abs(angle - reach.mount_rad)
+    return min(least, abs(math.pi - angle - reach.mount_rad)) if reach.even else least
+
+
+@heap_kernel
+def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, budget, pose):
+    """Work off cells; return why it ended, the cells left and how many were examined.
+
+    Args:
+        family: the ratios.
+        domain: box, keep-out balls and forbidden pieces.
+        pattern: the antenna's arrays.
+        reach: which attitudes there are.
+        level: no pose of an excluded cell has its smallest ratio above this.
+        floor: an allowed middle above this is a better pose, and ends the call.
+        stack: (size, columns) cells.
+        top: how many of them there are.
+        budget: cells to examine at most.
+        pose: output, (columns,): the cell whose middle is better.
+    """
+    m, n = family.points_m.shape[0], family.numerator_point.shape[0]
+    room = Room(
+        np.empty(5),
+        np.empty((m, 3)),
+        np.empty(m),
+        np.empty((m, 6)),
+        np.empty((m, 6, 6)),
+        np.empty((18, 3)),
+        np.empty((6, 3)),
+        np.empty((6, 6, 3)),
+        np.empty(3),
+        np.empty((3, 3)),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(6),
+        np.empty(6),
+        np.empty(m),
+        np.empty(m),
+        np.empty(6),
+        np.empty((6, 6)),
+        np.ones(m),
+    )
+    for k in range(n):
+        for e in range(family.denominator_point.shape[0]):
+            if family.denominator_point[e] == family.numerator_point[k]:
+                room.one_sided[family.numerator_point[k]] = 0.0
+    multipliers, row = np.empty(n), np.empty(stack.shape[1])
+    done = 0
+    while top > 0:
+        if done >= budget:
+            return OUT_OF_BUDGET, top, done
+        if top + 2 > stack.shape[0]:
+            return FULL, top, done
+        top -= 1
+        done += 1
+        row[:] = stack[top]
+        if is_forbidden(domain, (row[0], row[1], row[2]), (row[6], row[7], row[8])):
+            continue
+        turning = fill_points(family, pattern, row, room)
+        least = tilt(reach, int(row[CHART]), room.frame)
+        if least - turning > reach.tilt_max_rad + _HAIR or hopeless(family, level, room):
+            continue
+        multipliers[:] = row[WARM : WARM + n]
+        value, promising = middle(family, pattern, level, row, room)
+        if value > floor and least <= reach.tilt_max_rad and contains(domain, row[:3]):
+            pose[:] = row
+            stack[top] = row
+            return BETTER, top + 1, done
+        if promising:
+            expand(family, pattern, row, room)
+            fill_constants(family, level, room)
+            if excluded_by_sum(family, level, row, multipliers, room):
+                continue
+        else:
+            room.rest[:] = math.inf
+        axis = choose(family, row, room, multipliers)
+        row[HALF + axis] *= 0.5
+        row[WARM : WARM + n] = multipliers
+        before = row[axis]
+        for side in (-1.0, 1.0):
+            row[axis] = before + side * row[HALF + axis]
+            stack[top] = row
+            top += 1
+    return DONE, top, done

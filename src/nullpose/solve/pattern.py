@@ -1,0 +1,256 @@
+"""An antenna with any pattern: search and proof over positions and attitudes."""
+
+from __future__ import annotations
+
+import math
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import SolveError
+from nullpose.family import Family, build_family
+from nullpose.family.records import Reach
+from nullpose.objectives import FloatArray
+from nullpose.physics.rotation import rotation_world_from_body
+from nullpose.scenario import Scenario
+from nullpose.solve.incumbent import Incumbent
+from nullpose.solve.multistart import NO_POSITION
+from nullpose.solve.options import SolveOptions
+from nullpose.solve.pattern_search import PatternSearch
+from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.rigour import bound_above
+from nullpose.solve.solve_and_prove import Outcome
+from nullpose.solve.worker_pool import processors
+
+_CHUNK = 20_000  # cells between two looks at the clock
+_DEPTH = 4_000  # cells that a stack has room for beside those it begins with
+_DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
+_GAPS = (0.5, 0.1, 0.02)
+_CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
+_INSIDE = 1.0 - 1e-4
+_BETTER = 1.0 + 1e-9  # a middle that is no better than this is the incumbent again
+
+
+def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
+    """Return the best pose for an antenna with a pattern, with a bound if one is asked for.
+
+    A multistart search; then a branch and bound over cells of positions and attitudes, which takes up every
+    better pose that it meets. If the time does not suffice for the gap asked for, wider gaps are proved.
+
+    Args:
+        scenario: one whose antenna has a pattern.
+        options: what is asked for, its gap stated.
+
+    Raises:
+        SolveError: no pose reaches every node.
+    """
+    antenna = scenario.antenna_record
+    assert isinstance(antenna, PatternAntenna), "the caller asks"
+    run = PatternRun(build_family(scenario), antenna, reach_of(scenario, antenna), options)
+    return run.outcome()
+
+
+def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
+    """Return which attitudes of an antenna the scenario's airframe reaches.
+
+    Args:
+        scenario: with its airframe.
+        antenna: with its pattern.
+    """
+    airframe = scenario.airframe
+    tilt, mount = (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
+    up = rotation_world_from_body(0.0, mount, 0.0).T[:, 2].copy()
+    return Reach(tilt, mount, up, antenna.harmonics.is_axisymmetric, antenna.is_even)
+
+
+class PatternRun:
+    """One search and one proof.
+
+    Args:
+        family: ratios and domain, as for an isotropic gain of 1.
+        antenna: its pattern.
+        reach: the attitudes there are.
+        options: what is asked for.
+    """
+
+    def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, options: SolveOptions) -> None:
+        self.family, self.antenna, self.reach, self.options = family, antenna, reach, options
+        self.search = PatternSearch(family, antenna, reach, options.seed)
+        self.cells = 0
+        self.proved = math.inf
+        self.best = 0.0
+
+    def outcome(self) -> Outcome:
+        """Return the best pose and what is proved of it."""
+        from nullpose.solve.kernels import pattern_branch  # compiled before the clock begins
+
+        self.kernel = pattern_branch
+        self.search.compile()
+        began = time.perf_counter()
+        self.search.run(light=self.options.certify)
+        if not math.isfinite(self.search.best):
+            raise SolveError(NO_POSITION)
+        reason = ""
+        if self.options.certify:
+            reason = self._proved(began)
+        position_m, rotation = self.search.pose
+        found = Incumbent(
+            position_m=position_m,
+            axis=rotation,
+            log_value=self.search.best,
+            multipliers=np.full(len(self.family.numerator_point), 1.0 / len(self.family.numerator_point)),
+            starts=self.search.starts,
+            evaluations=self.search.evaluations,
+        )
+        if not self.options.certify:
+            return Outcome(incumbent=found)
+        bound = float(bound_above(self.value, self.proved))
+        return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.cells)
+
+    @property
+    def value(self) -> float:
+        """The best smallest ratio so far."""
+        return math.exp(self.search.best)
+
+    def _proved(self, began: float) -> str:
+        """Close the gap asked for, or else wider ones; return why it was not closed."""
+        limits = self.options
+        whole = began + limits.time_limit_s
+        self.proved = self._by_distance()
+        target = _INSIDE * limits.ratio_gap(self.value)
+        try:
+            if self.proved <= self.value * (1.0 + target):
+                return ""
+            until = began + _DIRECT_SHARE * limits.time_limit_s
+            reason = self._stage(target, until)
+            for gap in _GAPS if reason and self.cells < limits.node_limit else ():
+                if gap > target and self._stage(gap, whole):
+                    break
+            return reason
+        except KeyboardInterrupt:
+            return INTERRUPT
+
+    def _by_distance(self) -> float:
+        """Return a bound from distances and the largest gain alone."""
+        peak = self.family.changed(numerator_weight=self.family.numerator_weight * self.antenna.peak)
+        from nullpose.solve.proof import reach_by_distance
+
+        return reach_by_distance(peak)[0]
+
+    def _stage(self, gap: float, until: float) -> str:
+        """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
+        threads = self.options.threads or processors()
+        with ThreadPoolExecutor(threads) as pool:
+            stacks = [_Stack(cells) for cells in _dealt(self._roots(), threads)]
+            while True:
+                _share(stacks)
+                busy = [stack for stack in stacks if stack.top]
+                if not busy:
+                    self.proved = min(self.proved, self.value * (1.0 + gap))
+                    return ""
+                if time.perf_counter() > until:
+                    return f"the time limit of {self.options.time_limit_s:g} s"
+                if self.cells >= self.options.node_limit:
+                    return f"the node limit of {self.options.node_limit}"
+                level = self.value * (1.0 + gap)
+                for stack in pool.map(lambda one: self._work(one, level), busy):
+                    self.cells += stack.done
+                    if stack.better is not None:
+                        self.search.improve(stack.better)
+                if self.options.on_progress is not None:
+                    self.options.on_progress(self.proved / self.value - 1.0, self.cells)
+
+    def _work(self, stack: _Stack, level: float) -> _Stack:
+        pose = np.empty(stack.cells.shape[1])
+        stack.reserve()
+        code, stack.top, stack.done = self.kernel.branch_pattern(
+            self.family.arrays,
+            self.family.domain,
+            self.antenna.arrays,
+            self.reach,
+            level,
+            self.value * _BETTER,
+            stack.cells,
+            stack.top,
+            _CHUNK,
+            pose,
+        )
+        stack.better = pose if code == self.kernel.BETTER else None
+        return stack
+
+    def _roots(self) -> FloatArray:
+        """Return the cells that hold every pose which reaches the best value."""
+        low_m, high_m = self.search.box(self.search.best)
+        found: list[FloatArray] = []
+        self._add_roots(low_m, np.maximum(low_m, high_m), found)
+        return np.array(found)
+
+    def _add_roots(self, low_m: FloatArray, high_m: FloatArray, found: list[FloatArray]) -> None:
+        middle, half = 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
+        anchor = self.search.anchor
+        clear, chart = max((self._clearance(anchor, chart, middle, half), chart) for chart in range(3))
+        if clear < _CLEAR and np.max(half) > self.family.keep_out_m:
+            side = int(np.argmax(half))
+            lower, upper = high_m.copy(), low_m.copy()
+            lower[side] = upper[side] = middle[side]
+            self._add_roots(low_m, lower, found)
+            self._add_roots(upper, high_m, found)
+            return
+        a = self.kernel.ATTITUDE
+        for face in range(1 if self.reach.spins else 6):
+            cell = np.zeros(a.WARM + len(self.family.numerator_point))
+            cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
+            cell[a.HALF + 3 : a.HALF + 6] = math.pi / 4.0, math.pi / 4.0, math.pi
+            if self.reach.spins:  # u alone says where the anchor is: half a turn, or a quarter
+                cell[3] = cell[a.HALF + 3] = math.pi / 4.0 if self.reach.even else math.pi / 2.0
+                cell[a.HALF + 4] = 0.0
+            cell[a.FACE], cell[a.CHART], cell[a.ANCHOR] = face, chart, anchor
+            cell[a.WARM :] = 1.0 / len(self.family.numerator_point)
+            found.append(cell)
+
+    def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:
+        """Return the least cosine of the anchor's latitude over a box, in a chart."""
+        order = [(chart + i) % 3 for i in range(3)]
+        way = np.abs(self.family.points_m[anchor] - middle)[order]
+        sides = half[order]
+        level = math.hypot(max(0.0, way[0] - sides[0]), max(0.0, way[2] - sides[2]))
+        return level / math.hypot(level, way[1] + sides[1]) if level > 0.0 else 0.0
+
+
+class _Stack:
+    """The cells that one thread works off."""
+
+    def __init__(self, cells: FloatArray) -> None:
+        self.cells, self.top = cells.copy(), len(cells)
+        self.done, self.better = 0, None
+
+    better: FloatArray | None
+
+    def reserve(self) -> None:
+        """Make room for the depth of the tree."""
+        if len(self.cells) < self.top + _DEPTH:
+            room = np.empty((self.top + 2 * _DEPTH, self.cells.shape[1]))
+            room[: self.top] = self.cells[: self.top]
+            self.cells = room
+
+    def give(self) -> FloatArray:
+        """Return every second cell, which the stack no longer has."""
+        kept, given = self.cells[: self.top : 2].copy(), self.cells[1 : self.top : 2].copy()
+        self.top = len(kept)
+        self.cells[: self.top] = kept
+        return given
+
+
+def _dealt(cells: FloatArray, hands: int) -> list[FloatArray]:
+    return [cells[i::hands] for i in range(hands)]
+
+
+def _share(stacks: list[_Stack]) -> None:
+    """Give cells of the fullest stack to those that have none."""
+    for at, idle in enumerate(stacks):
+        richest = max(stacks, key=lambda stack: stack.top)
+        if not idle.top and richest.top > 1:
+            stacks[at] = _Stack(richest.give())

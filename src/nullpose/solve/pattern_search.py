@@ -1,0 +1,229 @@
+"""Multistart search for the best pose of an antenna with a pattern."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from nullpose.antenna import PatternAntenna
+from nullpose.family import Family
+from nullpose.family.records import Reach
+from nullpose.objectives import FloatArray
+
+_DRAWN, _POLISHED = 20_000, 40  # poses judged, and polished, where no proof follows
+_LIGHTLY = 4_000, 6  # where one does, which repairs what this misses
+_NOT_HEARD = -1e3  # logarithm of a ratio, in place of minus infinity
+_STEP = 1e-6  # of differences: radians, or the share of the scene's size
+_WORST_ANCHOR = 1.0
+
+
+class PatternSearch:
+    """The best pose found so far, and how to find better ones.
+
+    Args:
+        family: ratios and domain.
+        antenna: its pattern.
+        reach: the attitudes there are.
+        seed: of the poses drawn.
+    """
+
+    def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, seed: int) -> None:
+        self.family, self.arrays, self.reach = family, antenna.arrays, reach
+        self.peak = antenna.peak
+        self.rng = np.random.default_rng(seed)
+        self.best, self.starts, self.evaluations = -math.inf, 0, 0
+        self.pose = np.zeros(3), np.eye(3)
+        self.links, self.logs = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
+
+    def compile(self) -> None:
+        """Compile what a search and a proof need."""
+        from nullpose.solve.kernels import domain, pattern_branch, pattern_search, search
+
+        self.kernels, self.domain, self.cut = pattern_search, domain, search.cut_box
+        self.judged(np.ones((1, 3)), np.eye(3)[None])
+        none = np.empty((8, pattern_branch.ATTITUDE.WARM + len(self.logs)))
+        pattern_branch.branch_pattern(
+            self.family.arrays,
+            self.family.domain,
+            self.arrays,
+            self.reach,
+            1.0,
+            1.0,
+            none,
+            0,
+            1,
+            none[0],
+        )
+        self.evaluations = 0
+
+    def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
+        """Return corners of a box outside which no pose reaches a value.
+
+        Args:
+            log_value: logarithm of the smallest ratio.
+        """
+        louder = self.family.changed(numerator_weight=self.family.numerator_weight * self.peak)
+        low_m, high_m = np.empty(3), np.empty(3)
+        self.cut(louder.arrays, self.family.low_m, self.family.high_m, log_value - 1e-9, low_m, high_m)
+        return low_m, high_m
+
+    def judged(self, positions_m: FloatArray, rotations: FloatArray) -> FloatArray:
+        """Return the smallest log ratio of many poses.
+
+        Args:
+            positions_m: (n, 3).
+            rotations: (n, 3, 3) to the world from the antenna's axes.
+        """
+        values = np.empty(len(positions_m))
+        self.kernels.judge(
+            self.family.arrays, self.arrays, positions_m, rotations, self.links, self.logs, values
+        )
+        self.evaluations += len(positions_m)
+        return values
+
+    def run(self, *, light: bool) -> None:
+        """Draw poses, and polish the best of them.
+
+        Args:
+            light: whether a proof follows.
+        """
+        drawn, polished = _LIGHTLY if light else (_DRAWN, _POLISHED)
+        points = self.family.points_m
+        margin = float(np.max(np.ptp(points, axis=0))) + 10.0 * self.family.keep_out_m
+        low_m = np.maximum(self.family.low_m, points.min(axis=0) - margin)
+        high_m = np.minimum(self.family.high_m, points.max(axis=0) + margin)
+        for _ in range(2):  # the second time in a box that the first has made small
+            positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
+            positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
+            rotations = self._attitudes(drawn)
+            values = self.judged(positions_m, rotations)
+            for i in np.argsort(-values)[:polished]:
+                self.polish(positions_m[i], rotations[i])
+            if not math.isfinite(self.best):
+                break
+            low_m, high_m = self.box(self.best)
+
+    def _attitudes(self, count: int) -> FloatArray:
+        """Return rotations that the airframe reaches, (count, 3, 3)."""
+        free = Rotation.random(count, random_state=self.rng).as_matrix()
+        if self.reach.tilt_max_rad >= math.pi:
+            return np.asarray(free)
+        tilt = self.reach.tilt_max_rad * self.rng.uniform(size=count) * self.rng.choice([0.0, 1.0], size=count)
+        yaw, towards = self.rng.uniform(-math.pi, math.pi, (2, count))
+        body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
+        return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
+
+    def improve(self, cell: FloatArray) -> None:
+        """Take up the pose at a cell's middle, and what a climb from there leads to.
+
+        Args:
+            cell: its row.
+        """
+        rotation = np.empty((3, 3))
+        self.kernels.rotation_of(self.family.arrays, cell, np.empty((18, 3)), rotation)
+        rotation = self._least_tilted(rotation)
+        self.take(cell[:3].copy(), rotation)
+        self.polish(cell[:3], rotation)
+
+    def take(self, position_m: FloatArray, rotation: FloatArray) -> None:
+        """Keep a pose if it is allowed and the best so far.
+
+        Args:
+            position_m: (3,).
+            rotation: (3, 3) to the world from the antenna's axes.
+        """
+        value = float(self.judged(position_m[None], rotation[None])[0])
+        if value > self.best and self.tilt(rotation) <= self.reach.tilt_max_rad + 1e-12:
+            if self.domain.contains(self.family.domain, position_m):
+                self.best, self.pose = value, (position_m, rotation)
+
+    def tilt(self, rotation: FloatArray) -> float:
+        """Return how far the body is tilted, radians.
+
+        Args:
+            rotation: (3, 3) to the world from the antenna's axes.
+        """
+        return math.acos(max(-1.0, min(1.0, float(rotation[2] @ self.reach.up))))
+
+    def _least_tilted(self, rotation: FloatArray) -> FloatArray:
+        """Return a rotation of the same gains with the least tilt."""
+        if not self.reach.spins:
+            return rotation
+        axes = [rotation[:, 2], -rotation[:, 2]] if self.reach.even else [rotation[:, 2]]
+        return min((self._spun(axis) for axis in axes), key=self.tilt)
+
+    def _spun(self, axis: FloatArray) -> FloatArray:
+        """Return the rotation of least tilt that has the antenna's axis there."""
+        across = axis * axis[2] - np.array([0.0, 0.0, 1.0])
+        if np.linalg.norm(across) < 1e-12:
+            across = np.array([1.0, 0.0, 0.0])
+        first = across / np.linalg.norm(across)
+        return np.stack([first, np.cross(axis, first), axis], axis=1)
+
+    def polish(self, position_m: FloatArray, rotation: FloatArray) -> None:
+        """Climb from a pose: sequential quadratic programming of the largest level below all log ratios.
+
+        Args:
+            position_m: (3,).
+            rotation: (3, 3).
+        """
+        low_m, high_m = self.family.low_m, self.family.high_m
+        scale = max(1.0, float(np.linalg.norm(position_m - self.family.points_m[0])))
+        logs = np.empty((7, len(self.logs)))
+
+        def pose(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+            where = np.clip(position_m + scale * x[:3], low_m, high_m)
+            return where, rotation @ Rotation.from_rotvec(x[3:6]).as_matrix()
+
+        def ratios(x: FloatArray) -> FloatArray:
+            self.kernels.fill_log_ratios(self.family.arrays, self.arrays, *pose(x), self.links, logs[0])
+            self.evaluations += 1
+            return np.maximum(logs[0], _NOT_HEARD)
+
+        def slopes(x: FloatArray) -> FloatArray:
+            found = np.empty((len(self.logs), 7))
+            for i in range(6):
+                step = np.zeros(7)
+                step[i] = _STEP
+                found[:, i] = (ratios(x + step).copy() - ratios(x - step)) / (2.0 * _STEP)
+            found[:, 6] = -1.0
+            return found
+
+        level = float(np.min(ratios(np.zeros(7))))
+        if level <= _NOT_HEARD:
+            return
+        constraints: list[Any] = [
+            {"type": "ineq", "fun": lambda x: ratios(x).copy() - x[6] - level, "jac": slopes}
+        ]
+        if self.reach.tilt_max_rad < math.pi and not self.reach.spins:
+            most = math.cos(self.reach.tilt_max_rad)
+            constraints.append(
+                {"type": "ineq", "fun": lambda x: pose(x)[1][2] @ self.reach.up - most}
+            )
+        ends = [((a - p) / scale, (b - p) / scale) for a, b, p in zip(low_m, high_m, position_m, strict=True)]
+        found = minimize(
+            lambda x: -x[6],
+            np.zeros(7),
+            jac=lambda x: np.array([0.0] * 6 + [-1.0]),
+            bounds=[*ends, *[(-1.5, 1.5)] * 3, (None, None)],
+            constraints=constraints,
+            method="SLSQP",
+            options={"maxiter": 60, "ftol": 1e-10},
+        )
+        self.starts += 1
+        where, turned = pose(found.x)
+        self.take(where, self._least_tilted(turned))
+
+    @property
+    def anchor(self) -> int:
+        """Index of the point whose direction the cells are aligned with: the one that sways the value most."""
+        weight = np.zeros(len(self.family.points_m))
+        np.add.at(weight, self.family.numerator_point, self.family.numerator_weight)
+        weight /= len(self.family.numerator_point) * math.exp(self.best)
+        np.add.at(weight, self.family.denominator_point, self.family.denominator_weight)
+        squares = np.sum((self.family.points_m - self.pose[0]) ** 2, axis=1)
+        return int(np.argmax(weight / squares))
