@@ -146,9 +146,9 @@ def fit(table: PatternTable, degree: int) -> Harmonics:
     round_z = np.array([-np.sin(phi) + 0.0 * theta, np.cos(phi) + 0.0 * theta, 0.0 * (theta + phi)])
     field = along * table.field[..., 0] + round_z * table.field[..., 1]
     fine = np.linspace(0.0, 180.0, 4 * degree + 5), np.arange(0.0, 360.0, 360.0 / (4 * degree + 5))
-    there = directions(*fine)
+    there = np.deg2rad(fine[0]), np.deg2rad(fine[1])
     parts = [part for axis in field for part in (axis.real, axis.imag)]
-    gain = sum(_fit(table.theta_deg, table.phi_deg, part, half).gain(there) ** 2 for part in parts)
+    gain = sum(_fit(table.theta_deg, table.phi_deg, part, half).on_grid(*there) ** 2 for part in parts)
     return _fit(*fine, gain, degree)
 
 

@@ -12,13 +12,15 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
 from nullpose.antenna.caps import PatternArrays, pattern_arrays
-from nullpose.antenna.harmonics import FloatArray, Harmonics, directions, fit, highest_degree
+from nullpose.antenna.harmonics import FloatArray, Harmonics, fit, highest_degree
 from nullpose.antenna.table import PatternTable
+from nullpose.errors import Fault, ScenarioError
 
 _HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
+_MISSED = 0.01  # root mean square, of the largest gain, that a grid's highest degree may miss
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
-_STEP_DEG = 1.0  # of the grid on which the largest gain is looked for
+_GRID = np.radians(np.arange(181.0)), np.radians(np.arange(360.0))  # where least and largest gain are looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +49,12 @@ class PatternAntenna:
 
     @cached_property
     def peak(self) -> float:
-        """A gain that no direction exceeds."""
-        return float(np.max(self.arrays.caps[:, 1]))
+        """A gain that no direction exceeds.
+
+        At the peak the slope is zero, and by Bernstein no second derivative is above ``degree^2`` times it.
+        """
+        bend = 0.5 * (self.harmonics.degree * math.radians(math.hypot(0.5, 0.5))) ** 2
+        return float(np.max(np.abs(self.harmonics.on_grid(*_GRID)))) / (1.0 - bend)
 
     @property
     def is_even(self) -> bool:
@@ -125,8 +131,27 @@ def table_harmonics(table: PatternTable) -> Harmonics:
 
     Args:
         table: over the whole sphere.
+
+    Raises:
+        ScenarioError: its grid is too coarse for what it holds.
     """
-    return _shortened(fit(table, min(_HIGHEST, highest_degree(table))), float(np.max(table.gain)))
+    peak = float(np.max(table.gain))
+    whole = fit(table, min(_HIGHEST, highest_degree(table)))
+    missed = whole.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg)) - table.gain
+    rms = float(np.sqrt(np.mean(missed**2)))
+    if rms > _MISSED * peak:
+        step = 180.0 / max(1, highest_degree(table))
+        raise ScenarioError(
+            [
+                Fault(
+                    "",
+                    f"the grid is too coarse: steps of {step:.3g} degrees allow a degree of {whole.degree}, which "
+                    f"misses the gains by {100.0 * rms / peak:.1f} % of the peak; must be {100.0 * _MISSED:g} % at "
+                    "most: export finer steps, or fields with phases",
+                )
+            ]
+        )
+    return _shortened(whole, peak)
 
 
 def normalised(harmonics: Harmonics) -> Harmonics:
@@ -135,8 +160,7 @@ def normalised(harmonics: Harmonics) -> Harmonics:
     Args:
         harmonics: of any pattern.
     """
-    grid = np.arange(0.0, 180.0 + _STEP_DEG, _STEP_DEG), np.arange(0.0, 360.0, _STEP_DEG)
-    peak = float(np.max(harmonics.gain(directions(*grid))))
+    peak = float(np.max(harmonics.on_grid(*_GRID)))
     return Harmonics(harmonics.cosine / peak, harmonics.sine / peak)
 
 
@@ -156,6 +180,5 @@ def _shortened(harmonics: Harmonics, peak: float) -> Harmonics:
     left_out = np.sqrt(np.cumsum(harmonics.spectrum[::-1])[::-1])
     degree = int(np.argmax(np.append(left_out[1:], 0.0) <= _LEFT_OUT * peak))
     kept = harmonics.truncated(degree)
-    grid = np.arange(0.0, 180.0 + _STEP_DEG, _STEP_DEG), np.arange(0.0, 360.0, _STEP_DEG)
-    kept.cosine[0, 0] += max(0.0, -float(np.min(kept.gain(directions(*grid)))))
+    kept.cosine[0, 0] += max(0.0, -float(np.min(kept.on_grid(*_GRID))))
     return kept

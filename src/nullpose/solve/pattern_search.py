@@ -6,19 +6,23 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import PatternAntenna
+from nullpose.antenna.harmonics import directions
 from nullpose.family import Family
 from nullpose.family.records import Reach
 from nullpose.objectives import FloatArray
 
 _DRAWN, _POLISHED = 20_000, 40  # poses judged, and polished, where no proof follows
-_LIGHTLY = 4_000, 6  # where one does, which repairs what this misses
+_LIGHTLY = 4_000, 4  # where one does, which repairs what this misses
+_REFINED, _SPREADS, _TRIED = 20, (0.1, 0.05, 0.02), 5  # poses for each polished one; radians; moves of each
+_LOW = 0.005  # of all directions, weighted by the grid's density
+_FEW = 12  # degree up to which lobes are few
 _NOT_HEARD = -1e3  # logarithm of a ratio, in place of minus infinity
 _STEP = 1e-6  # of differences: radians, or the share of the scene's size
-_WORST_ANCHOR = 1.0
 
 
 class PatternSearch:
@@ -34,6 +38,9 @@ class PatternSearch:
     def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, seed: int) -> None:
         self.family, self.arrays, self.reach = family, antenna.arrays, reach
         self.peak = antenna.peak
+        grid = directions(np.arange(181.0), np.arange(360.0)).reshape(-1, 3)
+        gains = antenna.gain(grid)
+        self.lowest = grid[gains <= np.quantile(gains, _LOW)]
         self.rng = np.random.default_rng(seed)
         self.best, self.starts, self.evaluations = -math.inf, 0, 0
         self.pose = np.zeros(3), np.eye(3)
@@ -91,7 +98,9 @@ class PatternSearch:
         Args:
             light: whether a proof follows.
         """
-        drawn, polished = _LIGHTLY if light else (_DRAWN, _POLISHED)
+        lobes = max(1, self.arrays.cosine.shape[0] // _FEW) ** 2  # of which most climbs lead to a small one
+        light = light and lobes == 1
+        drawn, polished = _LIGHTLY if light else (lobes * _DRAWN, lobes * _POLISHED)
         points = self.family.points_m
         margin = float(np.max(np.ptp(points, axis=0))) + 10.0 * self.family.keep_out_m
         low_m = np.maximum(self.family.low_m, points.min(axis=0) - margin)
@@ -100,8 +109,9 @@ class PatternSearch:
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             rotations = self._attitudes(drawn)
-            values = self.judged(positions_m, rotations)
-            for i in np.argsort(-values)[:polished]:
+            rotations[1::2] = self._shunning(positions_m[1::2])
+            rounds = 0 if light else _TRIED
+            for i in self._refined(positions_m, rotations, polished, rounds):
                 self.polish(positions_m[i], rotations[i])
             if not math.isfinite(self.best):
                 break
@@ -116,6 +126,34 @@ class PatternSearch:
         yaw, towards = self.rng.uniform(-math.pi, math.pi, (2, count))
         body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
         return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
+
+    def _refined(
+        self, positions_m: FloatArray, rotations: FloatArray, polished: int, rounds: int
+    ) -> NDArray[np.intp]:
+        """Move promising poses to better ones near by, in place; return the indices of the best of them."""
+        values = self.judged(positions_m, rotations)
+        some = np.argsort(-values)[: _REFINED * polished]
+        for spread in _SPREADS:
+            for _ in range(rounds):
+                turns = Rotation.from_rotvec(spread * self.rng.normal(size=(len(some), 3))).as_matrix()
+                away_m = np.linalg.norm(positions_m[some] - self.family.points_m[0], axis=1, keepdims=True)
+                moved_m = positions_m[some] + spread * away_m * self.rng.normal(size=(len(some), 3))
+                moved_m = np.clip(moved_m, self.family.low_m, self.family.high_m)
+                turned = rotations[some] @ turns
+                found = self.judged(moved_m, turned)
+                better = found > values[some]
+                at = some[better]
+                values[at], positions_m[at], rotations[at] = found[better], moved_m[better], turned[better]
+        return np.asarray(some[np.argsort(-values[some])][:polished])
+
+    def _shunning(self, positions_m: FloatArray) -> FloatArray:
+        """Return rotations that have the strongest interferer, or the first point, where the gain is low."""
+        weights = self.family.denominator_weight
+        strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
+        ways = self.family.points_m[strongest] - positions_m
+        spins = Rotation.from_rotvec(np.outer(self.rng.uniform(-math.pi, math.pi, len(ways)), [0.0, 0.0, 1.0]))
+        chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(ways))]
+        return np.asarray(_frames(ways) @ spins.as_matrix() @ _frames(chosen).transpose(0, 2, 1))
 
     def improve(self, cell: FloatArray) -> None:
         """Take up the pose at a cell's middle, and what a climb from there leads to.
@@ -227,3 +265,12 @@ class PatternSearch:
         np.add.at(weight, self.family.denominator_point, self.family.denominator_weight)
         squares = np.sum((self.family.points_m - self.pose[0]) ** 2, axis=1)
         return int(np.argmax(weight / squares))
+
+
+def _frames(third: FloatArray) -> FloatArray:
+    """Return rotations whose third columns are along given vectors, (n, 3, 3)."""
+    w = third / np.linalg.norm(third, axis=1, keepdims=True)
+    least = np.eye(3)[np.argmin(np.abs(w), axis=1)]
+    u = np.cross(least, w)
+    u /= np.linalg.norm(u, axis=1, keepdims=True)
+    return np.stack([u, np.cross(w, u), w], axis=2)
