@@ -86,20 +86,27 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
 def _finest(harmonics: Harmonics) -> FloatArray:
     """Return the five numbers of each cell of the table, (rows, columns, 5).
 
-    The derivative of order m along the great circle that a rotation about the unit vector w makes is ``(w.L)^m
-    g`` with the generators L of rotations, which map harmonics of a degree to such. Its values at a cell's
-    middle for some w, and the bound ``|f'| <= degree max |f|`` of Bernstein for what lies between, make
-    bounds for the cell.
+    The derivative of order m along the great circle that a rotation about the unit vector w makes is
+    ``(w.L)^m g`` with the generators L of rotations, which map harmonics of a degree to such. Its values at a
+    cell's middle for some w, and the bound ``|f'| <= degree max |f|`` of Bernstein for what lies between,
+    make bounds for the cell.
     """
     step = math.pi / _ROWS
-    theta, phi = (np.arange(_ROWS) + 0.5) * step, (np.arange(2 * _ROWS) + 0.5) * step
+    theta = np.asarray((np.arange(_ROWS) + 0.5) * step, dtype=np.float64)
+    phi = np.asarray((np.arange(2 * _ROWS) + 0.5) * step, dtype=np.float64)
     radius = math.hypot(step, step) / 2.0
     degree = max(1, harmonics.degree)
     angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     st, ct, sp, cp = np.sin(theta), np.cos(theta), np.sin(phi), np.cos(phi)
     south = np.stack([np.outer(ct, cp), np.outer(ct, sp), np.outer(-st, np.ones_like(phi))], axis=-1)
-    east = np.stack([np.broadcast_to(-sp, south.shape[:2]), np.broadcast_to(cp, south.shape[:2]),
-                     np.zeros(south.shape[:2])], axis=-1)
+    east = np.stack(
+        [
+            np.broadcast_to(-sp, south.shape[:2]),
+            np.broadcast_to(cp, south.shape[:2]),
+            np.zeros(south.shape[:2]),
+        ],
+        axis=-1,
+    )
     found: _Rotated = {(0, 0, 0): _complex(harmonics)}
     gain, least = _values(found[0, 0, 0], theta, phi), []
     for order in range(1, _ORDER + 1):
@@ -138,7 +145,7 @@ def _padded(gain: FloatArray, slopes: list[FloatArray], radius: float, degree: i
 
 
 def _complex(harmonics: Harmonics) -> NDArray[np.complex128]:
-    """Return coefficients by l and degree + m of the orthonormal complex harmonics, m of both signs."""
+    """Return coefficients by n and degree + m of the orthonormal complex harmonics, m of both signs."""
     degree = harmonics.degree
     found = np.zeros((degree + 1, 2 * degree + 1), dtype=complex)
     found[:, degree] = harmonics.cosine[:, 0]
@@ -154,9 +161,9 @@ def _rotated_once_more(found: _Rotated) -> _Rotated:
     more: _Rotated = {}
     for power, c in found.items():
         degree = len(c) - 1
-        l, m = np.arange(degree + 1)[:, None], np.arange(-degree, degree + 1)
-        up = np.sqrt(np.maximum(0.0, l * (l + 1) - m * (m + 1))) * c  # L+ takes m to m + 1
-        down = np.sqrt(np.maximum(0.0, l * (l + 1) - m * (m - 1))) * c
+        n, m = np.arange(degree + 1)[:, None], np.arange(-degree, degree + 1)
+        up = np.sqrt(np.maximum(0.0, n * (n + 1) - m * (m + 1))) * c  # L+ takes m to m + 1
+        down = np.sqrt(np.maximum(0.0, n * (n + 1) - m * (m - 1))) * c
         raised, lowered = np.zeros_like(c), np.zeros_like(c)
         raised[:, 1:], lowered[:, :-1] = up[:, :-1], down[:, 1:]
         parts = ((raised + lowered) / 2.0, (raised - lowered) / 2j, m * c)

@@ -14,13 +14,13 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Harmonics:
-    """``g(b) = sum_lm P_lm(z) (c_lm Re (x + iy)^m + s_lm Im (x + iy)^m)`` for a direction b = (x, y, z).
+    """``g(b) = sum_nm P_nm(z) (c_nm Re (x + iy)^m + s_nm Im (x + iy)^m)`` for a direction b = (x, y, z).
 
-    The ``P_lm(z)`` are associated Legendre functions over ``sin^m``, scaled so that the mean square of each
-    term over the sphere is ``c_lm^2`` or ``s_lm^2``: ``c_00`` is the mean gain.
+    The ``P_nm(z)`` are associated Legendre functions over ``sin^m``, scaled so that the mean square of each
+    term over the sphere is ``c_nm^2`` or ``s_nm^2``: ``c_00`` is the mean gain.
 
     Args:
-        cosine: (degree + 1, degree + 1) c by l and m, zero where m exceeds l.
+        cosine: (degree + 1, degree + 1) c by n and m, zero where m exceeds n.
         sine: s, likewise; zero for m = 0.
     """
 
@@ -29,7 +29,7 @@ class Harmonics:
 
     @property
     def degree(self) -> int:
-        """The highest l."""
+        """The highest n."""
         return len(self.cosine) - 1
 
     @property
@@ -52,8 +52,8 @@ class Harmonics:
         x, y, z = np.moveaxis(np.asarray(directions, dtype=float), -1, 0)
         total, power = np.zeros(x.shape), np.ones(x.shape, dtype=complex)
         for m, columns in enumerate(_legendre(z, self.degree)):
-            for l, column in enumerate(columns, start=m):
-                total += column * (self.cosine[l, m] * power.real + self.sine[l, m] * power.imag)
+            for n, column in enumerate(columns, start=m):
+                total += column * (self.cosine[n, m] * power.real + self.sine[n, m] * power.imag)
             power = power * (x + 1j * y)
         return total
 
@@ -84,36 +84,39 @@ class Harmonics:
 def recurrence(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the numbers that make the Legendre functions from each other.
 
-    ``P_mm = start_m`` and ``P_lm = a_lm z P_(l-1)m - b_lm P_(l-2)m``.
+    ``P_mm = start_m`` and ``P_nm = a_nm z P_(n-1)m - b_nm P_(n-2)m``.
 
     Args:
-        degree: the highest l.
+        degree: the highest n.
 
     Returns:
-        start, (degree + 1,), and a and b, (degree + 1, degree + 1) by l and m.
+        start, (degree + 1,), and a and b, (degree + 1, degree + 1) by n and m.
     """
-    l, m = np.mgrid[: degree + 1, : degree + 1].astype(float)
-    start = np.sqrt(np.cumprod([1.0, *((2.0 * k + 1.0) / (2.0 * k) * (2.0 if k == 1 else 1.0)
-                                       for k in range(1, degree + 1))]))
+    n, m = np.mgrid[: degree + 1, : degree + 1].astype(float)
+    start = np.sqrt(
+        np.cumprod(
+            [1.0, *((2.0 * k + 1.0) / (2.0 * k) * (2.0 if k == 1 else 1.0) for k in range(1, degree + 1))]
+        )
+    )
     a, b = np.zeros((2, degree + 1, degree + 1))
-    below = l > m
-    a[below] = np.sqrt((4.0 * l**2 - 1.0)[below] / (l**2 - m**2)[below])
-    below &= l > m + 1
+    below = n > m
+    a[below] = np.sqrt((4.0 * n**2 - 1.0)[below] / (n**2 - m**2)[below])
+    below &= n > m + 1
     b[below] = np.sqrt(
-        ((2.0 * l + 1.0) * ((l - 1.0) ** 2 - m**2))[below] / ((2.0 * l - 3.0) * (l**2 - m**2))[below]
+        ((2.0 * n + 1.0) * ((n - 1.0) ** 2 - m**2))[below] / ((2.0 * n - 3.0) * (n**2 - m**2))[below]
     )
     return start, a, b
 
 
 def _legendre(z: FloatArray, degree: int) -> list[list[FloatArray]]:
-    """Return P_lm(z) by m, then by l from m on."""
+    """Return P_nm(z) by m, then by n from m on."""
     start, a, b = recurrence(degree)
     found = []
     for m in range(degree + 1):
         columns = [np.full(z.shape, start[m])]
         before = np.zeros(z.shape)
-        for l in range(m + 1, degree + 1):
-            columns.append(a[l, m] * z * columns[-1] - b[l, m] * before)
+        for n in range(m + 1, degree + 1):
+            columns.append(a[n, m] * z * columns[-1] - b[n, m] * before)
             before = columns[-2]
         found.append(columns)
     return found
@@ -136,7 +139,7 @@ def fit(table: PatternTable, degree: int) -> Harmonics:
 
     Args:
         table: on any grid that supports the degree.
-        degree: the highest l.
+        degree: the highest n.
     """
     if table.field is None:
         return _fit(table.theta_deg, table.phi_deg, table.gain, degree)
@@ -148,7 +151,8 @@ def fit(table: PatternTable, degree: int) -> Harmonics:
     fine = np.linspace(0.0, 180.0, 4 * degree + 5), np.arange(0.0, 360.0, 360.0 / (4 * degree + 5))
     there = np.deg2rad(fine[0]), np.deg2rad(fine[1])
     parts = [part for axis in field for part in (axis.real, axis.imag)]
-    gain = sum(_fit(table.theta_deg, table.phi_deg, part, half).on_grid(*there) ** 2 for part in parts)
+    each = [_fit(table.theta_deg, table.phi_deg, part, half).on_grid(*there) for part in parts]
+    gain = np.sum(np.square(each), axis=0)
     return _fit(*fine, gain, degree)
 
 

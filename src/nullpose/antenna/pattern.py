@@ -20,7 +20,10 @@ _HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
 _MISSED = 0.01  # root mean square, of the largest gain, that a grid's highest degree may miss
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
-_GRID = np.radians(np.arange(181.0)), np.radians(np.arange(360.0))  # where least and largest gain are looked for
+_GRID = (
+    np.radians(np.arange(181.0)),
+    np.radians(np.arange(360.0)),
+)  # where least and largest gain are looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +73,7 @@ class PatternAntenna:
     def rows(self) -> list[list[float]]:
         """Return the harmonics as plain numbers: for each degree the cosine terms, then the sine terms."""
         cosine, sine = self.harmonics.cosine, self.harmonics.sine
-        return [[*cosine[l, : l + 1], *sine[l, 1 : l + 1]] for l in range(len(cosine))]
+        return [[*cosine[n, : n + 1], *sine[n, 1 : n + 1]] for n in range(len(cosine))]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, PatternAntenna) and self._key() == other._key()
@@ -93,17 +96,17 @@ def harmonics_of_rows(rows: ArrayLike) -> Harmonics:
     """Return the harmonics that :meth:`PatternAntenna.rows` tells.
 
     Args:
-        rows: for each degree l, 2 l + 1 numbers.
+        rows: for each degree n, 2 n + 1 numbers.
 
     Raises:
         ValueError: a row has another length.
     """
     values: list[Any] = list(rows)  # type: ignore[arg-type]
     cosine, sine = np.zeros((2, len(values), len(values)))
-    for l, row in enumerate(values):
-        if len(row) != 2 * l + 1:
-            raise ValueError(f"harmonics[{l}]: got {len(row)} numbers, must be {2 * l + 1}")
-        cosine[l, : l + 1], sine[l, 1 : l + 1] = row[: l + 1], row[l + 1 :]
+    for n, row in enumerate(values):
+        if len(row) != 2 * n + 1:
+            raise ValueError(f"harmonics[{n}]: got {len(row)} numbers, must be {2 * n + 1}")
+        cosine[n, : n + 1], sine[n, 1 : n + 1] = row[: n + 1], row[n + 1 :]
     return Harmonics(cosine, sine)
 
 
@@ -145,9 +148,9 @@ def table_harmonics(table: PatternTable) -> Harmonics:
             [
                 Fault(
                     "",
-                    f"the grid is too coarse: steps of {step:.3g} degrees allow a degree of {whole.degree}, which "
-                    f"misses the gains by {100.0 * rms / peak:.1f} % of the peak; must be {100.0 * _MISSED:g} % at "
-                    "most: export finer steps, or fields with phases",
+                    f"the grid is too coarse: steps of {step:.3g} degrees allow a degree of {whole.degree}, "
+                    f"which misses the gains by {100.0 * rms / peak:.1f} % of the peak; must be "
+                    f"{100.0 * _MISSED:g} % at most: export finer steps, or fields with phases",
                 )
             ]
         )
@@ -168,9 +171,9 @@ def _axial(function: Any, degree: int) -> Harmonics:
     nodes, weights = legendre.leggauss(4 * degree + 40)
     values = weights * function(nodes)
     cosine = np.zeros((degree + 1, degree + 1))
-    for l in range(degree + 1):
-        mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[l])) / 2.0
-        cosine[l, 0] = mean * math.sqrt(2.0 * l + 1.0)
+    for n in range(degree + 1):
+        mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[n])) / 2.0
+        cosine[n, 0] = mean * math.sqrt(2.0 * n + 1.0)
     cosine[np.abs(cosine) < 1e-14] = 0.0
     return Harmonics(cosine, np.zeros_like(cosine))
 

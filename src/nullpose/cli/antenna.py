@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-import typer
+from pathlib import Path
+from typing import Annotated, Any
 
+import typer
+from typer.core import TyperGroup
+
+from nullpose.antenna.files import FORMATS
 from nullpose.cli.options import (
     AllowOutside,
     Fast,
@@ -20,7 +25,67 @@ from nullpose.cli.options import (
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
 
-antenna = typer.Typer(name="antenna", help="What the antennas change.", no_args_is_help=True)
+
+class _FileOrVerb(TyperGroup):
+    """Verbs; what is none of them is the file of the verb ``show``."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the verb and its arguments."""
+        if args and args[0] not in self.commands and not args[0].startswith("-"):
+            args = ["show", *args]
+        return super().resolve_command(ctx, args)
+
+
+antenna = typer.Typer(
+    name="antenna",
+    cls=_FileOrVerb,
+    help="Read a pattern file (nullpose antenna FILE), or see what antennas change.",
+    no_args_is_help=True,
+)
+
+
+@antenna.command()
+def show(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="File of a radiation pattern.", show_default=False)
+    ],
+    format: Annotated[  # noqa: A002
+        str | None,
+        typer.Option("--format", help=f"One of {', '.join(FORMATS)}.", show_default="the file tells it"),
+    ] = None,
+    frequency: Annotated[
+        float | None,
+        typer.Option("--frequency", metavar="HZ", help="Which of several frequencies.", show_default=False),
+    ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option(
+            "--figure", metavar="FILE", help="Draw cuts and surface (.png or .svg).", show_default=False
+        ),
+    ] = None,
+    json_output: JsonOutput = False,
+) -> None:
+    """Show what is read of a radiation pattern.
+
+    The word show may be left out: nullpose antenna FILE.
+    """
+    from nullpose.antenna.files import read_pattern
+    from nullpose.antenna.summary import summary_of
+    from nullpose.files import check_outputs
+    from nullpose.report.pattern import pattern_view
+
+    if figure is not None:
+        from nullpose.report.figures.style import prepare_figure_file
+
+        prepare_figure_file(figure)
+    check_outputs({"the pattern": file}, {"--figure": figure})
+    table = read_pattern(file, format, frequency, estimate=True)
+    if figure is not None:
+        from nullpose.report.figures.cuts import draw_pattern
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(draw_pattern(table), figure)
+    tell(summary_of(table), pattern_view, json_output, files=[figure] if figure else [])
 
 
 @antenna.command()

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.family.airspace import airspace_zones
 from nullpose.family.family import Family
 from nullpose.objectives import FloatArray
@@ -16,17 +17,24 @@ LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 
 
-def build_family(scenario: Scenario) -> Family:
+def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
     """Return the family whose smallest ratio is what the scenario asks to be maximised.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
 
     Args:
         scenario: what is stated.
+        any_antenna: whether the caller brings the gain of an antenna that is no dipole.
 
     Raises:
+        UsageError: the antenna is no dipole.
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
+    if isinstance(scenario.antenna_record, PatternAntenna) and not any_antenna:
+        raise UsageError(
+            f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
+            "there are solve, evaluate and antenna compare"
+        )
     ratios = scenario.objective_record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))

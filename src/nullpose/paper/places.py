@@ -73,7 +73,7 @@ def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     places_m, gain = scenario.jammer_positions_m, scenario.receiver.reference_gain
     received_w = received_power_w(
         position_m,
-        row.pose.antenna_axis,
+        row.pose.orientation(scenario.antenna_record),
         places_m,
         scenario.jammer_powers_w,
         gain,

@@ -79,7 +79,7 @@ class Pose:
             scenario: with its airframe.
             position_m: shape ``(3,)``, metres.
             axis: the dipole's direction, shape ``(3,)``, of any length but zero; one that is reached. Or the
-                rotation to the world from the antenna's axes, shape ``(3, 3)``: then the attitude is this one.
+                rotation to the world from the antenna's axes, shape ``(3, 3)``: then that is the attitude.
         """
         airframe = scenario.airframe
         mount_rad = 0.0 if airframe is None else airframe.mount_rad

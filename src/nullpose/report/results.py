@@ -92,7 +92,7 @@ def solution_view(solution: Result) -> View:
     """
     scenario, objective, pose = solution.scenario, solution.objective, solution.pose
     rate = objective.quantity.is_rate
-    at = (pose.position_m, pose.antenna_axis, scenario.node_positions_m)
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
     gains = antenna_gain(*at, scenario.antenna_record)
     columns = {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}
     if scenario.node_antennas is not None:
@@ -252,11 +252,12 @@ def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
     names = scenario.eavesdropper_names
     if scenario.eavesdroppers:
-        ratios = eavesdropper_snr(scenario, pose.position_m, pose.antenna_axis)
+        ratios = eavesdropper_snr(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
     else:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
         names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
-        link = (pose.position_m, pose.antenna_axis, points, powers_w, receiver.reference_gain)
+        orientation = pose.orientation(scenario.antenna_record)
+        link = (pose.position_m, orientation, points, powers_w, receiver.reference_gain)
         antennas = (scenario.antenna_record, scenario.jammer_antennas)
         ratios = received_power_w(*link, *antennas) / receiver.noise_power_w
     columns = {

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from nullpose import antenna as antennas
+from nullpose.antenna import Antenna as AnyAntenna
 from nullpose.antenna import PatternAntenna, short_dipole
 from nullpose.antenna.pattern import (
     half_wave_harmonics,
@@ -30,7 +30,7 @@ _MOST_ROWS = 65
 _Kind = Annotated[str, Choice("an antenna", _KINDS)]
 _Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
 _Row = Annotated[
-    tuple[Coefficient, ...], ListOf("a list of 2 l + 1 numbers for degree l", 1, 2 * _MOST_ROWS - 1)
+    tuple[Coefficient, ...], ListOf("a list of 2 n + 1 numbers for degree n", 1, 2 * _MOST_ROWS - 1)
 ]
 _Rows = Annotated[tuple[_Row, ...], ListOf("a list of lists, one for each degree from 0", 1, _MOST_ROWS)]
 
@@ -53,8 +53,9 @@ class Antenna(Section):
 
     kind: _Kind = Field(
         default="dipole",
-        description='Which antenna: "dipole", a short dipole; "half-wave", a thin half-wave dipole; "profile", '
-        'one that is the same all round, by its gain over the angle from its axis; "pattern", any other.',
+        description='Which antenna: "dipole", a short dipole; "half-wave", a thin half-wave dipole; '
+        '"profile", one that is the same all round, by its gain over the angle from its axis; '
+        '"pattern", any other.',
         examples=list(_KINDS),
     )
     null_depth_db: NullDepthDecibels | None = Field(
@@ -82,8 +83,8 @@ class Antenna(Section):
     )
     normalise: _Normalise = Field(
         default="none",
-        description='"none": gains are over an isotropic antenna, as in the file; "peak": the largest gain is '
-        "1, like that of the paper's dipole.",
+        description='"none": gains are over an isotropic antenna, as in the file; "peak": the largest gain '
+        "is 1, like that of the paper's dipole.",
         examples=["none", "peak"],
     )
     harmonics: _Rows | None = Field(
@@ -110,12 +111,12 @@ class Antenna(Section):
                     ("file",),
                     "only a scenario file on this machine may name another; load that file by its path",
                 )
-        for l, row in enumerate(self.harmonics or ()):
-            if len(row) != 2 * l + 1:
-                yield ("harmonics", l), f"got {len(row)} numbers, must be {2 * l + 1}: 2 l + 1 for degree l"
+        for n, row in enumerate(self.harmonics or ()):
+            if len(row) != 2 * n + 1:
+                yield ("harmonics", n), f"got {len(row)} numbers, must be {2 * n + 1}: 2 n + 1 for degree n"
 
     @cached_property
-    def record(self) -> antennas.Antenna:
+    def record(self) -> AnyAntenna:
         """What the antenna states of itself."""
         if self.kind == "dipole":
             return short_dipole(self.null_depth_db)

@@ -62,8 +62,8 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
         if point.antenna == "dipole":
             yield (
                 (*place, "antenna"),
-                f'a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that of '
-                f'antenna.kind = "{kind}" is not; write "circular" or "isotropic"',
+                f"a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
+                f'of antenna.kind = "{kind}" is not; write "circular" or "isotropic"',
             )
     airspace = scenario.airspace
     if airspace is not None:

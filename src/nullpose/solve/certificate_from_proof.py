@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.antenna import PatternAntenna
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, TOWARDS, WORLD
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
@@ -30,6 +31,11 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        raise UsageError(
+            f"certificate: a {scenario.antenna_record.label} has none: its bound is proved in floating "
+            "point; leave out --certificate and --verify"
+        )
     fields = claimed_axes(scenario, scheme, null_jammer)
     if fields is None:
         raise UsageError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -31,7 +31,7 @@ _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones,
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
 _INSIDE = 1.0 - 1e-4
-_BETTER = 1.0 + 1e-9  # a middle that is no better than this is the incumbent again
+_DOUBT = 1e-9  # relative: a middle that is no better is the incumbent again
 
 
 def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
@@ -49,7 +49,7 @@ def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
     """
     antenna = scenario.antenna_record
     assert isinstance(antenna, PatternAntenna), "the caller asks"
-    run = PatternRun(build_family(scenario), antenna, reach_of(scenario, antenna), options)
+    run = PatternRun(build_family(scenario, any_antenna=True), antenna, reach_of(scenario, antenna), options)
     return run.outcome()
 
 
@@ -81,7 +81,7 @@ class PatternRun:
         self.search = PatternSearch(family, antenna, reach, options.seed)
         self.cells = 0
         self.proved = math.inf
-        self.best = 0.0
+        self.doubt = _DOUBT
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
@@ -156,14 +156,17 @@ class PatternRun:
                 if self.cells >= self.options.node_limit:
                     return f"the node limit of {self.options.node_limit}"
                 level = self.value * (1.0 + gap)
-                for stack in pool.map(lambda one: self._work(one, level), busy):
+                for stack in pool.map(partial(self._work, level), busy):
                     self.cells += stack.done
                     if stack.better is not None:
+                        before = self.search.best
                         self.search.improve(stack.better)
+                        # what does not help, by rounding, must not be met again and again
+                        self.doubt *= 1.0 if self.search.best > before else 10.0
                 if self.options.on_progress is not None:
                     self.options.on_progress(self.proved / self.value - 1.0, self.cells)
 
-    def _work(self, stack: _Stack, level: float) -> _Stack:
+    def _work(self, level: float, stack: _Stack) -> _Stack:
         pose = np.empty(stack.cells.shape[1])
         stack.reserve()
         code, stack.top, stack.done = self.kernel.branch_pattern(
@@ -172,7 +175,7 @@ class PatternRun:
             self.antenna.arrays,
             self.reach,
             level,
-            self.value * _BETTER,
+            self.value * (1.0 + self.doubt),
             stack.cells,
             stack.top,
             _CHUNK,
@@ -199,7 +202,8 @@ class PatternRun:
             self._add_roots(low_m, lower, found)
             self._add_roots(upper, high_m, found)
             return
-        a = self.kernel.ATTITUDE
+        from nullpose.solve.kernels import attitude as a
+
         for face in range(1 if self.reach.spins else 6):
             cell = np.zeros(a.WARM + len(self.family.numerator_point))
             cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)

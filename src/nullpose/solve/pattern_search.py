@@ -48,11 +48,11 @@ class PatternSearch:
 
     def compile(self) -> None:
         """Compile what a search and a proof need."""
-        from nullpose.solve.kernels import domain, pattern_branch, pattern_search, search
+        from nullpose.solve.kernels import attitude, domain, pattern_branch, pattern_search, search
 
         self.kernels, self.domain, self.cut = pattern_search, domain, search.cut_box
         self.judged(np.ones((1, 3)), np.eye(3)[None])
-        none = np.empty((8, pattern_branch.ATTITUDE.WARM + len(self.logs)))
+        none = np.empty((8, attitude.WARM + len(self.logs)))
         pattern_branch.branch_pattern(
             self.family.arrays,
             self.family.domain,
@@ -109,7 +109,7 @@ class PatternSearch:
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             rotations = self._attitudes(drawn)
-            rotations[1::2] = self._shunning(positions_m[1::2])
+            rotations[1::2] = self._all_reached(self._shunning(positions_m[1::2]))
             rounds = 0 if light else _TRIED
             for i in self._refined(positions_m, rotations, polished, rounds):
                 self.polish(positions_m[i], rotations[i])
@@ -122,7 +122,9 @@ class PatternSearch:
         free = Rotation.random(count, random_state=self.rng).as_matrix()
         if self.reach.tilt_max_rad >= math.pi:
             return np.asarray(free)
-        tilt = self.reach.tilt_max_rad * self.rng.uniform(size=count) * self.rng.choice([0.0, 1.0], size=count)
+        tilt = (
+            self.reach.tilt_max_rad * self.rng.uniform(size=count) * self.rng.choice([0.0, 1.0], size=count)
+        )
         yaw, towards = self.rng.uniform(-math.pi, math.pi, (2, count))
         body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
         return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
@@ -139,7 +141,7 @@ class PatternSearch:
                 away_m = np.linalg.norm(positions_m[some] - self.family.points_m[0], axis=1, keepdims=True)
                 moved_m = positions_m[some] + spread * away_m * self.rng.normal(size=(len(some), 3))
                 moved_m = np.clip(moved_m, self.family.low_m, self.family.high_m)
-                turned = rotations[some] @ turns
+                turned = self._all_reached(rotations[some] @ turns)
                 found = self.judged(moved_m, turned)
                 better = found > values[some]
                 at = some[better]
@@ -151,7 +153,9 @@ class PatternSearch:
         weights = self.family.denominator_weight
         strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
         ways = self.family.points_m[strongest] - positions_m
-        spins = Rotation.from_rotvec(np.outer(self.rng.uniform(-math.pi, math.pi, len(ways)), [0.0, 0.0, 1.0]))
+        spins = Rotation.from_rotvec(
+            np.outer(self.rng.uniform(-math.pi, math.pi, len(ways)), [0.0, 0.0, 1.0])
+        )
         chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(ways))]
         return np.asarray(_frames(ways) @ spins.as_matrix() @ _frames(chosen).transpose(0, 2, 1))
 
@@ -163,7 +167,7 @@ class PatternSearch:
         """
         rotation = np.empty((3, 3))
         self.kernels.rotation_of(self.family.arrays, cell, np.empty((18, 3)), rotation)
-        rotation = self._least_tilted(rotation)
+        rotation = self._reached(rotation)
         self.take(cell[:3].copy(), rotation)
         self.polish(cell[:3], rotation)
 
@@ -172,12 +176,11 @@ class PatternSearch:
 
         Args:
             position_m: (3,).
-            rotation: (3, 3) to the world from the antenna's axes.
+            rotation: (3, 3) to the world from the antenna's axes, one that is reached.
         """
         value = float(self.judged(position_m[None], rotation[None])[0])
-        if value > self.best and self.tilt(rotation) <= self.reach.tilt_max_rad + 1e-12:
-            if self.domain.contains(self.family.domain, position_m):
-                self.best, self.pose = value, (position_m, rotation)
+        if value > self.best and self.domain.contains(self.family.domain, position_m):
+            self.best, self.pose = value, (position_m, rotation)
 
     def tilt(self, rotation: FloatArray) -> float:
         """Return how far the body is tilted, radians.
@@ -187,12 +190,24 @@ class PatternSearch:
         """
         return math.acos(max(-1.0, min(1.0, float(rotation[2] @ self.reach.up))))
 
-    def _least_tilted(self, rotation: FloatArray) -> FloatArray:
-        """Return a rotation of the same gains with the least tilt."""
-        if not self.reach.spins:
+    def _reached(self, rotation: FloatArray) -> FloatArray:
+        """Return a rotation of the same gains and the least tilt, or the nearest that is reached."""
+        if self.reach.spins and self.reach.tilt_max_rad < math.pi:
+            axes = [rotation[:, 2], -rotation[:, 2]] if self.reach.even else [rotation[:, 2]]
+            rotation = min((self._spun(axis) for axis in axes), key=self.tilt)
+        excess = self.tilt(rotation) - self.reach.tilt_max_rad
+        if excess <= 0.0:
             return rotation
-        axes = [rotation[:, 2], -rotation[:, 2]] if self.reach.even else [rotation[:, 2]]
-        return min((self._spun(axis) for axis in axes), key=self.tilt)
+        up = rotation @ self.reach.up
+        level = math.hypot(up[0], up[1])
+        about = np.array([up[1], -up[0], 0.0]) / level if level > 0.0 else np.array([1.0, 0.0, 0.0])
+        return np.asarray(Rotation.from_rotvec(excess * about).as_matrix() @ rotation)
+
+    def _all_reached(self, rotations: FloatArray) -> FloatArray:
+        """Return :meth:`_reached` of many rotations, where that is not all of them."""
+        if self.reach.tilt_max_rad >= math.pi:
+            return rotations
+        return np.array([self._reached(rotation) for rotation in rotations])
 
     def _spun(self, axis: FloatArray) -> FloatArray:
         """Return the rotation of least tilt that has the antenna's axis there."""
@@ -215,12 +230,12 @@ class PatternSearch:
 
         def pose(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             where = np.clip(position_m + scale * x[:3], low_m, high_m)
-            return where, rotation @ Rotation.from_rotvec(x[3:6]).as_matrix()
+            return where, self._reached(rotation @ Rotation.from_rotvec(x[3:6]).as_matrix())
 
         def ratios(x: FloatArray) -> FloatArray:
             self.kernels.fill_log_ratios(self.family.arrays, self.arrays, *pose(x), self.links, logs[0])
             self.evaluations += 1
-            return np.maximum(logs[0], _NOT_HEARD)
+            return np.asarray(np.maximum(logs[0], _NOT_HEARD))
 
         def slopes(x: FloatArray) -> FloatArray:
             found = np.empty((len(self.logs), 7))
@@ -237,11 +252,6 @@ class PatternSearch:
         constraints: list[Any] = [
             {"type": "ineq", "fun": lambda x: ratios(x).copy() - x[6] - level, "jac": slopes}
         ]
-        if self.reach.tilt_max_rad < math.pi and not self.reach.spins:
-            most = math.cos(self.reach.tilt_max_rad)
-            constraints.append(
-                {"type": "ineq", "fun": lambda x: pose(x)[1][2] @ self.reach.up - most}
-            )
         ends = [((a - p) / scale, (b - p) / scale) for a, b, p in zip(low_m, high_m, position_m, strict=True)]
         found = minimize(
             lambda x: -x[6],
@@ -254,11 +264,11 @@ class PatternSearch:
         )
         self.starts += 1
         where, turned = pose(found.x)
-        self.take(where, self._least_tilted(turned))
+        self.take(where, turned)
 
     @property
     def anchor(self) -> int:
-        """Index of the point whose direction the cells are aligned with: the one that sways the value most."""
+        """Index of the point that the cells are aligned with: the one that sways the value most."""
         weight = np.zeros(len(self.family.points_m))
         np.add.at(weight, self.family.numerator_point, self.family.numerator_weight)
         weight /= len(self.family.numerator_point) * math.exp(self.best)

@@ -32,6 +32,21 @@ def add_mesh(scene: SceneApi, name: str, mesh: Mesh, colour: ArrayLike, **style:
     )
 
 
+def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike) -> Any:
+    """Return the handle of a mesh added to a scene, with a colour of its own at each vertex.
+
+    Args:
+        scene: the page's scene.
+        name: its place in the scene's tree.
+        mesh: vertices and triangles.
+        colours: (n, 3) red, green, blue.
+    """
+    import trimesh
+
+    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, vertex_colors=np.asarray(colours))
+    return scene.add_mesh_trimesh(name, solid, **FLAT)
+
+
 def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLike, thickness: float) -> Any:
     """Return the handle of lines added to a scene.
 

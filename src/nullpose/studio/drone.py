@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import QuadraticAntenna
+from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colours
-from nullpose.studio.drawing import add_label, add_lines, add_mesh
+from nullpose.studio.drawing import add_coloured_mesh, add_label, add_lines, add_mesh
 from nullpose.studio.meshes import (
     body_mesh,
     doughnut_bands,
     doughnut_mesh,
     null_line_m,
+    pattern_mesh,
     rod_mesh,
     rotor_mesh,
 )
@@ -50,7 +51,7 @@ class Drone:
     def __init__(self, scene: SceneApi, slot: int) -> None:
         self._scene, self._slot, self._name = scene, slot, f"/drone-{'ab'[slot]}"
         self._parts: dict[str, Any] = {}
-        self._built: tuple[QuadraticAntenna, float] | None = None
+        self._built: tuple[Antenna, float] | None = None
 
     def show(
         self, answer: Answer, text: str, size_m: float, link_range_db: tuple[float, float], *, pattern: bool
@@ -99,7 +100,7 @@ class Drone:
         self._scene.remove_by_name(self._name)
         self._built = None
 
-    def _build(self, antenna: QuadraticAntenna, size_m: float) -> None:
+    def _build(self, antenna: Antenna, size_m: float) -> None:
         scene, slot, name = self._scene, self._slot, self._name
         frames = {
             "body": f"{name}/body",
@@ -117,8 +118,16 @@ class Drone:
         for line, (colour, thickness) in _LINES.items():
             self._parts[line] = add_lines(scene, f"{name}/{line}", np.zeros((1, 2, 3)), colour, thickness)
 
-    def _add_pattern(self, name: str, antenna: QuadraticAntenna, radius_m: float) -> None:
+    def _add_pattern(self, name: str, antenna: Antenna, radius_m: float) -> None:
         """Draw the pattern: see-through bands of one gain each, or wires for the second."""
+        if isinstance(antenna, PatternAntenna):
+            surface = pattern_mesh(antenna, radius_m)
+            gains = np.linalg.norm(surface.vertices, axis=1) / radius_m
+            if self._slot == 1:
+                add_mesh(self._scene, f"{name}/wires", surface, SLOTS[1], wireframe=True)
+            else:
+                add_coloured_mesh(self._scene, f"{name}/surface", surface, scale_colours(gains, 0.0, 1.0))
+            return
         if self._slot == 1:
             wires = doughnut_mesh(antenna, radius_m, np.linspace(0.0, np.pi, 19), 24)
             add_mesh(self._scene, f"{name}/wires", wires, SLOTS[1], wireframe=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.antenna import PatternAntenna
 from nullpose.family import build_family
 from nullpose.physics import antenna_gain, link_gain, objective_value, to_db
 from nullpose.scenario import Scenario
@@ -92,7 +93,8 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     """Return the two maps of an answer.
 
     The map of the best axes is exact, by enumeration, where every axis is allowed and a SINR or margin is
-    asked for; the axis of a case that fixes it is its formula; otherwise the best of 400 axes spread evenly
+    asked for; the axis of a case that fixes it is its formula; an antenna with a pattern keeps its attitude;
+    otherwise the best of 400 axes spread evenly
     over those that the vehicle reaches is taken, slightly below the true best.
 
     Args:
@@ -112,15 +114,17 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(answer, grid[usable], go_on)
     loss = np.sum((ground - pose.position_m) ** 2, axis=-1) / max(1.0, altitude_m**2)
-    at = (pose.position_m, pose.antenna_axis, ground.reshape(-1, 3))
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), ground.reshape(-1, 3))
     gain = antenna_gain(*at, scenario.antenna_record).reshape(loss.shape)
+    is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
+    what = "value in this attitude" if is_pattern else "best value"
     best = Field(
         east_m=east,
         north_m=north,
         altitude_m=altitude_m,
         values=values if quantity.is_rate else _db(values),
         unit=quantity.unit,
-        title=f"best value at each place, {altitude_m:.1f} m up; lines to nodes",
+        title=f"{what} at each place, {altitude_m:.1f} m up; lines to nodes",
     )
     footprint = Field(
         east_m=east,
@@ -146,6 +150,9 @@ def _db(values: FloatArray) -> FloatArray:
 def _best_values(answer: Answer, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     """Return the objective at each position with the axis of the answer's case, shape (n,)."""
     scenario = answer.result.scenario
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        held = answer.result.pose.orientation(scenario.antenna_record)
+        return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     fields = answer.case.scheme.record.fields(scenario, None)
     given = [field for field in (fields or {}).values() if not field.is_free]
     if given:

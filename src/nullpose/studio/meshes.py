@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import QuadraticAntenna
+from nullpose.antenna import PatternAntenna, QuadraticAntenna
 from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
 from nullpose.report.geometry import outline_m
@@ -85,6 +85,21 @@ def doughnut_mesh(antenna: QuadraticAntenna, radius_m: float, gamma_rad: ArrayLi
     gamma = np.asarray(gamma_rad, dtype=float)
     distance = radius_m * antenna.gain(np.sin(gamma) ** 2)
     return revolved_mesh(distance * np.sin(gamma), -distance * np.cos(gamma), around)
+
+
+def pattern_mesh(antenna: PatternAntenna, radius_m: float, rings: int = 60, around: int = 96) -> Mesh:
+    """Return the surface of any pattern in the antenna's axes: the distance is the gain over its largest.
+
+    Args:
+        antenna: whose pattern it is.
+        radius_m: where the gain is largest, metres.
+        rings: steps from pole to pole.
+        around: steps about the z axis.
+    """
+    gamma = np.linspace(0.0, math.pi, rings + 1)
+    sphere = revolved_mesh(np.sin(gamma), -np.cos(gamma), around)
+    gain = np.maximum(0.0, antenna.gain(sphere.vertices)) / antenna.peak
+    return Mesh(radius_m * gain[:, None] * sphere.vertices, sphere.faces)
 
 
 def doughnut_bands(

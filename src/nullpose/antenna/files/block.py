@@ -14,7 +14,9 @@ from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
 
 _SAME_DEG = 1e-6
-_SAME_DB = 0.05  # two rows of one direction may differ by so much, or by so much of the peak where both are weak
+_SAME_DB = (
+    0.05  # two rows of one direction may differ by so much, or by so much of the peak where both are weak
+)
 _WEAK = 1e-3
 
 Lines = list[tuple[int, str]]
@@ -136,8 +138,9 @@ def gridded(block: Block, source: str) -> PatternTable:
         )
     back = theta < 0.0  # the same direction the other way round: both unit vectors turn over
     theta[back], phi[back], sign[back] = -theta[back], phi[back] + 180.0, -1.0
-    phi = np.round(np.mod(phi, 360.0), 6)
-    theta, phi = np.round(theta, 6), np.where(phi >= 360.0, 0.0, phi)
+    phi = np.asarray(np.round(np.mod(phi, 360.0), 6), dtype=float)
+    phi[phi >= 360.0] = 0.0
+    theta = np.asarray(np.round(theta, 6), dtype=float)
     thetas, rows = np.unique(theta, return_inverse=True)
     phis, columns = np.unique(phi, return_inverse=True)
     if len(thetas) < 2 or thetas[0] != 0.0 or thetas[-1] != 180.0:
@@ -152,11 +155,13 @@ def gridded(block: Block, source: str) -> PatternTable:
             f"{len(hole) - 1} more directions of the grid; the file is cut short or has holes"
         )
     values = block.field * sign[:, None] if block.field is not None else None
-    gain = block.gain if block.gain is not None else np.sum(np.abs(values) ** 2, axis=1)
+    gain = np.sum(np.abs(values) ** 2, axis=1) if block.gain is None and values is not None else block.gain
+    assert gain is not None, "a block has gains or fields"
     _agreeing(block, gain, index[rows, columns])
     if len(phis) > 1 and np.max(np.diff(phis, append=phis[0] + 360.0)) > 1.5 * np.min(np.diff(phis)):
         refuse(
-            f"azimuths go from {phis[0]:g} to {phis[-1]:g} degrees with gaps, must go once round in equal steps"
+            f"azimuths go from {phis[0]:g} to {phis[-1]:g} degrees with gaps, must go once round "
+            "in equal steps"
         )
     return PatternTable(
         theta_deg=thetas,

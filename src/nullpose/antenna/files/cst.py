@@ -29,7 +29,9 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
         label = text.lower()
         if "power" in label and "frequency" in label and text.lstrip().startswith("//"):
             while at < len(lines) and not lines[at][1].lstrip().startswith("//"):
-                powers += numbers(lines[at][1], lines[at][0], len(lines[at][1].split()), "powers and frequency")
+                powers += numbers(
+                    lines[at][1], lines[at][0], len(lines[at][1].split()), "powers and frequency"
+                )
                 at += 1
         elif "#phi" in label and text.lstrip().startswith("//"):
             if at >= len(lines):
@@ -45,8 +47,13 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
     for k, (start, count) in enumerate(blocks):
         rows = lines[start : start + count]
         if len(rows) < count:
-            refuse(f"there are {len(rows)} rows of fields, must be {count}: the file is cut short", rows[-1][0] if rows else 0)
-        values = np.array([numbers(text, line, 6, "phi, theta and both complex fields") for line, text in rows])
+            refuse(
+                f"there are {len(rows)} rows of fields, must be {count}: the file is cut short",
+                rows[-1][0] if rows else 0,
+            )
+        values = np.array(
+            [numbers(text, line, 6, "phi, theta and both complex fields") for line, text in rows]
+        )
         accepted, frequency = powers[4 * k + 1], powers[4 * k + 3]
         if not accepted > 0.0:
             refuse(f"got an accepted power of {accepted:g} W, must be more than 0")
@@ -68,7 +75,9 @@ def read_cst(lines: Lines) -> Iterator[Block]:
     """Yield the one pattern of a table in text, whose header names its columns and units."""
     if not is_cst(lines):
         refuse("it does not begin as a CST table does, with 'Theta [deg.]  Phi [deg.]  Abs(...)[...]'", 1)
-    columns = [(name.strip(), what.strip(), unit.strip()) for name, what, unit in _COLUMN.findall(lines[0][1])]
+    columns = [
+        (name.strip(), what.strip(), unit.strip()) for name, what, unit in _COLUMN.findall(lines[0][1])
+    ]
     rows = [(line, text) for line, text in lines[1:] if not set(text.strip()) <= {"-"}]
     if not rows:
         refuse("there are no rows below the header; the file is cut short")
@@ -83,7 +92,11 @@ def read_cst(lines: Lines) -> Iterator[Block]:
         theta_deg=values[:, 0],
         phi_deg=values[:, 1],
         lines=[line for line, _ in rows],
-        quantity="directivity" if what.startswith(("dir", "e")) else "realised gain" if "real" in what else "gain",
+        quantity="directivity"
+        if what.startswith(("dir", "e"))
+        else "realised gain"
+        if "real" in what
+        else "gain",
     )
     if {"Theta", "Phi"} <= parts.keys() & phases.keys():
         sides = ("Theta", "Phi")

@@ -27,7 +27,9 @@ def read_csv(lines: Lines) -> Iterator[Block]:
     header = _header(lines)
     wanted = next((names for names in (_FIELD, _GAIN) if set(names) <= set(header)), None)
     if wanted is None:
-        refuse(f"got the header {','.join(header)[:80]!r}, must hold {','.join(_GAIN)} or {','.join(_FIELD)}", 1)
+        refuse(
+            f"got the header {','.join(header)[:80]!r}, must hold {','.join(_GAIN)} or {','.join(_FIELD)}", 1
+        )
     values = _columns(lines, header, wanted)
     block = Block(theta_deg=values[:, 0], phi_deg=values[:, 1], lines=[line for line, _ in lines[1:]])
     if wanted == _FIELD:

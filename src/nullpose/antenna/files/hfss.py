@@ -25,7 +25,9 @@ def is_ffd(lines: Lines) -> bool:
 def read_ffd(lines: Lines) -> Iterator[Block]:
     """Yield the patterns of a file, polar angles in the outer loop."""
     if len(lines) < 4 or not is_ffd(lines):
-        refuse("it does not begin as a .ffd file does: two ranges 'start stop count', then 'Frequencies n'", 1)
+        refuse(
+            "it does not begin as a .ffd file does: two ranges 'start stop count', then 'Frequencies n'", 1
+        )
     ranges = [numbers(text, line, 3, "an angle's start, stop and count") for line, text in lines[:2]]
     theta, phi = (np.linspace(low, high, max(1, int(count))) for low, high, count in ranges)
     grid = [axis.ravel() for axis in np.meshgrid(theta, phi, indexing="ij")]
@@ -38,7 +40,9 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
             continue
         rows = lines[at : at + len(grid[0])]
         if len(rows) < len(grid[0]):
-            refuse(f"there are {len(rows)} rows of fields, must be {len(grid[0])}: the file is cut short", line)
+            refuse(
+                f"there are {len(rows)} rows of fields, must be {len(grid[0])}: the file is cut short", line
+            )
         values = np.array(
             [numbers(text, line, 4, "real and imaginary part of both fields") for line, text in rows]
         )

@@ -43,7 +43,9 @@ def read_msi(lines: Lines, estimate: bool = False) -> Iterator[Block]:
             rows = lines[at : at + count]
             if len(rows) < count:
                 refuse(f"the cut has {len(rows)} rows, must be {count}: the file is cut short", line)
-            cuts[word.upper()] = np.array([numbers(row, n, 2, "an angle and a loss in dB") for n, row in rows])
+            cuts[word.upper()] = np.array(
+                [numbers(row, n, 2, "an angle and a loss in dB") for n, row in rows]
+            )
             at += count
         else:
             keys[word.upper()] = rest.strip()
@@ -65,14 +67,16 @@ def read_msi(lines: Lines, estimate: bool = False) -> Iterator[Block]:
         loss = loss + (side - ahead * across[0] - (1.0 - ahead) * across[180]) * np.sin(np.radians(theta))
     block = Block(theta_deg=theta.ravel(), phi_deg=phi.ravel(), gain=from_db(_gain_dbi(keys) - loss).ravel())
     block.frequency_hz = _frequency(keys)
-    block.notes = [_ESTIMATE] if ripple > _FLAT_DB else ["Read as the same all round: its horizontal cut is flat."]
+    block.notes = (
+        [_ESTIMATE] if ripple > _FLAT_DB else ["Read as the same all round: its horizontal cut is flat."]
+    )
     yield block
 
 
 def _loss(rows: np.ndarray) -> np.ndarray:
     """Return the loss at each whole degree."""
     angle, order = np.unique(np.mod(rows[:, 0], 360.0), return_index=True)
-    return np.interp(np.arange(360.0), angle, rows[order, 1], period=360.0)
+    return np.asarray(np.interp(np.arange(360.0), angle, rows[order, 1], period=360.0))
 
 
 def _gain_dbi(keys: dict[str, str]) -> float:

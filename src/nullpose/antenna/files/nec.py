@@ -32,7 +32,9 @@ def read_nec(lines: Lines) -> Iterator[Block]:
         if found:
             frequency = float(found[1]) * 1e6
         if "RADIATION PATTERNS" in line:
-            start = next((i for i in range(at, min(at + _HEADER_LINES, len(lines))) if _begins(lines[i][1])), None)
+            start = next(
+                (i for i in range(at, min(at + _HEADER_LINES, len(lines))) if _begins(lines[i][1])), None
+            )
             if start is None:
                 refuse("the table of radiation patterns has no rows; the file is cut short", lines[at - 1][0])
             end = start

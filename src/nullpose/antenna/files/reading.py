@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.antenna.files.block import Block, Lines, gridded, picked, refuse
-from nullpose.antenna.files.csv_table import is_csv, profile_of, read_csv
 from nullpose.antenna.files.cst import is_cst, is_ffs, read_cst, read_ffs
+from nullpose.antenna.files.csv_table import is_csv, profile_of, read_csv
 from nullpose.antenna.files.emane import is_emane, read_emane
 from nullpose.antenna.files.hfss import is_ffd, read_ffd
 from nullpose.antenna.files.msi import is_msi, read_msi
@@ -40,7 +40,7 @@ FORMATS: dict[str, tuple[Callable[[Lines], bool], Callable[[Lines], Iterator[Blo
 
 def read_pattern(
     path: str | os.PathLike[str],
-    format: str | None = None,
+    format: str | None = None,  # noqa: A002
     frequency_hz: float | None = None,
     *,
     estimate: bool = False,
@@ -135,8 +135,8 @@ def _honest(table: PatternTable) -> PatternTable:
     floor = float(np.sum(weight[table.gain <= 0.0]))
     if floor > _MOST_FLOOR:
         refuse(
-            f"{100.0 * floor:.0f} % of all directions have no gain at all (a floor, such as -999.99 dB), which "
-            "would be taken for nulls; fill in what the antenna does there"
+            f"{100.0 * floor:.0f} % of all directions have no gain at all (a floor, such as -999.99 dB), "
+            "which would be taken for nulls; fill in what the antenna does there"
         )
     mean = mean_gain(table)
     if not mean > 0.0:
@@ -147,7 +147,7 @@ def _honest(table: PatternTable) -> PatternTable:
     over_db = 10.0 * np.log10(mean)
     if over_db > _MOST_OVER_FED_DB:
         refuse(
-            f"the mean gain over the sphere is {over_db:.1f} dB: the antenna would radiate more than it is fed; "
-            "must be 0 dB at most. Is the unit right, dBd, dBi or linear?"
+            f"the mean gain over the sphere is {over_db:.1f} dB: the antenna would radiate more than it is "
+            "fed; must be 0 dB at most. Is the unit right, dBd, dBi or linear?"
         )
     return table

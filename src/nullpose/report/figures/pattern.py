@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import QuadraticAntenna
+from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
@@ -25,7 +25,7 @@ def _directions(down: int, around_rad: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def pattern_surface_m(
-    antenna: QuadraticAntenna,
+    antenna: Antenna,
     pose: Pose,
     radius_m: float,
     around_rad: FloatArray,
@@ -33,18 +33,24 @@ def pattern_surface_m(
 ) -> FloatArray:
     """Return points on the antenna's radiation pattern drawn around a pose: of a dipole, a doughnut.
 
-    In each direction the distance from the drone is ``radius_m`` times the gain (paper eq. 1.2).
+    In each direction the distance from the drone is ``radius_m`` times the gain (paper eq. 1.2), of a pattern
+    over its largest.
 
     Args:
         antenna: whose pattern it is.
         pose: where the drone is and its attitude.
         radius_m: distance drawn where the gain is 1, metres.
-        around_rad: the angles about the axis to draw, shape ``(m,)``, radians; 0 faces the camera.
+        around_rad: the angles about a dipole's axis to draw, shape ``(m,)``, radians; 0 faces the camera.
         camera: direction towards it, shape ``(3,)``.
 
     Returns:
         Array of shape ``(3, n, m)``, world frame, metres.
     """
+    if isinstance(antenna, PatternAntenna):
+        local, _ = _directions(_RINGS, np.linspace(0.0, math.tau, _AROUND))
+        gain = antenna.gain(np.moveaxis(local, 0, -1)) / antenna.peak
+        turned: FloatArray = np.einsum("ck,kij->cij", pose.orientation(antenna), radius_m * gain * local)
+        return turned + pose.position_m[:, None, None]
     axis = pose.antenna_axis
     towards = np.asarray(camera)
     facing = towards - axis * (towards @ axis)

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from nullpose.antenna import PatternAntenna
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import element_positions
@@ -120,10 +121,12 @@ def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen."""
     radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
     reach = AXIS * radius_m * pose.antenna_axis
-    look = {"linewidth": 1.8, "zorder": 6.5, "label": "antenna axis (null)"}
+    antenna = stage.scenario.antenna_record
+    named = "antenna's z axis" if isinstance(antenna, PatternAntenna) else "antenna axis (null)"
+    look = {"linewidth": 1.8, "zorder": 6.5, "label": named}
     draw_line(axes, position - reach, position + reach, color=DRONE, **look)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)
-    surface = pattern_surface_m(stage.scenario.antenna_record, pose, radius_m, around, stage.view.camera)
+    surface = pattern_surface_m(antenna, pose, radius_m, around, stage.view.camera)
     draw_surface(axes, surface, SURFACE, (surface[:, :, 0], surface[:, :, -1]), DRONE)
     axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")
 

@@ -12,7 +12,18 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel
-from nullpose.solve.kernels.vectors import along, combination, cross, dot, minus, norm, over, row, scaled, store
+from nullpose.solve.kernels.vectors import (
+    along,
+    combination,
+    cross,
+    dot,
+    minus,
+    norm,
+    over,
+    row,
+    scaled,
+    store,
+)
 
 CENTRE, HALF, FACE, CHART, ANCHOR, WARM = 0, 6, 12, 13, 14, 15
 """A cell's row: middle and half-widths of position, u, v and spin; its face, its chart, the index of its
@@ -42,10 +53,10 @@ def into_body(face, a):
 def fill_frame(cell, way, frame):
     """Fill how a cell's middle is turned and how that changes with its coordinates, in body axes.
 
-    ``frame[0:3]`` are the images of the chart's axes: the columns of the rotation to the body. ``frame[3 + i]``
-    is what the body turns about, and how fast, as coordinate i grows: ``Q_i = w_i x Q``, positions in the
-    chart's order, then u, v and spin. ``frame[9 + 3 i + j]`` is the derivative of w_i for position i along
-    position j, as the anchor's frame sees it.
+    ``frame[0:3]`` are the images of the chart's axes: the columns of the rotation to the body.
+    ``frame[3 + i]`` is what the body turns about, and how fast, as coordinate i grows: ``Q_i = w_i x Q``,
+    positions in the chart's order, then u, v and spin. ``frame[9 + 3 i + j]`` is the derivative of w_i for
+    position i along position j, as the anchor's frame sees it.
 
     Args:
         cell: the cell.
@@ -210,12 +221,15 @@ def third(turning, v, e, away, g0, g1, g2, g3):
         v: how far b moves.
         e: way over least distance.
         away: the same for the direction's part of it: 0 for the anchor, which the frame follows.
-        g0: largest gain over the directions met; g1 to g3: its largest derivatives of that order.
+        g0: largest gain over the directions met.
+        g1: its largest derivative.
+        g2: its largest second derivative.
+        g3: its largest third derivative.
     """
     w1, w2, w3 = turning
     bent = w2 + 0.5 * w1 * w1 + 2.0 * w1 * away + away * away
-    jerk = w3 + 3.0 * w2 * w1 + w1**3 + 3.0 * (w2 + w1 * w1) * away + 3.0 * w1 * _BENT * away**2 + 3.0 * away**3
+    jerk = (
+        w3 + 3.0 * w2 * w1 + w1**3 + 3.0 * (w2 + w1 * w1) * away + 3.0 * w1 * _BENT * away**2 + 3.0 * away**3
+    )
     curve = g3 * v**3 + 3.0 * g2 * v * bent + g1 * (jerk + v**3)
-    return (
-        24.0 * e**3 * g0 + 18.0 * e * e * g1 * v + 6.0 * e * (g2 * v * v + g1 * bent) + curve
-    ) / 6.0
+    return (24.0 * e**3 * g0 + 18.0 * e * e * g1 * v + 6.0 * e * (g2 * v * v + g1 * bent) + curve) / 6.0

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solve.kernels.jit import inner_kernel, kernel
 
 _HAIR = 1e-9  # radians by which a cap is wider than asked for
@@ -19,10 +17,10 @@ def gain_at(pattern, x, y, z):
     for m in range(pattern.orders):
         here, before = pattern.start[m], 0.0
         u, w = pattern.cosine[m, m] * here, pattern.sine[m, m] * here
-        for l in range(m + 1, top):
-            here, before = pattern.a[l, m] * z * here - pattern.b[l, m] * before, here
-            u += pattern.cosine[l, m] * here
-            w += pattern.sine[l, m] * here
+        for n in range(m + 1, top):
+            here, before = pattern.a[n, m] * z * here - pattern.b[n, m] * before, here
+            u += pattern.cosine[n, m] * here
+            w += pattern.sine[n, m] * here
         total += u * real + w * imaginary
         real, imaginary = real * x - imaginary * y, real * y + imaginary * x
     return total
@@ -50,8 +48,8 @@ def gain_jet(pattern, d, slope, bend):
         p, q, p1, q1, p2, q2 = pattern.start[m], 0.0, 0.0, 0.0, 0.0, 0.0
         u, w = pattern.cosine[m, m] * p, pattern.sine[m, m] * p
         u1 = w1 = u2 = w2 = 0.0
-        for l in range(m + 1, top):
-            a, b = pattern.a[l, m], pattern.b[l, m]
+        for n in range(m + 1, top):
+            a, b = pattern.a[n, m], pattern.b[n, m]
             p, q, p1, q1, p2, q2 = (
                 a * z * p - b * q,
                 p,
@@ -60,7 +58,7 @@ def gain_jet(pattern, d, slope, bend):
                 a * (2.0 * p1 + z * p2) - b * q2,
                 p2,
             )
-            c, s = pattern.cosine[l, m], pattern.sine[l, m]
+            c, s = pattern.cosine[n, m], pattern.sine[n, m]
             u += c * p
             w += s * p
             u1 += c * p1
@@ -120,8 +118,8 @@ def cap_bounds(pattern, d, radius, out):
         phi, turn = math.atan2(d[1], d[0]), math.asin(math.sin(wide) / sideways) + _HAIR
         if phi < 0.0:
             phi += 2.0 * math.pi
-        left = int(math.floor((phi - turn) / step)) + 2 * rows
-        right = int(math.floor((phi + turn) / step)) + 2 * rows
+        left = math.floor((phi - turn) / step) + 2 * rows
+        right = math.floor((phi + turn) / step) + 2 * rows
         whole = right - left >= 2 * rows - 1
     if whole:
         left, right = 0, 2 * rows - 1

@@ -1,8 +1,9 @@
 """Whether no pose of a cell reaches a level, for an antenna with any pattern.
 
-The ratios ``N_k / D_k`` are all below t wherever ``F = sum_k l_k (N_k - t D_k)`` is negative for multipliers l
-of sum one. F is a weighted sum of ``g(b_j) / |r_j|^2`` over the ground points: expanded to second order about
-the cell's middle with a bound on the third, and maximised over the cell coordinate by coordinate.
+The ratios ``N_k / D_k`` are all below t wherever ``F = sum_k l_k (N_k - t D_k)`` is negative for
+multipliers l of sum one. F is a weighted sum of ``g(b_j) / |r_j|^2`` over the ground points: expanded
+to second order about the cell's middle with a bound on the third, and maximised over the cell coordinate
+by coordinate.
 """
 
 from __future__ import annotations
@@ -132,7 +133,7 @@ def middle(family, pattern, level, row, room):
 
 @inner_kernel
 def expand(family, pattern, row, room):
-    """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle, by its coordinates."""
+    """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
     points, first = family.points_m, int(row[CHART])
     for j in range(points.shape[0]):
         a = in_body(room.frame, way_to(points, j, row))
@@ -146,7 +147,9 @@ def expand(family, pattern, row, room):
             i, f = (first + m) % 3 if m < 3 else m, row_of(room.firsts, m)
             room.slope[j, i] = dot(pull, f)
             stiff = room.stiff
-            pushed = scaled(p2, (dot(row_of(stiff, 0), f), dot(row_of(stiff, 1), f), dot(row_of(stiff, 2), f)))
+            pushed = scaled(
+                p2, (dot(row_of(stiff, 0), f), dot(row_of(stiff, 1), f), dot(row_of(stiff, 2), f))
+            )
             for n in range(m, 6):
                 k = (first + n) % 3 if n < 3 else n
                 bend = dot(pushed, row_of(room.firsts, n)) + dot(pull, row_of(room.seconds[m], n))
@@ -201,8 +204,9 @@ def weigh(family, level, multipliers, room):
 def upper(family, level, half, multipliers, room):
     """Return an upper bound of ``sum_k l_k (N_k - t D_k)`` over the cell, convex in l; fill its slopes by l.
 
-    With ``|x_i| <= h_i`` the Hessian's mixed terms are ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``:
-    what is left is one parabola for each coordinate.
+    With ``|x_i| <= h_i`` the Hessian's mixed terms are
+    ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``: what is left is one parabola for each
+    coordinate.
     """
     total = weigh(family, level, multipliers, room)
     slope, bend, parts = room.sum_slope, room.sum_bend, room.parts
@@ -266,7 +270,7 @@ def excluded_by_sum(family, level, row, multipliers, room):
 
 @inner_kernel
 def two_multipliers(family, level, half, multipliers, room):
-    """Return whether two multipliers keep the sum negative: where the tangents of both sides meet, and again."""
+    """Return whether two multipliers keep the sum negative: tried where both sides' tangents meet."""
     left, left_value, left_slope, right, right_value, right_slope = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0
     for _ in range(_HALVINGS):
         x = multipliers[0]
@@ -284,7 +288,9 @@ def two_multipliers(family, level, half, multipliers, room):
             return False
         x = 0.5 * (left + right)
         if left_slope < 0.0 and right_slope > 0.0:
-            step = (right_value - left_value + left_slope * left - right_slope * right) / (left_slope - right_slope)
+            step = (right_value - left_value + left_slope * left - right_slope * right) / (
+                left_slope - right_slope
+            )
             if left_value + left_slope * (step - left) > 0.0:
                 return False  # convex: no less than where the tangents meet
             x = min(max(step, left + 0.1 * (right - left)), right - 0.1 * (right - left))

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.objectives import FloatArray
-from nullpose.solve.kernels import attitude as ATTITUDE
 from nullpose.solve.kernels.array_branch import is_forbidden
 from nullpose.solve.kernels.attitude import ANCHOR, CHART, HALF, WARM
 from nullpose.solve.kernels.domain import contains

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.attitude import CHART, fill_frame
+from nullpose.solve.kernels.attitude import ANCHOR, CHART, fill_frame
 from nullpose.solve.kernels.harmonics import gain_at
 from nullpose.solve.kernels.jit import kernel
 from nullpose.solve.kernels.pattern_bound import way_to
-from nullpose.solve.kernels.attitude import ANCHOR
 
 
 @kernel
