@@ -18,7 +18,7 @@ from nullpose.errors import Fault, ScenarioError
 
 _HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
-_MISSED = 0.01  # root mean square, of the largest gain, that a grid's highest degree may miss
+_MISSED = 0.02  # root mean square, of the largest gain, that a grid may miss or hold in its highest degrees
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = (
     np.radians(np.arange(181.0)),
@@ -28,7 +28,7 @@ _GRID = (
 
 @dataclass(frozen=True, eq=False)
 class PatternAntenna:
-    """An antenna whose gain over the sphere is a sum of spherical harmonics: that sum is the antenna.
+    """An antenna whose gain over the sphere is a sum of spherical harmonics, and 0 where that is negative.
 
     Args:
         name: as in a scenario file.
@@ -48,7 +48,7 @@ class PatternAntenna:
         Args:
             directions: (..., 3) unit vectors in the antenna's axes.
         """
-        return self.harmonics.gain(directions)
+        return np.asarray(np.maximum(0.0, self.harmonics.gain(directions)))
 
     @cached_property
     def peak(self) -> float:
@@ -141,19 +141,15 @@ def table_harmonics(table: PatternTable) -> Harmonics:
     peak = float(np.max(table.gain))
     whole = fit(table, min(_HIGHEST, highest_degree(table)))
     missed = whole.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg)) - table.gain
-    rms = float(np.sqrt(np.mean(missed**2)))
+    highest = float(np.sum(whole.spectrum[-(-3 * len(whole.spectrum) // 4) :]))
+    rms = math.sqrt(float(np.mean(missed**2)) + highest)
     if rms > _MISSED * peak:
-        step = 180.0 / max(1, highest_degree(table))
-        raise ScenarioError(
-            [
-                Fault(
-                    "",
-                    f"the grid is too coarse: steps of {step:.3g} degrees allow a degree of {whole.degree}, "
-                    f"which misses the gains by {100.0 * rms / peak:.1f} % of the peak; must be "
-                    f"{100.0 * _MISSED:g} % at most: export finer steps, or fields with phases",
-                )
-            ]
+        message = (
+            f"the grid is too coarse: steps of {180.0 / max(1, highest_degree(table)):.3g} degrees tell a degree "
+            f"of {whole.degree}, of which {100.0 * rms / peak:.0f} % of the peak would be missed or guessed; "
+            f"must be {100.0 * _MISSED:g} % at most: export finer steps, or fields with phases"
         )
+        raise ScenarioError([Fault("", message)])
     return _shortened(whole, peak)
 
 

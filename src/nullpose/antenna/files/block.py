@@ -147,7 +147,7 @@ def gridded(block: Block, source: str) -> PatternTable:
         refuse(f"polar angles go from {thetas[0]:g} to {thetas[-1]:g} degrees, must go from 0 to 180")
     index = np.full((len(thetas), len(phis)), -1)
     index[rows, columns] = np.arange(len(theta))
-    _fill_poles(index, thetas)
+    _fill_poles(index)
     hole = np.argwhere(index < 0)
     if len(hole):
         refuse(
@@ -163,11 +163,15 @@ def gridded(block: Block, source: str) -> PatternTable:
             f"azimuths go from {phis[0]:g} to {phis[-1]:g} degrees with gaps, must go once round "
             "in equal steps"
         )
+    fields = None
+    if values is not None:
+        fields = values[index]
+        _turn_at_poles(fields, phis, phi[index])
     return PatternTable(
         theta_deg=thetas,
         phi_deg=phis,
         gain=gain[index],
-        field=None if values is None else values[index],
+        field=fields,
         frequency_hz=block.frequency_hz,
         quantity=block.quantity,
         source=source,
@@ -175,12 +179,29 @@ def gridded(block: Block, source: str) -> PatternTable:
     )
 
 
-def _fill_poles(index: NDArray[np.intp], thetas: NDArray[np.float64]) -> None:
-    """Let a pole that is told once stand for every azimuth."""
-    for end in (0, len(thetas) - 1):
-        told = index[end][index[end] >= 0]
-        if len(told) == 1:
-            index[end] = told[0]
+def _fill_poles(index: NDArray[np.intp]) -> None:
+    """Let a pole that is told at some azimuths stand for every azimuth."""
+    for row in (index[0], index[-1]):
+        told = row[row >= 0]
+        if len(told):
+            row[row < 0] = told[0]
+
+
+def _turn_at_poles(
+    field: NDArray[np.complex128], phi_deg: NDArray[np.float64], told_deg: NDArray[np.float64]
+) -> None:
+    """Turn a pole's field, told at one azimuth, to the others: there both unit vectors turn with the azimuth.
+
+    Args:
+        field: (t, p, 2), changed in place.
+        phi_deg: (p,) azimuths of the columns.
+        told_deg: (t, p) azimuths at which the values were told.
+    """
+    for end, sense in ((0, 1.0), (-1, -1.0)):
+        by = np.radians(phi_deg - told_deg[end])
+        theta, phi = field[end, :, 0].copy(), field[end, :, 1].copy()
+        field[end, :, 0] = theta * np.cos(by) + sense * phi * np.sin(by)
+        field[end, :, 1] = phi * np.cos(by) - sense * theta * np.sin(by)
 
 
 def _agreeing(block: Block, gain: NDArray[np.float64], kept: NDArray[np.intp]) -> None:

@@ -63,7 +63,7 @@ def read_pattern(
         reader = FORMATS[name][1]
         blocks = read_msi(lines, estimate) if name == "msi" else reader(lines)
         table = gridded(picked(blocks, frequency_hz), f"{Path(source).name} ({name})")
-        return _honest(table)
+        return _honest(table, estimate)
     except ScenarioError as error:
         raise ScenarioError(error.faults, source) from None
 
@@ -129,7 +129,7 @@ def _format_of(lines: Lines, stated: str | None) -> str:
     return stated or str(told)
 
 
-def _honest(table: PatternTable) -> PatternTable:
+def _honest(table: PatternTable, estimate: bool) -> PatternTable:
     """Return the table, or refuse what would mislead; scale a directivity to a mean of 1."""
     weight = _solid_angles(table)
     floor = float(np.sum(weight[table.gain <= 0.0]))
@@ -145,7 +145,7 @@ def _honest(table: PatternTable) -> PatternTable:
         field = None if table.field is None else table.field / np.sqrt(mean)
         return replace(table, gain=table.gain / mean, field=field)
     over_db = 10.0 * np.log10(mean)
-    if over_db > _MOST_OVER_FED_DB:
+    if over_db > _MOST_OVER_FED_DB and not estimate:
         refuse(
             f"the mean gain over the sphere is {over_db:.1f} dB: the antenna would radiate more than it is "
             "fed; must be 0 dB at most. Is the unit right, dBd, dBi or linear?"

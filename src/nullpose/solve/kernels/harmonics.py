@@ -23,7 +23,7 @@ def gain_at(pattern, x, y, z):
             w += pattern.sine[n, m] * here
         total += u * real + w * imaginary
         real, imaginary = real * x - imaginary * y, real * y + imaginary * x
-    return total
+    return max(0.0, total)
 
 
 @inner_kernel

@@ -1,0 +1,76 @@
+"""Bounds over caps of directions hold what is in the cap."""
+
+import numpy as np
+import pytest
+
+from nullpose.antenna.caps import pattern_arrays
+from nullpose.antenna.harmonics import Harmonics
+from nullpose.solve.kernels.harmonics import fill_cap, fill_gains, fill_jet
+
+STEP = 2e-3  # of differences, radians
+
+
+def pattern(degree: int, seed: int) -> Harmonics:
+    """Return a pattern with every coefficient drawn."""
+    rng = np.random.default_rng(seed)
+    cosine, sine = (np.tril(rng.normal(size=(degree + 1, degree + 1))) for _ in range(2))
+    sine[:, 0] = 0.0
+    return Harmonics(cosine, sine)
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors of length one."""
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+@pytest.mark.parametrize("degree", [2, 5, 11])
+def test_samples_are_within(degree: int) -> None:
+    """Gains and derivatives along great circles, by differences, are within a cap's bounds."""
+    rng = np.random.default_rng(degree)
+    harmonics = pattern(degree, degree)
+    arrays, bounds = pattern_arrays(harmonics), np.empty(5)
+    for _ in range(60):
+        middle, radius = unit(rng.normal(size=3)), 10.0 ** rng.uniform(-3.0, 0.6)
+        fill_cap(arrays, middle, min(radius, np.pi), bounds)
+        across = unit(np.cross(middle, rng.normal(size=(200, 3))))
+        angle = np.minimum(radius, np.pi) * np.sqrt(rng.uniform(size=(200, 1)))
+        there = middle * np.cos(angle) + across * np.sin(angle)
+        along = unit(np.cross(there, rng.normal(size=(200, 3))))
+        g = [harmonics.gain(there * np.cos(k * STEP) + along * np.sin(k * STEP)) for k in range(-2, 3)]
+        assert -bounds[0] <= g[2].min() and g[2].max() <= bounds[1]
+        slopes = np.abs(g[3] - g[1]) / (2.0 * STEP)
+        bends = np.abs(g[3] - 2.0 * g[2] + g[1]) / STEP**2
+        thirds = np.abs(g[4] - 2.0 * g[3] + 2.0 * g[1] - g[0]) / (2.0 * STEP**3)
+        assert np.all(np.max([slopes, bends, thirds], axis=1) <= 1.01 * bounds[2:] + 1e-6)
+
+
+def test_kernels_evaluate_the_pattern() -> None:
+    """Gain, gradient and Hessian of the gain over squared distance are those of the harmonics."""
+    harmonics = pattern(8, 3)
+    arrays, found = pattern_arrays(harmonics), np.empty(50)
+    ways = unit(np.random.default_rng(4).normal(size=(50, 3)))
+    fill_gains(arrays, ways, found)
+    np.testing.assert_allclose(found, np.maximum(0.0, harmonics.gain(ways)), atol=1e-12)
+
+    def over_square(r: np.ndarray) -> float:
+        return float(harmonics.gain(unit(r)) / (r @ r))
+
+    slope, bend, e = np.empty(3), np.empty((3, 3)), 1e-4 * np.eye(3)
+    d = ways[0]
+    fill_jet(arrays, d, slope, bend)
+    by_steps = [(over_square(d + i) - over_square(d - i)) / 2e-4 for i in e]
+    twice = [
+        [
+            (
+                over_square(d + i + j)
+                - over_square(d + i - j)
+                - over_square(d - i + j)
+                + over_square(d - i - j)
+            )
+            / 4e-8
+            for j in e
+        ]
+        for i in e
+    ]
+    np.testing.assert_allclose(slope, by_steps, atol=1e-4)
+    np.testing.assert_allclose(bend, twice, atol=1e-3)
