@@ -37,7 +37,8 @@ def test_samples_are_within(degree: int) -> None:
         there = middle * np.cos(angle) + across * np.sin(angle)
         along = unit(np.cross(there, rng.normal(size=(200, 3))))
         g = [harmonics.gain(there * np.cos(k * STEP) + along * np.sin(k * STEP)) for k in range(-2, 3)]
-        assert -bounds[0] <= g[2].min() and g[2].max() <= bounds[1]
+        assert -bounds[0] <= g[2].min()
+        assert g[2].max() <= bounds[1]
         slopes = np.abs(g[3] - g[1]) / (2.0 * STEP)
         bends = np.abs(g[3] - 2.0 * g[2] + g[1]) / STEP**2
         thirds = np.abs(g[4] - 2.0 * g[3] + 2.0 * g[1] - g[0]) / (2.0 * STEP**3)

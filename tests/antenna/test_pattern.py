@@ -62,7 +62,8 @@ def test_no_gain_is_above_the_peak_and_none_below_zero() -> None:
     table = PatternTable(theta_deg=THETA, phi_deg=PHI, gain=gain)
     antenna = PatternAntenna("pattern", "any", table_harmonics(table))
     everywhere = antenna.gain(directions(np.linspace(0.0, 180.0, 700), np.linspace(0.0, 360.0, 900)))
-    assert everywhere.min() >= 0.0 and everywhere.max() <= antenna.peak
+    assert everywhere.min() >= 0.0
+    assert everywhere.max() <= antenna.peak
     assert normalised(antenna.harmonics).gain(directions(THETA, PHI)).max() == pytest.approx(1.0)
 
 
@@ -70,5 +71,5 @@ def test_a_grid_too_coarse_is_refused() -> None:
     """A pattern that changes faster than its grid can tell is refused, and what to do is said."""
     coarse = np.arange(0.0, 181.0, 15.0), np.arange(0.0, 360.0, 15.0)
     gain = 1.0 + np.cos(10.0 * np.radians(coarse[0]))[:, None] * np.ones(len(coarse[1]))
-    with pytest.raises(ScenarioError, match="too coarse.*finer steps"):
+    with pytest.raises(ScenarioError, match=r"too coarse.*finer steps"):
         table_harmonics(PatternTable(theta_deg=coarse[0], phi_deg=coarse[1], gain=gain))

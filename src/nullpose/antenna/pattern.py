@@ -18,7 +18,7 @@ from nullpose.errors import Fault, ScenarioError
 
 _HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
-_MISSED = 0.02  # root mean square, of the largest gain, that a grid may miss or hold in its highest degrees
+_MISSED = 0.02  # of the largest gain: root mean square of what a grid misses or guesses
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = (
     np.radians(np.arange(181.0)),
@@ -145,8 +145,7 @@ def table_harmonics(table: PatternTable) -> Harmonics:
     rms = math.sqrt(float(np.mean(missed**2)) + highest)
     if rms > _MISSED * peak:
         message = (
-            f"the grid is too coarse: steps of {180.0 / max(1, highest_degree(table)):.3g} degrees tell a degree "
-            f"of {whole.degree}, of which {100.0 * rms / peak:.0f} % of the peak would be missed or guessed; "
+            f"the grid is too coarse: its steps tell a degree of {whole.degree} at most, of which {100.0 * rms / peak:.0f} % of the peak would be missed or guessed; "
             f"must be {100.0 * _MISSED:g} % at most: export finer steps, or fields with phases"
         )
         raise ScenarioError([Fault("", message)])

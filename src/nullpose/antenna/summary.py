@@ -33,7 +33,7 @@ class PatternSummary:
         polarisation: in words, where the peak is.
         degree: of the spherical harmonics that hold the pattern.
         step_deg: widest step of the grid.
-        coarsest_deg: widest step that the degree allows.
+        coarsest_deg: widest step that the degree allows; with phases, that of the field, which is half.
         notes: how it was read, a sentence each.
     """
 
@@ -90,7 +90,7 @@ def summary_of(table: PatternTable) -> PatternSummary:
         polarisation=_polarisation(table, most),
         degree=degree,
         step_deg=float(max(np.max(np.diff(table.theta_deg)), np.max(np.diff(table.phi_deg, append=360.0)))),
-        coarsest_deg=360.0 / (_SAMPLES * max(1, degree)),
+        coarsest_deg=360.0 / (_SAMPLES * max(1, degree) * (1.0 if table.field is None else 0.5)),
         notes=table.notes,
     )
 

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from nullpose.antenna.files import FORMATS
 from nullpose.cli.options import (
     AllowOutside,
     Fast,
@@ -51,7 +50,9 @@ def show(
     ],
     format: Annotated[  # noqa: A002
         str | None,
-        typer.Option("--format", help=f"One of {', '.join(FORMATS)}.", show_default="the file tells it"),
+        typer.Option(
+            "--format", help="nec, ffd, ffs, cst, msi, csv or emane.", show_default="the file tells it"
+        ),
     ] = None,
     frequency: Annotated[
         float | None,

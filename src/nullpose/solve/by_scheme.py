@@ -15,7 +15,6 @@ from nullpose.scenario import Scenario
 from nullpose.schemes import SchemeRecord
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.options import SolveOptions
-from nullpose.solve.pattern import solve_pattern
 from nullpose.solve.position_search import search_positions
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
@@ -39,6 +38,8 @@ def solve_scheme(
     if null_jammer is not None and null_jammer not in known:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
     if isinstance(scenario.antenna_record, PatternAntenna):
+        from nullpose.solve.pattern import solve_pattern  # and SciPy's optimisers with it
+
         return solve_pattern(scenario, options)
     family, fields = build_family(scenario), record.fields(scenario, null_jammer)
     outcome = (

@@ -49,7 +49,7 @@ def write_csv_fields(path: Path, field: Field) -> None:
 
 
 def write_nec(path: Path, field: Field) -> None:
-    """Write NEC's table: azimuth outermost, fields in volts per metre of any power, polar angles from -180."""
+    """Write NEC's table: azimuth outermost, fields of any power, polar angles from -180."""
     lines = [
         "FREQUENCY : 4.3300E+02 MHz",
         "",
@@ -83,7 +83,7 @@ def write_ffd(path: Path, field: Field) -> None:
 
 
 def write_ffs(path: Path, field: Field) -> None:
-    """Write a CST far-field source: polar angle innermost, peak fields of an accepted power of half a watt."""
+    """Write a CST far-field source: polar angle innermost, peak fields, half a watt accepted."""
     phi, theta = (axis.ravel() for axis in np.meshgrid(np.arange(0.0, 361.0, 5.0), THETA, indexing="ij"))
     values = np.sqrt(60.0 * 0.5) * field(np.radians(theta), np.radians(phi))
     rows = [
