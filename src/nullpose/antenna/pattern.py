@@ -145,8 +145,9 @@ def table_harmonics(table: PatternTable) -> Harmonics:
     rms = math.sqrt(float(np.mean(missed**2)) + highest)
     if rms > _MISSED * peak:
         message = (
-            f"the grid is too coarse: its steps tell a degree of {whole.degree} at most, of which {100.0 * rms / peak:.0f} % of the peak would be missed or guessed; "
-            f"must be {100.0 * _MISSED:g} % at most: export finer steps, or fields with phases"
+            f"the grid is too coarse: its steps tell a degree of {whole.degree} at most, by which "
+            f"{100.0 * rms / peak:.0f} % of the peak is missed or guessed; must be {100.0 * _MISSED:g} % at "
+            "most: export finer steps, or fields with phases"
         )
         raise ScenarioError([Fault("", message)])
     return _shortened(whole, peak)
