@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test test-studio check docs bench figures clean
+.PHONY: help demo test test-studio check docs bench judges figures clean
 
 help: ## what can be made, a line each
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
@@ -35,6 +35,11 @@ docs: .venv/.with-docs ## the documentation, warnings being errors, into docs/_b
 
 bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
 	$(BIN)/python -m benchmarks
+
+judges: .venv/.with-core ## other engines on the same links, and what they say, docs/judges.md
+	@command -v nec2c > /dev/null || { test "$$(id -u)" = 0 && apt-get update -qq && apt-get install -y -qq nec2c libllvm19 > /dev/null; } || echo "nec2c and libllvm19 are not installed: their judges are skipped"
+	@$(MAKE) --no-print-directory .venv/.with-judges || echo "Sionna RT cannot be installed here: it is skipped"
+	$(BIN)/python -m benchmarks.judges
 
 figures: .venv/.with-core ## the pictures and the claims that README and pages show, made anew
 	$(BIN)/python docs/make_figures.py

@@ -1,0 +1,1 @@
+"""Other people's engines judge the physics: a ray tracer and a wire-grid solver."""
