@@ -10,16 +10,16 @@ PAGE = Path(__file__).parents[2] / "docs" / "judges.md"
 
 _HEAD = """# Judged by other engines
 
-`make judges` has two programs of others evaluate what nullpose evaluates. They share no code with it. This page is written
-by that command.
+`make judges` has two programs of others evaluate what nullpose evaluates. They share no code with it. This
+page is written by that command.
 
-- **Sionna RT** traces the line of sight between the drone and every ground point, with its own antennas and polarisation, in
-  single precision.
-- **nec2c** solves for the currents on wires: patterns of dipoles, and the coupling between an upright dipole on the ground
-  and a tilted one in the air, either of them fed.
+- **Sionna RT** traces the line of sight between the drone and every ground point, with its own antennas and
+  polarisation, in single precision.
+- **nec2c** solves for the currents on wires: patterns of dipoles, and the coupling between an upright dipole
+  on the ground and a tilted one in the air, either of them fed.
 
-A deviation of the SINR is relative to it, or to what an antenna 40 dB above its null would get where that is more. One in dB
-is the largest where the gain is less than 30 dB below its peak.
+A deviation of the SINR is relative to it, or to what an antenna 40 dB above its null would get where that is
+more. One in dB is the largest where the gain is less than 30 dB below its peak.
 
 """
 
@@ -54,7 +54,8 @@ class Verdict:
     def row(self) -> str:
         """Return the row of a Markdown table."""
         if self.deviation is None:
-            return f"| {self.judge} | {self.what} | 0 | - | {self.allowed:g} {self.unit} | not asked: {self.reason} |"
+            cells = ("0", "-", f"{self.allowed:g} {self.unit}", f"not asked: {self.reason}")
+            return f"| {self.judge} | {self.what} | {' | '.join(cells)} |"
         word = "agrees" if self.agrees else "**disagrees**"
         cells = (f"{self.deviation:.1e} {self.unit}", f"{self.allowed:g} {self.unit}", word)
         return f"| {self.judge} | {self.what} | {self.cases} | {' | '.join(cells)} |"

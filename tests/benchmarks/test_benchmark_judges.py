@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from benchmarks.judges import __main__ as judges
 from benchmarks.judges import ray_tracer, wires
 from benchmarks.judges.verdict import Verdict, page

@@ -42,6 +42,7 @@ from nullpose.study import SweepRow
 _LETTERS = 100  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
 _SURFACE = "radiation pattern, near side cut away"
+_WHOLE = "radiation pattern"
 
 # Lengths drawn, as shares of the scene's extent.
 _ARRAY = 0.10  # from the middle to the outermost element
@@ -81,7 +82,9 @@ def draw_pose(solution: Result) -> Figure:
     scenario, pose = solution.scenario, solution.pose
     words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
-    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=f"{scenario.name}\n{words}")
+    is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
+    surface = _WHOLE if is_pattern else _SURFACE
+    return draw_panels(stage, _draw_dipole, surface=surface, head=f"{scenario.name}\n{words}")
 
 
 def draw_robust(solution: Result) -> Figure:
@@ -108,13 +111,14 @@ def draw_robust(solution: Result) -> Figure:
 
 
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
-    """Return the value at a pose, and how far its null is off the jammers, or the eavesdroppers."""
+    """Return the value at a pose, and how far a dipole's null is off the jammers, or the eavesdroppers."""
     quantity = objective.quantity
     points: tuple[Jammer | Eavesdropper, ...] = scenario.eavesdroppers or scenario.jammers
     angles_deg = [math.degrees(null_angle_rad(pose, point.position_m)) for point in points]
     nulls = [f"{angle:.1f}° off {point.name}" for angle, point in zip(angles_deg, points, strict=True)]
     value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
-    return f"{value}, null {', '.join(nulls)}" if nulls else value
+    is_dipole = not isinstance(scenario.antenna_record, PatternAntenna)
+    return f"{value}, null {', '.join(nulls)}" if nulls and is_dipole else value
 
 
 def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
