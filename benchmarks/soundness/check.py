@@ -5,11 +5,13 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+from scipy.spatial.transform import Rotation
+
 from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
 from nullpose.certificate import verify
 from nullpose.physics.objective import objective_value
-from nullpose.solve import Solution, Status, solve
+from nullpose.solve import Rigour, Solution, Status, solve
 from nullpose.solve.certificate_from_proof import certificate_of
 
 __all__ = ["Outcome", "check_scene"]
@@ -55,12 +57,14 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     seconds = time.perf_counter() - began
     objective, pose = solution.objective, solution.pose
     assert objective.upper_bound is not None
-    near = (pose.position_m, pose.antenna_axis)
+    orientation = pose.orientation(scene.scenario.antenna_record)
+    turned = orientation if orientation.ndim == 1 else Rotation.from_matrix(orientation).as_quat()
+    near = (pose.position_m, turned)
     searched = best_value(scene.scenario, scene.scheme, starts=starts, seed=scene.number, near=near)
     faults = []
     if searched > objective.upper_bound * (1.0 + _ROUNDING):
         faults.append(f"a pose reaches {searched!r}, above the bound {objective.upper_bound!r}")
-    again = float(objective_value(scene.scenario, pose.position_m, pose.antenna_axis))
+    again = float(objective_value(scene.scenario, pose.position_m, orientation))
     if again != objective.value:
         faults.append(f"the pose gives {again!r}, not {objective.value!r}")
     if objective.value > objective.upper_bound * (1.0 + _ROUNDING):
@@ -89,7 +93,7 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
 
 def _refusal(solution: Solution) -> str:
     """Return why the verifier refuses what is said to be certified; empty if it does not."""
-    if solution.status is not Status.CERTIFIED:
+    if solution.status is not Status.CERTIFIED or solution.rigour is not Rigour.VERIFIABLE:
         return ""
     verdict = verify(certificate_of(solution))
     return "" if verdict.proved else verdict.message

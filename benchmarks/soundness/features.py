@@ -215,6 +215,23 @@ def _tilts(rng: np.random.Generator) -> Table:
     return _plain(rng) | {"airframe": {"tilt_max_deg": rng.choice(ends), "mount_deg": rng.choice(ends)}}
 
 
+def _patterns(rng: np.random.Generator) -> Table:
+    """Antennas that are no dipole: half-wave, the same all round, or with lobes."""
+    makers = (_plain, _plain, _margins, _no_fly, _secrecy)
+    table = makers[int(rng.integers(len(makers)))](rng)
+    for point in [*table["nodes"], *table["jammers"]]:
+        point["antenna"] = str(rng.choice(["isotropic", "circular"]))
+    degree = int(rng.integers(1, 7))
+    rows = [(rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
+    rows[0] = [2.0]
+    if rng.uniform() < 0.3:
+        rows = [[row[0], *(0.0 for _ in row[1:])] for row in rows]
+    table["antenna"] = {"kind": "pattern", "harmonics": rows, "normalise": str(rng.choice(["none", "peak"]))}
+    if rng.uniform() < 0.25:
+        table["antenna"] = {"kind": "half-wave"}
+    return table
+
+
 def _antennas(rng: np.random.Generator) -> Table:
     """Dipoles tilted anyhow, circular antennas and nulls of finite depth, with and without other features."""
     makers = (_plain, _plain, _airframe, _secrecy, _together)
@@ -239,6 +256,7 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "fence": _fence,
     "together": _together,
     "antennas": _antennas,
+    "patterns": _patterns,
     "extremes": _extremes,
     "one-node-secrecy": _one_node_secrecy,
     "points": _points,

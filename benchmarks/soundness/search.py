@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from nullpose.physics.objective import objective_value
 from nullpose.scenario import Scenario
@@ -75,7 +76,8 @@ def best_value(
         scheme: which axes are allowed.
         starts: how many walks.
         seed: of the walks.
-        near: position, metres, and axis to begin half of them around.
+        near: position, metres, and axis to begin half of them around; for an antenna with a pattern the
+            quaternion of its attitude.
         null_jammer: with zero interference, the one jammer that is to be nulled.
     """
     rng = np.random.default_rng(seed)
@@ -103,12 +105,12 @@ def _walks(
         out = np.full(len(p), -np.inf)
         if np.any(allowed):
             unit = directions[allowed] / length[allowed]
-            out[allowed] = objective_value(scenario, p[allowed], unit)
+            out[allowed] = objective_value(scenario, p[allowed], _orientations(unit))
         return out
 
     p = rng.uniform(bounds_m[0], bounds_m[1], size=(starts, 3))
     p[: starts // 4, 2] = bounds_m[0, 2]
-    u = rng.normal(size=(starts, 3))
+    u = rng.normal(size=(starts, len(near[1])))
     p[starts // 2 :], u[starts // 2 :] = near
     value = values(p, u)
     scale = np.full(starts, 10.0)
@@ -117,10 +119,15 @@ def _walks(
         step = scale * 10.0 ** rng.uniform(-1.5, 0.3, size=starts)
         sparse = rng.uniform(size=(starts, 3)) < 0.7
         new_p = np.clip(p + step[:, None] * rng.normal(size=(starts, 3)) * sparse, bounds_m[0], bounds_m[1])
-        new_u = u + 0.05 * step[:, None] * rng.normal(size=(starts, 3)) * np.linalg.norm(u, axis=1)[:, None]
+        new_u = u + 0.05 * step[:, None] * rng.normal(size=u.shape) * np.linalg.norm(u, axis=1)[:, None]
         new_value = values(new_p, new_u)
         better = new_value > value
         p[better], u[better], value[better] = new_p[better], new_u[better], new_value[better]
         scale *= np.where(better, 1.5, 0.96)
         scale = np.clip(scale, 1e-9, 20.0)
     return float(np.max(value))
+
+
+def _orientations(unit: FloatArray) -> FloatArray:
+    """Return axes as they are, (n, 3), and quaternions, (n, 4), as rotations."""
+    return unit if unit.shape[1] == 3 else np.asarray(Rotation.from_quat(unit).as_matrix())
