@@ -144,7 +144,7 @@ class PatternRun:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         threads = self.options.threads or processors()
         with ThreadPoolExecutor(threads) as pool:
-            stacks = [_Stack(cells) for cells in _dealt(self._roots(), threads)]
+            stacks = [_Stack(cells) for cells in _dealt(self._roots(gap), threads)]
             while True:
                 _share(stacks)
                 busy = [stack for stack in stacks if stack.top]
@@ -184,9 +184,12 @@ class PatternRun:
         stack.better = pose if code == self.kernel.BETTER else None
         return stack
 
-    def _roots(self) -> FloatArray:
-        """Return the cells that hold every pose which reaches the best value."""
-        low_m, high_m = self.search.box(self.search.best)
+    def _roots(self, gap: float) -> FloatArray:
+        """Return the cells that hold every pose above the best value, or above a gap over it."""
+        level = self.search.best
+        if np.any(self.family.numerator_isotropic):  # ratios tend to one far away: the bound that is stated
+            level = max(level, 0.0) + math.log1p(gap)
+        low_m, high_m = self.search.box(level)
         found: list[FloatArray] = []
         self._add_roots(low_m, np.maximum(low_m, high_m), found)
         return np.array(found)

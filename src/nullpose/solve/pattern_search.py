@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
@@ -16,11 +15,12 @@ from nullpose.family import Family
 from nullpose.family.records import Reach
 from nullpose.objectives import FloatArray
 
-_DRAWN, _POLISHED = 20_000, 40  # poses judged, and polished, where no proof follows
-_LIGHTLY = 4_000, 4  # where one does, which repairs what this misses
-_REFINED, _SPREADS, _TRIED = 20, (0.1, 0.05, 0.02), 5  # poses for each polished one; radians; moves of each
+_HARD = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
+_LIGHTLY = 6_000, 120, 4  # where one does, which repairs what this misses
 _LOW = 0.005  # of all directions, weighted by the grid's density
 _FEW = 12  # degree up to which lobes are few
+_WANDERED = 600  # random steps of a climb
+_NEAR = 0.2  # radians, and as much of the scene, that the last part of a climb moves at most
 _NOT_HEARD = -1e3  # logarithm of a ratio, in place of minus infinity
 _STEP = 1e-6  # of differences: radians, or the share of the scene's size
 
@@ -42,6 +42,7 @@ class PatternSearch:
         gains = antenna.gain(grid)
         self.lowest = grid[gains <= np.quantile(gains, _LOW)]
         self.rng = np.random.default_rng(seed)
+        self.noise = self.rng.normal(size=(_WANDERED, 6))
         self.best, self.starts, self.evaluations = -math.inf, 0, 0
         self.pose = np.zeros(3), np.eye(3)
         self.links, self.logs = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
@@ -98,24 +99,32 @@ class PatternSearch:
         Args:
             light: whether a proof follows.
         """
-        lobes = max(1, self.arrays.cosine.shape[0] // _FEW) ** 2  # of which most climbs lead to a small one
+        lobes = max(1, self.arrays.cosine.shape[0] // _FEW)  # of which most climbs lead to a small one
         light = light and lobes == 1
-        drawn, polished = _LIGHTLY if light else (lobes * _DRAWN, lobes * _POLISHED)
+        drawn, climbs, polished = _LIGHTLY if light else (lobes * count for count in _HARD)
         points = self.family.points_m
         margin = float(np.max(np.ptp(points, axis=0))) + 10.0 * self.family.keep_out_m
-        low_m = np.maximum(self.family.low_m, points.min(axis=0) - margin)
-        high_m = np.minimum(self.family.high_m, points.max(axis=0) + margin)
+        widest_m = points.min(axis=0) - margin, points.max(axis=0) + margin
+        low_m, high_m = (
+            np.maximum(self.family.low_m, widest_m[0]),
+            np.minimum(self.family.high_m, widest_m[1]),
+        )
         for _ in range(2):  # the second time in a box that the first has made small
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             rotations = self._attitudes(drawn)
             rotations[1::2] = self._all_reached(self._shunning(positions_m[1::2]))
-            rounds = 0 if light else _TRIED
-            for i in self._refined(positions_m, rotations, polished, rounds):
-                self.polish(positions_m[i], rotations[i])
+            values = self.judged(positions_m, rotations)
+            climbed = np.argsort(-values)[:climbs]
+            for k in climbed:
+                values[k] = self._climbed(positions_m[k], rotations[k])
+            for k in climbed[np.argsort(-values[climbed])][:polished]:
+                self.polish(positions_m[k], rotations[k])
             if not math.isfinite(self.best):
                 break
             low_m, high_m = self.box(self.best)
+            low_m, high_m = np.maximum(low_m, widest_m[0]), np.minimum(high_m, widest_m[1])
+            high_m = np.maximum(low_m, high_m)
 
     def _attitudes(self, count: int) -> FloatArray:
         """Return rotations that the airframe reaches, (count, 3, 3)."""
@@ -129,24 +138,21 @@ class PatternSearch:
         body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
         return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
 
-    def _refined(
-        self, positions_m: FloatArray, rotations: FloatArray, polished: int, rounds: int
-    ) -> NDArray[np.intp]:
-        """Move promising poses to better ones near by, in place; return the indices of the best of them."""
-        values = self.judged(positions_m, rotations)
-        some = np.argsort(-values)[: _REFINED * polished]
-        for spread in _SPREADS:
-            for _ in range(rounds):
-                turns = Rotation.from_rotvec(spread * self.rng.normal(size=(len(some), 3))).as_matrix()
-                away_m = np.linalg.norm(positions_m[some] - self.family.points_m[0], axis=1, keepdims=True)
-                moved_m = positions_m[some] + spread * away_m * self.rng.normal(size=(len(some), 3))
-                moved_m = np.clip(moved_m, self.family.low_m, self.family.high_m)
-                turned = self._all_reached(rotations[some] @ turns)
-                found = self.judged(moved_m, turned)
-                better = found > values[some]
-                at = some[better]
-                values[at], positions_m[at], rotations[at] = found[better], moved_m[better], turned[better]
-        return np.asarray(some[np.argsort(-values[some])][:polished])
+    def _climbed(self, position_m: FloatArray, rotation: FloatArray) -> float:
+        """Climb from a pose by random steps, changing it in place; return the smallest log ratio there."""
+        position_m[:] = np.clip(position_m, self.family.low_m, self.family.high_m)
+        problem = self.family.arrays, self.family.domain, self.arrays, self.reach
+        scratch = self.links, self.logs, np.empty(3), np.empty((3, 3))
+        self.evaluations += len(self.noise)
+        return float(
+            self.kernels.wander(
+                *problem, self.noise, self._scale_m(position_m), position_m, rotation, *scratch
+            )
+        )
+
+    def _scale_m(self, position_m: FloatArray) -> float:
+        """Return the metres that count as much as a radian."""
+        return max(1.0, float(np.linalg.norm(position_m - self.family.points_m[0])))
 
     def _shunning(self, positions_m: FloatArray) -> FloatArray:
         """Return rotations that have the strongest interferer, or the first point, where the gain is low."""
@@ -218,14 +224,17 @@ class PatternSearch:
         return np.stack([first, np.cross(axis, first), axis], axis=1)
 
     def polish(self, position_m: FloatArray, rotation: FloatArray) -> None:
-        """Climb from a pose: sequential quadratic programming of the largest level below all log ratios.
+        """Climb from a pose: by random steps, then by sequential quadratic programming.
 
         Args:
             position_m: (3,).
             rotation: (3, 3).
         """
-        low_m, high_m = self.family.low_m, self.family.high_m
-        scale = max(1.0, float(np.linalg.norm(position_m - self.family.points_m[0])))
+        position_m, rotation = position_m.copy(), np.array(rotation, order="C")
+        self._climbed(position_m, rotation)
+        rotation = self._reached(rotation)
+        self.take(position_m, rotation)
+        low_m, high_m, scale = self.family.low_m, self.family.high_m, self._scale_m(position_m)
         logs = np.empty((7, len(self.logs)))
 
         def pose(x: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -252,12 +261,15 @@ class PatternSearch:
         constraints: list[Any] = [
             {"type": "ineq", "fun": lambda x: ratios(x).copy() - x[6] - level, "jac": slopes}
         ]
-        ends = [((a - p) / scale, (b - p) / scale) for a, b, p in zip(low_m, high_m, position_m, strict=True)]
+        ends = [
+            (max(-_NEAR, (a - p) / scale), min(_NEAR, (b - p) / scale))
+            for a, b, p in zip(low_m, high_m, position_m, strict=True)
+        ]
         found = minimize(
             lambda x: -x[6],
             np.zeros(7),
             jac=lambda x: np.array([0.0] * 6 + [-1.0]),
-            bounds=[*ends, *[(-1.5, 1.5)] * 3, (None, None)],
+            bounds=[*ends, *[(-_NEAR, _NEAR)] * 3, (None, None)],
             constraints=constraints,
             method="SLSQP",
             options={"maxiter": 60, "ftol": 1e-10},

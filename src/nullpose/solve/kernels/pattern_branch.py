@@ -75,9 +75,8 @@ def choose(family, row, room, multipliers):
 
 
 @inner_kernel
-def tilt(reach, chart, frame):
-    """Return the least tilt that the attitude at a cell's middle asks of the body, radians."""
-    x, y, z = frame[(2 - chart) % 3]  # of the world's vertical, in the antenna's axes
+def tilt_of(reach, x, y, z):
+    """Return the least tilt of the body, radians, at an attitude in whose axes the vertical is (x, y, z)."""
     if not reach.spins:
         return math.acos(max(-1.0, min(1.0, x * reach.up[0] + y * reach.up[1] + z * reach.up[2])))
     angle = math.acos(max(-1.0, min(1.0, z)))
@@ -142,7 +141,8 @@ def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, bud
         if is_forbidden(domain, (row[0], row[1], row[2]), (row[6], row[7], row[8])):
             continue
         turning = fill_points(family, pattern, row, room)
-        least = tilt(reach, int(row[CHART]), room.frame)
+        up = room.frame[(2 - int(row[CHART])) % 3]
+        least = tilt_of(reach, up[0], up[1], up[2])
         if least - turning > reach.tilt_max_rad + _HAIR or hopeless(family, level, room):
             continue
         multipliers[:] = row[WARM : WARM + n]

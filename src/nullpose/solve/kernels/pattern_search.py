@@ -5,14 +5,20 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.attitude import ANCHOR, CHART, fill_frame
+from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.harmonics import gain_at
-from nullpose.solve.kernels.jit import kernel
+from nullpose.solve.kernels.jit import inner_kernel, kernel
 from nullpose.solve.kernels.pattern_bound import way_to
+from nullpose.solve.kernels.pattern_branch import tilt_of
+from nullpose.solve.kernels.symmetric import copy_into, copy_table
+from nullpose.solve.kernels.vectors import cross, row
+
+_FIRST_STEP, _LONGEST_STEP, _LONGER, _SHORTER = 0.1, 0.5, 1.5, 0.91  # radians; a fifth of steps succeed
 
 
 @kernel
 def fill_log_ratios(family, pattern, position, rotation, links, out):
-    """Fill the logarithm of every ratio at a pose, minus infinity where there is none.
+    """Fill the logarithm of every ratio at a pose, minus infinity where there is none; return the least.
 
     Args:
         family: the ratios.
@@ -32,6 +38,7 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
         b = (rotation[0, 1] * x + rotation[1, 1] * y + rotation[2, 1] * z) / length
         c = (rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2] * z) / length
         links[j] = gain_at(pattern, a, b, c) / square
+    least = math.inf
     for k in range(family.numerator_point.shape[0]):
         g = family.denominator_of[k]
         below = family.denominator_isotropic[g]
@@ -39,23 +46,78 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
             below += family.denominator_weight[e] * links[family.denominator_point[e]]
         above = family.numerator_isotropic[k] + family.numerator_weight[k] * links[family.numerator_point[k]]
         out[k] = math.log(above / below) if above > 0.0 else -math.inf
+        least = min(least, out[k])
+    return least
 
 
 @kernel
 def judge(family, pattern, positions, rotations, links, logs, out):
     """Fill the smallest log ratio of many poses, (n, 3) and (n, 3, 3)."""
     for i in range(positions.shape[0]):
-        fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
-        out[i] = math.inf
-        for k in range(logs.shape[0]):
-            out[i] = min(out[i], logs[k])
+        out[i] = fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
 
 
 @kernel
-def rotation_of(family, row, frame, out):
+def rotation_of(family, cell, frame, out):
     """Fill the rotation to the world from the antenna's axes at a cell's middle; ``frame`` is scratch."""
-    first = int(row[CHART])
-    fill_frame(row, way_to(family.points_m, int(row[ANCHOR]), row), frame)
+    first = int(cell[CHART])
+    fill_frame(cell, way_to(family.points_m, int(cell[ANCHOR]), cell), frame)
     for i in range(3):
         for k in range(3):
             out[(first + i) % 3, k] = frame[i, k]
+
+
+@inner_kernel
+def turned_by(rotation, x, y, z, out):
+    """Fill a rotation times that by a small rotation vector (Rodrigues)."""
+    angle = math.sqrt(x * x + y * y + z * z)
+    s, c = 1.0, 0.5
+    if angle > 1e-9:
+        s, c = math.sin(angle) / angle, (1.0 - math.cos(angle)) / (angle * angle)
+    w = (x, y, z)
+    for i in range(3):
+        a = row(rotation, i)
+        first = cross(a, w)  # a row times the matrix of the vector
+        second = cross(first, w)
+        for k in range(3):
+            out[i, k] = a[k] + s * first[k] + c * second[k]
+
+
+@kernel
+def wander(family, domain, pattern, reach, noise, scale_m, position, rotation, links, logs, p, r):
+    """Climb by random steps, each kept if it is better and allowed; return the smallest log ratio.
+
+    Steps grow where they succeed and shrink where they do not: ridges, of which a smallest ratio is full, do
+    not throw it off. The pose is changed in place.
+
+    Args:
+        family: the ratios.
+        domain: what is allowed of positions.
+        pattern: the antenna's arrays.
+        reach: which attitudes there are.
+        noise: (steps, 6) normal numbers.
+        scale_m: metres that count as much as a radian.
+        position: (3,) start and end.
+        rotation: (3, 3) likewise.
+        links: (m,) scratch.
+        logs: (ratios,) scratch.
+        p: (3,) scratch.
+        r: (3, 3) scratch.
+    """
+    step = _FIRST_STEP
+    best = fill_log_ratios(family, pattern, position, rotation, links, logs)
+    for t in range(noise.shape[0]):
+        for i in range(3):
+            p[i] = min(max(position[i] + step * scale_m * noise[t, i], domain.low_m[i]), domain.high_m[i])
+        turned_by(rotation, step * noise[t, 3], step * noise[t, 4], step * noise[t, 5], r)
+        value = -math.inf
+        if tilt_of(reach, r[2, 0], r[2, 1], r[2, 2]) <= reach.tilt_max_rad and contains(domain, p):
+            value = fill_log_ratios(family, pattern, p, r, links, logs)
+        if value > best:
+            best = value
+            copy_into(p, position)
+            copy_table(r, rotation)
+            step = min(_LONGEST_STEP, step * _LONGER)
+        else:
+            step *= _SHORTER
+    return best
