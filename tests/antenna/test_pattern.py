@@ -13,7 +13,6 @@ from nullpose.antenna.pattern import (
     table_harmonics,
 )
 from nullpose.antenna.table import PatternTable
-from nullpose.errors import ScenarioError
 
 THETA, PHI = np.arange(0.0, 181.0), np.arange(0.0, 360.0)
 
@@ -65,11 +64,3 @@ def test_no_gain_is_above_the_peak_and_none_below_zero() -> None:
     assert everywhere.min() >= 0.0
     assert everywhere.max() <= antenna.peak
     assert normalised(antenna.harmonics).gain(directions(THETA, PHI)).max() == pytest.approx(1.0)
-
-
-def test_a_grid_too_coarse_is_refused() -> None:
-    """A pattern that changes faster than its grid can tell is refused, and what to do is said."""
-    coarse = np.arange(0.0, 181.0, 15.0), np.arange(0.0, 360.0, 15.0)
-    gain = 1.0 + np.cos(10.0 * np.radians(coarse[0]))[:, None] * np.ones(len(coarse[1]))
-    with pytest.raises(ScenarioError, match=r"too coarse.*finer steps"):
-        table_harmonics(PatternTable(theta_deg=coarse[0], phi_deg=coarse[1], gain=gain))

@@ -14,11 +14,9 @@ from numpy.typing import ArrayLike
 from nullpose.antenna.caps import PatternArrays, pattern_arrays
 from nullpose.antenna.harmonics import FloatArray, Harmonics, fit, highest_degree
 from nullpose.antenna.table import PatternTable
-from nullpose.errors import Fault, ScenarioError
 
 _HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
-_MISSED = 0.02  # of the largest gain: root mean square of what a grid misses or guesses
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = (
     np.radians(np.arange(181.0)),
@@ -134,23 +132,10 @@ def table_harmonics(table: PatternTable) -> Harmonics:
 
     Args:
         table: over the whole sphere.
-
-    Raises:
-        ScenarioError: its grid is too coarse for what it holds.
     """
     peak = float(np.max(table.gain))
-    whole = fit(table, min(_HIGHEST, highest_degree(table)))
-    missed = whole.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg)) - table.gain
-    highest = float(np.sum(whole.spectrum[-(-3 * len(whole.spectrum) // 4) :]))
-    rms = math.sqrt(float(np.mean(missed**2)) + highest)
-    if rms > _MISSED * peak:
-        message = (
-            f"the grid is too coarse: its steps tell a degree of {whole.degree} at most, by which "
-            f"{100.0 * rms / peak:.0f} % of the peak is missed or guessed; must be {100.0 * _MISSED:g} % at "
-            "most: export finer steps, or fields with phases"
-        )
-        raise ScenarioError([Fault("", message)])
-    return _shortened(whole, peak)
+    supported = highest_degree(table) * (1 if table.field is None else 2)  # a power's is twice its field's
+    return _shortened(fit(table, min(_HIGHEST, supported)), peak)
 
 
 def normalised(harmonics: Harmonics) -> Harmonics:

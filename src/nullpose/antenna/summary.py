@@ -1,113 +1,134 @@
-"""What a pattern table says in a few numbers."""
+"""What a radiation pattern amounts to: peak, null, ripple, polarisation, and what its grid can tell."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from nullpose.antenna.files.reading import mean_gain
-from nullpose.antenna.harmonics import fit, highest_degree
-from nullpose.antenna.pattern import table_harmonics
+from nullpose.antenna.files.block import FloatArray
+from nullpose.antenna.files.reading import mean_gain, supported_degree
+from nullpose.antenna.harmonics import fit
 from nullpose.antenna.table import PatternTable
 
-_LINEAR = 0.01  # axial ratio below which a polarisation counts as linear
-_SAMPLES = 2.5  # steps of the grid for each turn of the pattern's highest degree, at least
+_NEAR_PEAK = 1e-2  # of it; the gains that the degree has to reproduce
+_CLOSE_DB = 0.05
+_LINEAR_DB = 20.0  # axial ratio from which a field counts as linear
+_ALONG_DEG = 5.0  # tilt up to which it lies along theta or phi
+_SPEED = 299792458.0  # m/s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatternSummary:
-    """A pattern in numbers; angles in degrees, in the antenna's axes.
+    """What is told of a pattern.
 
     Args:
-        source: file and format.
-        quantity: "gain", "realised gain" or "directivity".
-        frequency_hz: None where the file does not say.
-        peak_dbi: largest gain over an isotropic antenna.
-        peak_at_deg: its polar angle and azimuth.
-        mean_gain_db: over the sphere: 0 for an antenna without losses.
-        null_depth_db: how far the least gain is below the largest; infinite for a null.
-        null_at_deg: where.
-        ripple_db: least to largest gain round the equator of the z axis.
-        polarisation: in words, where the peak is.
-        degree: of the spherical harmonics that hold the pattern.
-        step_deg: widest step of the grid.
-        coarsest_deg: widest step that the degree allows; with phases, that of the field, which is half.
-        notes: how it was read, a sentence each.
+        table: the pattern.
+        peak_dbi: largest gain.
+        peak_deg: polar angle and azimuth of it.
+        mean_db: average gain over the sphere: 0 for an antenna without losses.
+        null_db: how far the smallest gain is below the peak; infinite for an exact null.
+        null_deg: polar angle and azimuth of it.
+        ripple_db: largest over smallest gain round the z axis, at the polar angle nearest to 90 degrees.
+        polarisation: at the peak, in words.
+        axial_ratio_db: there; None where no field is known, above 100 where it is linear.
+        degree: of the spherical harmonics that reproduce gains within 20 dB of the peak to 0.05 dB, root mean
+            square; None if ``supported_degree`` does not.
+        supported_degree: that the grid tells.
+        step_deg: the widest of the grid.
+        largest_m: radius about the origin of the largest structure whose pattern such steps hold at the
+            frequency; None where that is not known.
     """
 
-    source: str
-    quantity: str
-    frequency_hz: float | None
+    table: PatternTable
     peak_dbi: float
-    peak_at_deg: tuple[float, float]
-    mean_gain_db: float
-    null_depth_db: float
-    null_at_deg: tuple[float, float]
+    peak_deg: tuple[float, float]
+    mean_db: float
+    null_db: float
+    null_deg: tuple[float, float]
     ripple_db: float
     polarisation: str
-    degree: int
+    axial_ratio_db: float | None
+    degree: int | None
+    supported_degree: int
     step_deg: float
-    coarsest_deg: float
-    notes: tuple[str, ...]
+    largest_m: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the summary as plain data for JSON; an exact null has no depth."""
-        values = asdict(self)
-        return values | {
-            "null_depth_db": values["null_depth_db"] if np.isfinite(self.null_depth_db) else None
-        }
+        """Return the summary as plain data, angles in radians, without the table's numbers."""
+        names = ("source", "quantity", "frequency_hz", "notes")
+        told = {name: getattr(self.table, name) for name in names}
+        for name in PatternSummary.__dataclass_fields__:
+            if name.endswith("_deg"):
+                told[name.replace("_deg", "_rad")] = np.radians(getattr(self, name)).tolist()
+            elif name != "table":
+                told[name] = getattr(self, name)
+        return told
 
 
 def summary_of(table: PatternTable) -> PatternSummary:
-    """Return a table in numbers.
+    """Return what is told of a pattern.
 
     Args:
-        table: over the whole sphere.
-
-    Raises:
-        ScenarioError: its grid is too coarse for what it holds.
+        table: any.
     """
-    gain = table.gain
-    most, least = (np.unravel_index(at, gain.shape) for at in (np.argmax(gain), np.argmin(gain)))
-    degree = table_harmonics(table).degree
-    equator = fit(table, min(degree + 8, highest_degree(table))).on_grid(
-        np.array([np.pi / 2.0]), np.radians(np.arange(360.0))
-    )
     with np.errstate(divide="ignore"):
-        depth_db = float(-10.0 * np.log10(gain[least] / gain[most]))
+        gain_dbi = 10.0 * np.log10(table.gain)
+    peak, null = (_place(table, find(table.gain)) for find in (np.argmax, np.argmin))
+    equator_dbi = gain_dbi[np.argmin(np.abs(table.theta_deg - 90.0))]
+    polarisation, axial_ratio_db = _polarisation(None if table.field is None else table.field[peak])
+    step_deg = max(180.0 / (len(table.theta_deg) - 1), 360.0 / len(table.phi_deg))
+    # a structure of radius r has a field of degree 2 pi r / wavelength, and a power of twice that
+    waves = 180.0 / step_deg / (2.0 if table.field is None else 1.0) / (2.0 * np.pi)
     return PatternSummary(
-        source=table.source,
-        quantity=table.quantity,
-        frequency_hz=table.frequency_hz,
-        peak_dbi=_db(gain[most]),
-        peak_at_deg=(float(table.theta_deg[most[0]]), float(table.phi_deg[most[1]])),
-        mean_gain_db=_db(mean_gain(table)),
-        null_depth_db=depth_db,
-        null_at_deg=(float(table.theta_deg[least[0]]), float(table.phi_deg[least[1]])),
-        ripple_db=_db(np.max(equator)) - _db(max(1e-30, float(np.min(equator)))),
-        polarisation=_polarisation(table, most),
-        degree=degree,
-        step_deg=float(max(np.max(np.diff(table.theta_deg)), np.max(np.diff(table.phi_deg, append=360.0)))),
-        coarsest_deg=360.0 / (_SAMPLES * max(1, degree) * (1.0 if table.field is None else 0.5)),
-        notes=table.notes,
+        table=table,
+        peak_dbi=float(gain_dbi[peak]),
+        peak_deg=(float(table.theta_deg[peak[0]]), float(table.phi_deg[peak[1]])),
+        mean_db=float(10.0 * np.log10(mean_gain(table))),
+        null_db=float(gain_dbi[peak] - gain_dbi[null]),
+        null_deg=(float(table.theta_deg[null[0]]), float(table.phi_deg[null[1]])),
+        ripple_db=float(np.ptp(equator_dbi)) if np.min(equator_dbi) > -np.inf else float("inf"),
+        polarisation=polarisation,
+        axial_ratio_db=axial_ratio_db,
+        degree=_degree(table),
+        supported_degree=supported_degree(table),
+        step_deg=float(step_deg),
+        largest_m=None if table.frequency_hz is None else float(waves * _SPEED / table.frequency_hz),
     )
 
 
-def _db(ratio: Any) -> float:
-    return float(10.0 * np.log10(ratio))
+def _place(table: PatternTable, at: Any) -> tuple[int, int]:
+    """Return row and column of a flat index; at a pole, where all azimuths are one, those of azimuth 0."""
+    row, column = divmod(int(at), len(table.phi_deg))
+    return row, column if 0 < row < len(table.theta_deg) - 1 else 0
 
 
-def _polarisation(table: PatternTable, at: Any) -> str:
-    if table.field is None:
-        return "not known: the file has powers alone"
-    theta, phi = table.field[at]
-    right, left = (abs(theta + sign * 1j * phi) for sign in (1.0, -1.0))
-    axial = abs(right - left) / (right + left)
-    if axial < _LINEAR:
-        angle = np.degrees(np.arctan2(abs(phi), abs(theta)))
-        return f"linear, {angle:.0f} degrees from the polar direction"
-    if axial > 1.0 - 10.0 * _LINEAR:
-        return f"circular, {'right' if right > left else 'left'}-handed"
-    return f"elliptical, {'right' if right > left else 'left'}-handed, axial ratio {axial:.2f}"
+def _polarisation(field: Any) -> tuple[str, float | None]:
+    """Return a field's polarisation in words, and its axial ratio in dB."""
+    if field is None:
+        return "not known", None
+    along, round_z = field
+    total, crossed = abs(along) ** 2 + abs(round_z) ** 2, 2.0 * along * np.conj(round_z)
+    linear = float(np.hypot(abs(along) ** 2 - abs(round_z) ** 2, crossed.real))
+    ratio_db = float(10.0 * np.log10((total + linear) / max(total - linear, 1e-12 * total)))
+    tilt_deg = float(np.degrees(0.5 * np.arctan2(crossed.real, abs(along) ** 2 - abs(round_z) ** 2)))
+    if ratio_db < _LINEAR_DB:
+        return f"elliptical, axial ratio {ratio_db:.1f} dB", ratio_db
+    if min(abs(tilt_deg), 90.0 - abs(tilt_deg)) > _ALONG_DEG:
+        return f"linear, {abs(tilt_deg):.0f} degrees from theta towards {'-' * (tilt_deg < 0.0)}phi", ratio_db
+    return f"linear along {'theta' if abs(tilt_deg) < 45.0 else 'phi'}", ratio_db
+
+
+def _degree(table: PatternTable) -> int | None:
+    """Return the lowest degree that reproduces the gains near the peak, or None."""
+    whole = fit(table, supported_degree(table))
+    near = table.gain >= _NEAR_PEAK * np.max(table.gain)
+    angles = np.radians(table.theta_deg), np.radians(table.phi_deg)
+
+    def missed_db(degree: int) -> float:
+        found: FloatArray = whole.truncated(degree).on_grid(*angles)[near]
+        apart_db = 10.0 * np.log10(np.maximum(found, 1e-12) / table.gain[near])
+        return float(np.sqrt(np.mean(apart_db**2)))
+
+    return next((degree for degree in range(whole.degree + 1) if missed_db(degree) <= _CLOSE_DB), None)

@@ -1,4 +1,4 @@
-"""The verbs ``antenna ...``: what antennas do to a pose."""
+"""The verbs ``antenna ...``: what a pattern file holds, and what antennas do to a pose."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 from nullpose.cli.options import (
     AllowOutside,
     Fast,
+    FigureFile,
     Gap,
     JsonOutput,
     NodeLimit,
@@ -26,19 +27,20 @@ from nullpose.cli.progress import Ticker
 
 
 class _FileOrVerb(TyperGroup):
-    """Verbs; what is none of them is the file of the verb ``show``."""
+    """Verbs, of which ``show`` may be left out before its file."""
 
-    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the verb and its arguments."""
-        if args and args[0] not in self.commands and not args[0].startswith("-"):
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Return what is left of the arguments, a verb first."""
+        if args and args[0] not in {*self.commands, *ctx.help_option_names}:
             args = ["show", *args]
-        return super().resolve_command(ctx, args)
+        return super().parse_args(ctx, args)
 
 
 antenna = typer.Typer(
     name="antenna",
     cls=_FileOrVerb,
-    help="Read a pattern file (nullpose antenna FILE), or see what antennas change.",
+    help="Read a pattern file, or compare antennas: nullpose antenna FILE, nullpose antenna compare FILE.",
+    subcommand_metavar="FILE | compare FILE",
     no_args_is_help=True,
 )
 
@@ -48,42 +50,38 @@ def show(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="File of a radiation pattern.", show_default=False)
     ],
-    format: Annotated[  # noqa: A002
+    format_name: Annotated[
         str | None,
         typer.Option(
-            "--format", help="nec, ffd, ffs, cst, msi, csv or emane.", show_default="the file tells it"
+            "--format",
+            metavar="NAME",
+            help="nec, ffd, ffs, cst, msi, csv or emane.",
+            show_default="the file tells it",
         ),
     ] = None,
-    frequency: Annotated[
+    frequency_hz: Annotated[
         float | None,
         typer.Option("--frequency", metavar="HZ", help="Which of several frequencies.", show_default=False),
     ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option(
-            "--figure", metavar="FILE", help="Draw cuts and surface (.png or .svg).", show_default=False
-        ),
-    ] = None,
+    figure: FigureFile = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Show what is read of a radiation pattern.
+    """Say what a file of a radiation pattern holds.
 
     The word show may be left out: nullpose antenna FILE.
     """
     from nullpose.antenna.files import read_pattern
     from nullpose.antenna.summary import summary_of
     from nullpose.files import check_outputs
+    from nullpose.report.figures.style import prepare_figure_file, write_figure_file
     from nullpose.report.pattern import pattern_view
 
     if figure is not None:
-        from nullpose.report.figures.style import prepare_figure_file
-
         prepare_figure_file(figure)
     check_outputs({"the pattern": file}, {"--figure": figure})
-    table = read_pattern(file, format, frequency, estimate=True)
+    table = read_pattern(file, format_name, frequency_hz, estimate=True)
     if figure is not None:
         from nullpose.report.figures.cuts import draw_pattern
-        from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_pattern(table), figure)
     tell(summary_of(table), pattern_view, json_output, files=[figure] if figure else [])

@@ -1,4 +1,4 @@
-"""What was read of a pattern file, as a table."""
+"""What a file of a radiation pattern holds, as a table and in words."""
 
 from __future__ import annotations
 
@@ -6,33 +6,50 @@ import math
 
 from nullpose.antenna.summary import PatternSummary
 from nullpose.report.document import View, document, head, pairs
+from nullpose.report.numbers import fixed
 
 
 def pattern_view(summary: PatternSummary) -> View:
-    """Return a pattern's numbers.
+    """Return what was read of a pattern, and what a user should know of how.
 
     Args:
-        summary: of a file.
+        summary: of the pattern.
     """
-    depth = (
-        f"{summary.null_depth_db:.1f} dB below the peak" if math.isfinite(summary.null_depth_db) else "exact"
-    )
-    enough = "enough" if summary.step_deg <= summary.coarsest_deg else "coarse: look at the cuts"
-    frequency = "not told" if summary.frequency_hz is None else f"{summary.frequency_hz / 1e6:.6g} MHz"
+    table, largest_m = summary.table, summary.largest_m
+    known = "gains only" if table.field is None else "with phases"
     rows = [
-        ("quantity", summary.quantity),
-        ("frequency", frequency),
-        ("peak", f"{summary.peak_dbi:.2f} dBi at {_place(summary.peak_at_deg)}"),
-        ("mean gain", f"{summary.mean_gain_db:.2f} dB (0 without losses)"),
-        ("deepest null", f"{depth}, at {_place(summary.null_at_deg)}"),
-        ("ripple at theta 90", f"{summary.ripple_db:.2f} dB"),
-        ("polarisation", summary.polarisation),
-        ("degree", f"{summary.degree} (spherical harmonics)"),
-        ("grid step", f"{summary.step_deg:g} deg ({enough})"),
-        ("axes", "x forward, y left, z up; theta from z, phi from x towards y, right-handed"),
+        ("quantity", table.quantity),
+        ("frequency", None if table.frequency_hz is None else f"{table.frequency_hz / 1e6:.7g} MHz"),
+        ("peak", f"{fixed(summary.peak_dbi, 2)} dBi, at {_place(summary.peak_deg)}"),
+        ("average", f"{fixed(summary.mean_db, 2)} dB over the sphere"),
+        ("deepest null", _null_text(summary)),
+        ("ripple round z", f"{fixed(summary.ripple_db, 2)} dB, at theta 90"),
+        (
+            "polarisation",
+            summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak",
+        ),
+        ("degree needed", _degree_text(summary)),
+        ("grid", f"steps of {summary.step_deg:g} degrees, {known}"),
+        (
+            "",
+            None if largest_m is None else f"fine enough for what is within {largest_m:.2g} m of the origin",
+        ),
     ]
-    return document(head(summary.source), "", pairs("Pattern", rows), *summary.notes)
+    return document(head(table.source), pairs("", rows), *table.notes)
+
+
+def _null_text(summary: PatternSummary) -> str:
+    if summary.null_db == 0.0:
+        return "none"
+    depth = f"{fixed(summary.null_db, 1)} dB below the peak" if math.isfinite(summary.null_db) else "exact"
+    return f"{depth}, at {_place(summary.null_deg)}"
+
+
+def _degree_text(summary: PatternSummary) -> str:
+    most = summary.supported_degree
+    return f"more than {most}" if summary.degree is None else f"{summary.degree}; up to {most} can be told"
 
 
 def _place(angles_deg: tuple[float, float]) -> str:
-    return f"theta {angles_deg[0]:g}, phi {angles_deg[1]:g} deg"
+    theta_deg, phi_deg = angles_deg
+    return f"theta {theta_deg:g}" if theta_deg in (0.0, 180.0) else f"theta {theta_deg:g}, phi {phi_deg:g}"

@@ -1,4 +1,6 @@
-"""Files of radiation patterns, one format each, and what is refused of them."""
+"""Files of radiation patterns: seven formats, one file each, read into one table over the sphere."""
+
+from __future__ import annotations
 
 from nullpose.antenna.files.reading import FORMATS, read_pattern, read_profile
 

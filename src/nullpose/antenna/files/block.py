@@ -1,11 +1,10 @@
-"""What the formats have in common: numbered rows of a table, and from rows to a grid over the sphere."""
+"""What the formats have in common: rows of numbers with their lines, and the grid that rows make."""
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +12,43 @@ from numpy.typing import NDArray
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
 
-_SAME_DEG = 1e-6
-_SAME_DB = (
-    0.05  # two rows of one direction may differ by so much, or by so much of the peak where both are weak
-)
-_WEAK = 1e-3
+_FLOOR_DB = -190.0  # gains from here down stand for none: NEC writes -999.99, EMANE -327, CST -200
+_HIGHEST_DB = 100.0
+_LARGEST = 1e100  # number; the square of one beyond overflows
+_FEWEST = 4  # angles
+_UNEVEN_DEG = 0.01  # angles are written with two digits
+_SAME, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
 
-Lines = list[tuple[int, str]]
-"""A file's lines with their numbers."""
+FloatArray: TypeAlias = NDArray[np.float64]
+Lines: TypeAlias = Sequence[tuple[int, str]]
+"""Lines of a file that are not blank, with their numbers."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block:
+    """The pattern of one frequency as a file has it, rows in any order.
+
+    Args:
+        theta_deg: (n,) polar angles, which may begin at -180.
+        phi_deg: (n,) azimuths, from -360 to 360.
+        gain: (n,) power gain, linear; None where the field tells it.
+        field: (n, 2) complex parts along theta and phi; None for a table without phases.
+        lines: (n,) where in the file; empty where rows have no line of their own.
+        frequency_hz: None where the file does not say.
+        quantity: "gain", "realised gain" or "directivity".
+        notes: what a user should know, a sentence each.
+        doubt: why it is a guess and not a pattern; empty if it is one.
+    """
+
+    theta_deg: FloatArray
+    phi_deg: FloatArray
+    gain: FloatArray | None = None
+    field: NDArray[np.complex128] | None = None
+    lines: Sequence[int] = ()
+    frequency_hz: float | None = None
+    quantity: str = "gain"
+    notes: tuple[str, ...] = ()
+    doubt: str = ""
 
 
 def refuse(message: str, line: int = 0) -> NoReturn:
@@ -29,192 +57,150 @@ def refuse(message: str, line: int = 0) -> NoReturn:
     Args:
         message: what was given, what is allowed and what to try.
         line: where; 0 for the file as a whole.
+
+    Raises:
+        ScenarioError: always.
     """
     raise ScenarioError([Fault(f"line {line}" if line else "", message)])
 
 
-@dataclass(kw_only=True)
-class Block:
-    """A table of one frequency as a file has it, rows in any order.
+def numbers(lines: Lines, count: int, what: str) -> FloatArray:
+    """Return the numbers of some lines, (n, count), all finite.
 
     Args:
-        theta_deg: polar angle of each row, from -180.
-        phi_deg: azimuth of each row.
-        gain: power gain of each row, linear; None where the fields tell it.
-        field: (rows, 2) complex parts along theta and phi; None for a power table.
-        lines: line of each row in the file.
-        frequency_hz: None where the file does not say.
-        quantity: "gain", "realised gain" or "directivity".
-        notes: sentences for the user.
+        lines: numbers between blanks or commas.
+        count: how many each must have.
+        what: they are, in words.
+
+    Raises:
+        ScenarioError: a line has others, or there is none.
     """
+    if not lines:
+        refuse(f"there is no row of {what}; is the file cut short?")
+    rows = []
+    for line, text in lines:
+        try:
+            row = [float(word) for word in text.replace(",", " ").split()]
+        except ValueError:
+            row = []
+        if len(row) != count or not all(abs(number) < _LARGEST for number in row):
+            amount = "one finite number" if count == 1 else f"{count} finite numbers"
+            refuse(f"got {text.strip()[:60]!r}, must be {amount}: {what}", line)
+        rows.append(row)
+    return np.array(rows)
 
-    theta_deg: NDArray[np.float64]
-    phi_deg: NDArray[np.float64]
-    gain: NDArray[np.float64] | None = None
-    field: NDArray[np.complex128] | None = None
-    lines: Sequence[int] = ()
-    frequency_hz: float | None = None
-    quantity: str = "gain"
-    notes: list[str] = dataclasses.field(default_factory=list)
 
-
-def numbers(text: str, line: int, count: int, what: str) -> list[float]:
-    """Return the finite numbers of a row.
+def rows_of(lines: Lines, start: int, count: float, width: int, what: str) -> FloatArray:
+    """Return the numbers of so many lines from one on, (count, width).
 
     Args:
-        text: the row.
-        line: its number.
+        lines: of the file.
+        start: index of the first.
         count: how many there must be.
-        what: the row in words.
+        width: numbers in each.
+        what: they are, in words.
+
+    Raises:
+        ScenarioError: there are fewer, or one has other numbers.
     """
-    words = text.replace(",", " ").split()
-    try:
-        values = [float(word) for word in words]
-    except ValueError:
-        bad = next(word for word in words if not _is_number(word))
-        refuse(f"got {bad[:40]!r}, must be a number: {what}", line)
-    if len(values) != count:
-        refuse(f"got {len(values)} numbers, must be {count}: {what}", line)
-    if not np.all(np.isfinite(values)):
-        refuse(f"got {text.strip()[:60]!r}, every number must be finite: {what}", line)
-    return values
+    if not 0 < count <= len(lines) - start:
+        got = len(lines) - start
+        refuse(f"{count:g} rows are announced and {got} lines follow; the file is cut short", lines[-1][0])
+    return numbers(lines[start : start + int(count)], width, what)
 
 
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
-def from_db(gain_db: Any) -> NDArray[np.float64]:
-    """Return linear gains; 0 for the floors that stand for no gain, -190 dB and below.
+def from_db(gain_db: Any) -> FloatArray:
+    """Return linear power; 0 for the floors that stand for none, -190 dB and below.
 
     Args:
         gain_db: any shape.
     """
-    values = np.asarray(gain_db, dtype=float)
-    return np.where(values <= -190.0, 0.0, 10.0 ** (np.maximum(values, -190.0) / 10.0))
-
-
-def picked(blocks: Iterable[Block], frequency_hz: float | None) -> Block:
-    """Return the block of a frequency, or the only one.
-
-    Args:
-        blocks: of a file.
-        frequency_hz: which one; None where there is only one.
-    """
-    every = list(blocks)
-    if not every:
-        refuse("there is no pattern in it; the file must hold a table of gains or fields over directions")
-    known = [b.frequency_hz for b in every if b.frequency_hz is not None]
-    told = ", ".join(f"{f:g}" for f in known[:20])
-    if frequency_hz is None:
-        if len(every) > 1:
-            refuse(f"it holds {len(every)} frequencies: {told} Hz; state one as frequency_hz")
-        return every[0]
-    near = [b for b in every if b.frequency_hz and abs(b.frequency_hz / frequency_hz - 1.0) < 1e-3]
-    if not near and known:
-        refuse(f"got frequency_hz = {frequency_hz:g}, must be one of the file's: {told} Hz")
-    return near[0] if near else every[0]
+    power = 10.0 ** (np.clip(gain_db, _FLOOR_DB, _HIGHEST_DB) / 10.0)
+    return np.where(np.asarray(gain_db) > _FLOOR_DB, power, 0.0)
 
 
 def gridded(block: Block, source: str) -> PatternTable:
-    """Return a block as a table over the sphere, polar angles from 0 to 180 and azimuths from 0.
+    """Return a block as a table over the sphere.
 
     Args:
-        block: its rows may have polar angles from -180 and azimuths of any turn; a seam at 360 may be there.
+        block: of any grid with equal steps that has every direction.
         source: the file and its format.
+
+    Raises:
+        ScenarioError: rows are missing, contradict each other or are beyond the sphere.
     """
-    theta, phi, sign = block.theta_deg.copy(), block.phi_deg.copy(), np.ones(len(block.theta_deg))
-    outside = np.flatnonzero((np.abs(theta) > 180.0 + _SAME_DEG) | (np.abs(phi) > 720.0))
-    if len(outside):
-        at = outside[0]
+    theta, phi = np.round(block.theta_deg, 3), np.round(block.phi_deg, 3)
+    beyond = (np.abs(theta) > 180.0) | (np.abs(phi) > 360.0)
+    _refuse_row(block, beyond, "is beyond the sphere; polar angles go from 0 to 180, azimuths from 0 to 360")
+    back = theta < 0.0  # the same direction seen the other way round, where both unit vectors turn over
+    thetas, rows = np.unique(np.abs(theta), return_inverse=True)
+    phis, columns = np.unique(np.round(phi + 180.0 * back, 3) % 360.0, return_inverse=True)
+    _require_even("polar angles", thetas, 180.0)
+    _require_even("azimuths", np.append(phis, 360.0), 360.0)
+    first = np.full((len(thetas), len(phis)), -1)
+    first[rows[::-1], columns[::-1]] = np.arange(len(rows))[::-1]
+    turn = _fill_poles(first, phis)
+    holes = np.argwhere(first < 0)
+    if len(holes):
         refuse(
-            f"got theta = {theta[at]:g}, phi = {phi[at]:g} degrees, which is beyond the sphere; polar angles "
-            "go from 0 to 180, azimuths once round",
-            _line(block, int(at)),
+            f"there is no row for theta = {thetas[holes[0][0]]:g}, phi = {phis[holes[0][1]]:g} degrees"
+            f"{f', nor for {len(holes) - 1} other directions' if len(holes) > 1 else ''}; the grid must have "
+            "every direction. Is the file cut short?"
         )
-    back = theta < 0.0  # the same direction the other way round: both unit vectors turn over
-    theta[back], phi[back], sign[back] = -theta[back], phi[back] + 180.0, -1.0
-    phi = np.asarray(np.round(np.mod(phi, 360.0), 6), dtype=float)
-    phi[phi >= 360.0] = 0.0
-    theta = np.asarray(np.round(theta, 6), dtype=float)
-    thetas, rows = np.unique(theta, return_inverse=True)
-    phis, columns = np.unique(phi, return_inverse=True)
-    if len(thetas) < 2 or thetas[0] != 0.0 or thetas[-1] != 180.0:
-        refuse(f"polar angles go from {thetas[0]:g} to {thetas[-1]:g} degrees, must go from 0 to 180")
-    index = np.full((len(thetas), len(phis)), -1)
-    index[rows, columns] = np.arange(len(theta))
-    _fill_poles(index)
-    hole = np.argwhere(index < 0)
-    if len(hole):
-        refuse(
-            f"there is no row for theta = {thetas[hole[0][0]]:g}, phi = {phis[hole[0][1]]:g} degrees and "
-            f"{len(hole) - 1} more directions of the grid; the file is cut short or has holes"
-        )
-    values = block.field * sign[:, None] if block.field is not None else None
-    gain = np.sum(np.abs(values) ** 2, axis=1) if block.gain is None and values is not None else block.gain
-    assert gain is not None, "a block has gains or fields"
-    _agreeing(block, gain, index[rows, columns])
-    if len(phis) > 1 and np.max(np.diff(phis, append=phis[0] + 360.0)) > 1.5 * np.min(np.diff(phis)):
-        refuse(
-            f"azimuths go from {phis[0]:g} to {phis[-1]:g} degrees with gaps, must go once round "
-            "in equal steps"
-        )
-    fields = None
-    if values is not None:
-        fields = values[index]
-        _turn_at_poles(fields, phis, phi[index])
+    field, gain = block.field, block.gain
+    if field is not None:
+        _refuse_row(block, np.any(np.abs(field) > _LARGEST, axis=1), "has a field beyond all measure")
+        field = field * np.where(back, -1.0, 1.0)[:, None]
+        gain = np.sum(np.abs(field) ** 2, axis=1)
+    assert gain is not None  # a block has the one or the other
+    pole = (rows == 0) | (rows == len(thetas) - 1)
+    other = gain[first[rows, np.where(pole, 0, columns)]]
+    apart = np.maximum(gain, other) > _SAME * np.minimum(gain, other)
+    apart &= np.abs(gain - other) > _WEAK * np.max(gain)
+    _refuse_row(
+        block, apart, "is given twice, with other numbers; keep one (at a pole azimuths are one direction)"
+    )
     return PatternTable(
-        theta_deg=thetas,
-        phi_deg=phis,
-        gain=gain[index],
-        field=fields,
-        frequency_hz=block.frequency_hz,
+        theta_deg=np.linspace(0.0, 180.0, len(thetas)),
+        phi_deg=np.linspace(0.0, 360.0, len(phis), endpoint=False),
+        gain=gain[first],
+        field=None if field is None else _turned(field[first], turn),
+        frequency_hz=block.frequency_hz if (block.frequency_hz or 0.0) > 0.0 else None,  # some write 0
         quantity=block.quantity,
         source=source,
-        notes=tuple(block.notes),
+        notes=block.notes,
     )
 
 
-def _fill_poles(index: NDArray[np.intp]) -> None:
-    """Let a pole that is told at some azimuths stand for every azimuth."""
-    for row in (index[0], index[-1]):
-        told = row[row >= 0]
-        if len(told):
-            row[row < 0] = told[0]
+def _fill_poles(first: NDArray[np.intp], phi_deg: FloatArray) -> FloatArray:
+    """Let a row at a pole stand for azimuths without one; return by how much they turn, (t, p), radians."""
+    turn_rad = np.zeros(first.shape)
+    for pole, sense in ((0, 1.0), (-1, -1.0)):  # the south pole's azimuths turn the other way
+        gap = first[pole] < 0
+        given = int(np.argmin(gap))
+        turn_rad[pole, gap] = sense * np.radians(phi_deg[gap] - phi_deg[given])
+        first[pole, gap] = first[pole, given]
+    return turn_rad
 
 
-def _turn_at_poles(
-    field: NDArray[np.complex128], phi_deg: NDArray[np.float64], told_deg: NDArray[np.float64]
-) -> None:
-    """Turn a pole's field, told at one azimuth, to the others: there both unit vectors turn with the azimuth.
-
-    Args:
-        field: (t, p, 2), changed in place.
-        phi_deg: (p,) azimuths of the columns.
-        told_deg: (t, p) azimuths at which the values were told.
-    """
-    for end, sense in ((0, 1.0), (-1, -1.0)):
-        by = np.radians(phi_deg - told_deg[end])
-        theta, phi = field[end, :, 0].copy(), field[end, :, 1].copy()
-        field[end, :, 0] = theta * np.cos(by) + sense * phi * np.sin(by)
-        field[end, :, 1] = phi * np.cos(by) - sense * theta * np.sin(by)
+def _turned(field: NDArray[np.complex128], turn_rad: FloatArray) -> NDArray[np.complex128]:
+    """Return a field's parts along unit vectors that are turned from theta towards phi."""
+    along, round_z, cosine, sine = field[..., 0], field[..., 1], np.cos(turn_rad), np.sin(turn_rad)
+    return np.stack([cosine * along + sine * round_z, cosine * round_z - sine * along], axis=-1)
 
 
-def _agreeing(block: Block, gain: NDArray[np.float64], kept: NDArray[np.intp]) -> None:
-    other = gain[kept]
-    apart = np.abs(gain - other) > _WEAK * np.max(gain, initial=0.0)
-    apart &= np.abs(10.0 * np.log10(np.maximum(gain, 1e-30) / np.maximum(other, 1e-30))) > _SAME_DB
-    for at in np.flatnonzero(apart)[:1]:
+def _refuse_row(block: Block, bad: NDArray[np.bool_], why: str) -> None:
+    """Refuse the first of the rows that are bad, if any is."""
+    for at in np.flatnonzero(bad)[:1]:
+        line = block.lines[at] if len(block.lines) else 0
+        refuse(f"theta = {block.theta_deg[at]:g}, phi = {block.phi_deg[at]:g} degrees {why}", line)
+
+
+def _require_even(name: str, angles_deg: FloatArray, end_deg: float) -> None:
+    even = np.linspace(0.0, end_deg, len(angles_deg))
+    if len(angles_deg) < _FEWEST or np.max(np.abs(angles_deg - even)) > _UNEVEN_DEG:
+        told = ", ".join(f"{angle:g}" for angle in angles_deg[:3])
         refuse(
-            f"theta = {block.theta_deg[at]:g}, phi = {block.phi_deg[at]:g} degrees is told twice, with other "
-            "numbers; keep one",
-            _line(block, int(at)),
+            f"{name} are {told} ... {angles_deg[-1]:g} degrees, must go from 0 to {end_deg:g} in equal "
+            f"steps, {_FEWEST} angles at least; export the whole sphere. Is the file cut short?"
         )
-
-
-def _line(block: Block, row: int) -> int:
-    return int(block.lines[row]) if len(block.lines) else 0

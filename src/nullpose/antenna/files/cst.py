@@ -1,4 +1,4 @@
-"""Far fields of CST: sources (.ffs) and tables in text."""
+"""Far fields of CST: sources (.ffs), and tables in text."""
 
 from __future__ import annotations
 
@@ -7,108 +7,89 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, from_db, numbers, refuse
+from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
 
-_COLUMN = re.compile(r"(\w[\w .]*?)(?:\(\s*([^)]*?)\s*\))?\s*\[\s*([^\]]*?)\s*\]")
-_OHM = 60.0  # |E|^2 / (60 P) is the gain of a peak field at 1 m: the wave impedance over 2 pi
-
-
-def is_ffs(lines: Lines) -> bool:
-    """Return whether a file is a far-field source."""
-    return any(line.lstrip().startswith("//") and "E_Theta" in line for _, line in lines[:2000])
+_OHM = 376.730313 / (2.0 * np.pi)  # |E|^2 over this and the power is the gain of a peak field at 1 m
+_HEADING = re.compile(r"([^\[\]]+)\[([^\]]*)\]")
+_LONGEST = 1000  # characters of a heading that are looked at
+_PARTS = ("abs(theta)", "abs(phi)")
 
 
 def read_ffs(lines: Lines) -> Iterator[Block]:
-    """Yield the patterns of a far-field source: gains over what the antenna accepts."""
-    powers: list[float] = []
-    blocks: list[tuple[int, int]] = []
-    at = 0
-    while at < len(lines):
-        line, text = lines[at]
-        at += 1
-        label = text.lower()
-        if "power" in label and "frequency" in label and text.lstrip().startswith("//"):
-            while at < len(lines) and not lines[at][1].lstrip().startswith("//"):
-                powers += numbers(
-                    lines[at][1], lines[at][0], len(lines[at][1].split()), "powers and frequency"
-                )
-                at += 1
-        elif "#phi" in label and text.lstrip().startswith("//"):
-            if at >= len(lines):
-                refuse("the counts of azimuths and polar angles are missing; the file is cut short", line)
-            counts = numbers(lines[at][1], lines[at][0], 2, "counts of azimuths and polar angles")
-            start = at + 1
-            while start < len(lines) and lines[start][1].lstrip().startswith("//"):
-                start += 1
-            blocks.append((start, int(counts[0] * counts[1])))
-            at = start + blocks[-1][1]
-    if len(powers) < 4 * len(blocks):
-        refuse("radiated, accepted and stimulated power and the frequency are not all told; all four must be")
-    for k, (start, count) in enumerate(blocks):
-        rows = lines[start : start + count]
-        if len(rows) < count:
+    """Yield the patterns of a far-field source: gains over the power that the antenna accepts.
+
+    Args:
+        lines: of the file, whose sections begin with lines of "//".
+
+    Raises:
+        ScenarioError: a table is faulty, or there is no power.
+    """
+    heads = [
+        (i, line, text.lower()) for i, (line, text) in enumerate(lines) if text.lstrip().startswith("//")
+    ]
+    found = {
+        word: [i + 1 for i, _, text in heads if word in text] for word in ("power", "#phi", "re(e_theta)")
+    }
+    blocks = len(found["re(e_theta)"])
+    if not found["power"] or len(found["#phi"]) != blocks:
+        refuse("the powers, or the counts of azimuths and polar angles, are missing; is the file cut short?")
+    what = "radiated, accepted and stimulated power in W, the frequency in Hz, of each pattern a line each"
+    powers = rows_of(lines, found["power"][0], 4 * blocks, 1, what).reshape(-1, 4)
+    for power, at, start in zip(powers, found["#phi"], found["re(e_theta)"], strict=True):
+        count = float(np.prod(rows_of(lines, at, 1, 2, "the counts of azimuths and polar angles")))
+        values = rows_of(lines, start, count, 6, "phi, theta, real and imaginary part of both fields")
+        if not power[1] > 0.0:
             refuse(
-                f"there are {len(rows)} rows of fields, must be {count}: the file is cut short",
-                rows[-1][0] if rows else 0,
+                f"got an accepted power of {power[1]:g} W, must be more than 0", lines[found["power"][0]][0]
             )
-        values = np.array(
-            [numbers(text, line, 6, "phi, theta and both complex fields") for line, text in rows]
-        )
-        accepted, frequency = powers[4 * k + 1], powers[4 * k + 3]
-        if not accepted > 0.0:
-            refuse(f"got an accepted power of {accepted:g} W, must be more than 0")
         yield Block(
             theta_deg=values[:, 1],
             phi_deg=values[:, 0],
-            field=(values[:, 2::2] + 1j * values[:, 3::2]) / np.sqrt(_OHM * accepted),
-            lines=[line for line, _ in rows],
-            frequency_hz=frequency,
+            field=(values[:, 2::2] + 1j * values[:, 3::2]) / np.sqrt(_OHM * power[1]),
+            lines=[line for line, _ in lines[start : start + len(values)]],
+            frequency_hz=float(power[3]),
         )
 
 
-def is_cst(lines: Lines) -> bool:
-    """Return whether a file is a table in text."""
-    return bool(lines) and re.match(r"\s*Theta\s*\[deg", lines[0][1], re.IGNORECASE) is not None
-
-
 def read_cst(lines: Lines) -> Iterator[Block]:
-    """Yield the one pattern of a table in text, whose header names its columns and units."""
-    if not is_cst(lines):
-        refuse("it does not begin as a CST table does, with 'Theta [deg.]  Phi [deg.]  Abs(...)[...]'", 1)
-    columns = [
-        (name.strip(), what.strip(), unit.strip()) for name, what, unit in _COLUMN.findall(lines[0][1])
+    """Yield the one pattern of a table in text, whose heading names columns and units.
+
+    Args:
+        lines: of the file.
+
+    Raises:
+        ScenarioError: the table is faulty, or has no column of a gain, a directivity or a field.
+    """
+    heading = [
+        (re.sub(r"\s", "", name).lower(), unit.strip().lower())
+        for name, unit in _HEADING.findall(lines[0][1][:_LONGEST])
     ]
-    rows = [(line, text) for line, text in lines[1:] if not set(text.strip()) <= {"-"}]
-    if not rows:
-        refuse("there are no rows below the header; the file is cut short")
-    values = np.array([numbers(text, line, len(columns), lines[0][1].strip()) for line, text in rows])
-    whole = [i for i, (name, what, _) in enumerate(columns) if name == "Abs" and what not in ("Theta", "Phi")]
-    if not whole:
-        refuse("no column is named Abs(Dir.), Abs(Gain), Abs(Realized Gain) or Abs(E)", 1)
-    parts = {what: i for i, (name, what, _) in enumerate(columns) if name == "Abs"}
-    phases = {what: i for i, (name, what, _) in enumerate(columns) if name == "Phase"}
-    what = columns[whole[0]][1].lower()
-    block = Block(
-        theta_deg=values[:, 0],
-        phi_deg=values[:, 1],
+    columns = {name: i for i, (name, _) in enumerate(heading)}
+    total = next((name for name in columns if re.fullmatch(r"abs\((dir|gain|real|rlzd|e).*\)", name)), "")
+    if not total or "theta" not in columns or "phi" not in columns:
+        refuse(
+            "must have columns Theta, Phi and Abs(Dir.), Abs(Gain), Abs(Realized Gain) or Abs(E)", lines[0][0]
+        )
+    rows = [row for row in lines[1:] if set(row[1].strip()) != {"-"}]
+    values = numbers(rows, len(heading), ", ".join(name for name, _ in heading))
+    phases = [part.replace("abs", "phase") for part in _PARTS]
+    field = None
+    if columns.keys() >= {*_PARTS, *phases}:
+        powers = np.stack([_power(values, heading, columns[part]) for part in _PARTS], axis=1)
+        field = np.sqrt(powers) * np.exp(1j * np.radians(values[:, [columns[phase] for phase in phases]]))
+    yield Block(
+        theta_deg=values[:, columns["theta"]],
+        phi_deg=values[:, columns["phi"]],
+        gain=_power(values, heading, columns[total]),
+        field=field,
         lines=[line for line, _ in rows],
-        quantity="directivity"
-        if what.startswith(("dir", "e"))
-        else "realised gain"
-        if "real" in what
-        else "gain",
+        quantity={"d": "directivity", "e": "directivity", "r": "realised gain"}.get(total[4], "gain"),
     )
-    if {"Theta", "Phi"} <= parts.keys() & phases.keys():
-        sides = ("Theta", "Phi")
-        powers = np.stack([_linear(values[:, parts[s]], columns[parts[s]][2]) for s in sides], axis=1)
-        turns = np.radians(np.stack([values[:, phases[s]] for s in sides], axis=1))
-        block.field = np.sqrt(powers) * np.exp(1j * turns)
-    else:
-        block.gain = _linear(values[:, whole[0]], columns[whole[0]][2])
-    yield block
 
 
-def _linear(values: np.ndarray, unit: str) -> np.ndarray:
-    if unit.lower().startswith("db"):
-        return from_db(values)
-    return values**2 if "v" in unit.lower() else values
+def _power(values: FloatArray, heading: list[tuple[str, str]], column: int) -> FloatArray:
+    """Return a column in decibels, in V/m or linear as linear power."""
+    unit = heading[column][1]
+    if unit.startswith("db"):
+        return from_db(values[:, column])
+    return np.abs(values[:, column]) ** (2 if "v" in unit else 1)

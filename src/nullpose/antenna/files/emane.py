@@ -8,72 +8,77 @@ from xml.parsers import expat
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, from_db, refuse
+from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse
 
-_FLOOR_DB = -327.0  # outside of every range
-_ANGLES = {"elevation": (-90, 90), "bearing": (0, 359)}
+_OUTSIDE_DB = -327.0  # of every range
+_LOWEST = {"elevation": -90, "bearing": 0}
+_NOTE = "The file's bearings grow clockwise seen from above; they are turned the other way round."
 
 
-def is_emane(lines: Lines) -> bool:
-    """Return whether a file is an antenna profile."""
-    return any("<antennaprofile" in line for _, line in lines[:50])
+class _Profile:
+    """What expat finds in a profile: gains and blockage in dB by elevation and bearing."""
+
+    def __init__(self, lines: Lines) -> None:
+        self.grids = {
+            "antennapattern": np.full((181, 360), _OUTSIDE_DB),
+            "blockagepattern": np.zeros((181, 360)),
+        }
+        self.found: set[str] = set()
+        self.grid: FloatArray | None = None
+        self.ranges = {"elevation": slice(None), "bearing": slice(None)}
+        self.parser = expat.ParserCreate()
+        self.parser.StartElementHandler = self.start
+        self.parser.EntityDeclHandler = self.entity  # expat itself opens no other file
+        told = dict(lines)  # blank lines put back, so that expat's line numbers are the file's
+        try:
+            self.parser.Parse("\n".join(told.get(at, "") for at in range(1, lines[-1][0] + 1)), True)
+        except expat.ExpatError as error:
+            refuse(f"this is not XML: {expat.ErrorString(error.code)}; is the file cut short?", error.lineno)
+
+    def start(self, name: str, values: dict[str, str]) -> None:
+        if name in self.grids:
+            self.grid = self.grids[name]
+            self.found.add(name)
+        elif name in _LOWEST:
+            low, high = (self.number(values, key) - _LOWEST[name] for key in ("min", "max"))
+            size = 181 if name == "elevation" else 360
+            if not 0 <= low <= high < size or low % 1.0 or high % 1.0:
+                least, most = _LOWEST[name], _LOWEST[name] + size - 1
+                given = f"{name} min={values.get('min')!r} max={values.get('max')!r}"
+                refuse(
+                    f"got {given}, must be whole degrees from {least} to {most}",
+                    self.parser.CurrentLineNumber,
+                )
+            self.ranges[name] = slice(int(low), int(high) + 1)
+        elif name == "gain" and self.grid is not None:
+            self.grid[self.ranges["elevation"], self.ranges["bearing"]] = self.number(values, "value")
+
+    def entity(self, *_: Any) -> None:
+        refuse(
+            "it declares entities, which are not read; write out what they stand for",
+            self.parser.CurrentLineNumber,
+        )
+
+    def number(self, values: dict[str, str], key: str) -> float:
+        return float(numbers([(self.parser.CurrentLineNumber, values.get(key, ""))], 1, key)[0, 0])
 
 
 def read_emane(lines: Lines) -> Iterator[Block]:
-    """Yield the pattern of a profile, blockage taken off; bearings grow clockwise."""
-    gain, blocked = np.full((181, 360), _FLOOR_DB), np.zeros((181, 360))
-    told = {"antennapattern": False}
-    ranges: dict[str, slice] = {}
-    target: list[np.ndarray] = []
-    parser = expat.ParserCreate()
+    """Yield the pattern of a profile, its blockage applied.
 
-    def start(name: str, values: dict[str, str]) -> None:
-        if name in ("antennapattern", "blockagepattern"):
-            told[name] = True
-            target[:] = [gain if name == "antennapattern" else blocked]
-        elif name in _ANGLES:
-            ranges[name] = _range(name, values, parser.CurrentLineNumber)
-        elif name == "gain" and target:
-            whole = slice(None)
-            target[0][ranges.get("elevation", whole), ranges.get("bearing", whole)] = _number(
-                values.get("value"), parser.CurrentLineNumber
-            )
+    Args:
+        lines: of the file.
 
-    def end(name: str) -> None:
-        ranges.pop(name, None)
-
-    def entity(*_: Any) -> None:
-        refuse("it declares entities, which are not read; remove them", parser.CurrentLineNumber)
-
-    parser.StartElementHandler, parser.EndElementHandler, parser.EntityDeclHandler = start, end, entity
-    try:
-        parser.Parse("\n".join(text for _, text in lines).encode(), True)
-    except expat.ExpatError as error:
-        refuse(f"this is not XML: {expat.ErrorString(error.code)}", error.lineno)
-    if not told["antennapattern"]:
-        refuse("there is no antennapattern in it, must be")
+    Raises:
+        ScenarioError: it is no XML, or no antenna pattern.
+    """
+    profile = _Profile(lines)
+    if "antennapattern" not in profile.found:
+        refuse("there is no <antennapattern> in it, must be; a blockage goes into the same file")
     elevation, bearing = np.meshgrid(np.arange(-90.0, 91.0), np.arange(360.0), indexing="ij")
     yield Block(
         theta_deg=90.0 - elevation.ravel(),
         phi_deg=-bearing.ravel(),
-        gain=from_db(np.maximum(gain + blocked, _FLOOR_DB)).ravel(),
-        notes=["Bearings grow clockwise seen from above: they are turned round to azimuths."],
+        gain=from_db(profile.grids["antennapattern"] + profile.grids["blockagepattern"]).ravel(),
+        notes=(_NOTE,),
     )
-
-
-def _range(name: str, values: dict[str, str], line: int) -> slice:
-    least, most = _ANGLES[name]
-    low, high = (_number(values.get(key), line) for key in ("min", "max"))
-    if not (least <= low <= high <= most and low == int(low) and high == int(high)):
-        refuse(f"got {name} from {low:g} to {high:g}, must be whole degrees from {least} to {most}", line)
-    return slice(int(low) - least, int(high) - least + 1)
-
-
-def _number(text: str | None, line: int) -> float:
-    try:
-        value = float(text or "")
-    except ValueError:
-        refuse(f"got {text!r}, must be a number", line)
-    if not np.isfinite(value):
-        refuse(f"got {text!r}, must be finite", line)
-    return value

@@ -6,53 +6,39 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, numbers, refuse
+from nullpose.antenna.files.block import Block, Lines, numbers, rows_of
 
-_NOTE = "The file has no power: fields are scaled to a mean gain of 1, which is directivity."
-
-
-def is_ffd(lines: Lines) -> bool:
-    """Return whether a file begins as a .ffd does: two ranges of angles, then frequencies."""
-    heads = [line.split() for _, line in lines[:3]]
-    return (
-        len(heads) == 3
-        and len(heads[0]) == len(heads[1]) == 3
-        and bool(heads[2])
-        and heads[2][0].lower().startswith("freq")
-    )
+_NOTE = "The file has no power: its fields are scaled to an average of 1, which is directivity."
 
 
 def read_ffd(lines: Lines) -> Iterator[Block]:
-    """Yield the patterns of a file, polar angles in the outer loop."""
-    if len(lines) < 4 or not is_ffd(lines):
-        refuse(
-            "it does not begin as a .ffd file does: two ranges 'start stop count', then 'Frequencies n'", 1
-        )
-    ranges = [numbers(text, line, 3, "an angle's start, stop and count") for line, text in lines[:2]]
-    theta, phi = (np.linspace(low, high, max(1, int(count))) for low, high, count in ranges)
-    grid = [axis.ravel() for axis in np.meshgrid(theta, phi, indexing="ij")]
-    at, frequency = 3, None
+    """Yield the patterns of a file, polar angles in the outer loop.
+
+    Args:
+        lines: of the file: first, last and count of polar angles, the same of azimuths, then frequencies.
+
+    Raises:
+        ScenarioError: a table is faulty.
+    """
+    ranges = numbers(lines[:2], 3, "an angle's first, last and count")
+    count, frequency_hz, at = ranges[0, 2] * ranges[1, 2], None, 2
     while at < len(lines):
-        line, text = lines[at]
-        if text.lower().startswith("freq"):
-            frequency = numbers(text.split(maxsplit=1)[-1], line, 1, "a frequency in Hz")[0]
+        number, text = lines[at]
+        if text.lstrip().lower().startswith("freq"):  # "Frequencies n", "Freq n", "Frequency f"
+            words = text.split()
+            frequency_hz = float(numbers([(number, " ".join(words[1:]))], 1, "a frequency in Hz")[0, 0])
             at += 1
             continue
-        rows = lines[at : at + len(grid[0])]
-        if len(rows) < len(grid[0]):
-            refuse(
-                f"there are {len(rows)} rows of fields, must be {len(grid[0])}: the file is cut short", line
-            )
-        values = np.array(
-            [numbers(text, line, 4, "real and imaginary part of both fields") for line, text in rows]
-        )
+        values = rows_of(lines, at, count, 4, "real and imaginary part of the fields along theta and phi")
+        angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
+        theta, phi = np.meshgrid(*angles, indexing="ij")
         yield Block(
-            theta_deg=grid[0],
-            phi_deg=grid[1],
+            theta_deg=theta.ravel(),
+            phi_deg=phi.ravel(),
             field=values[:, ::2] + 1j * values[:, 1::2],
-            lines=[line for line, _ in rows],
-            frequency_hz=frequency,
+            lines=[line for line, _ in lines[at : at + len(values)]],
+            frequency_hz=frequency_hz,
             quantity="directivity",
-            notes=[_NOTE],
+            notes=(_NOTE,),
         )
-        at += len(rows)
+        at += len(values)

@@ -1,94 +1,75 @@
-"""Two cuts of a planning tool: .msi, .pln."""
+"""Two cuts from a planning tool: .msi, .pln."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, from_db, numbers, refuse
+from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
 
-_DBD = 2.15  # dB over an isotropic antenna of a half-wave dipole, which gains are over unless dBi is stated
+_DBD = 2.15  # dB: a half-wave dipole over an isotropic antenna
 _FLAT_DB = 0.5
-_ESTIMATE = (
-    "Two cuts do not tell a pattern: between them gains are an estimate, off by 4 to 18 dB for antennas that "
-    "are not the same all round."
+_WEAK_DB = 20.0  # below the peak; what is weaker may differ from side to side
+_CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
+_ALL_ROUND = "Two cuts, and the horizontal one is flat: read as the same all round the z axis."
+_DOUBT = (
+    "it is not the same all round: its cuts change by {:.1f} dB from side to side; two cuts do not tell what "
+    "is between them, and an estimate is off by 4 to 18 dB. Ask the maker for the whole pattern"
 )
 
 
-def is_msi(lines: Lines) -> bool:
-    """Return whether a file has the two cuts."""
-    heads = {line.split()[0].upper() for _, line in lines if line.split()}
-    return {"HORIZONTAL", "VERTICAL"} <= heads
-
-
-def read_msi(lines: Lines, estimate: bool = False) -> Iterator[Block]:
+def read_msi(lines: Lines) -> Iterator[Block]:
     """Yield the pattern of an antenna that is the same all round, or an estimate of another one's.
 
-    Losses are positive. The vertical angle grows downwards from the horizon ahead, the azimuth clockwise.
+    Losses are positive; the vertical angle grows downwards from ahead, and behind is 180 degrees.
 
     Args:
         lines: of the file.
-        estimate: whether a horizontal cut that is not flat is taken all the same.
+
+    Raises:
+        ScenarioError: a cut or the gain is missing or faulty.
     """
-    keys: dict[str, str] = {}
-    cuts: dict[str, np.ndarray] = {}
-    at = 0
-    while at < len(lines):
-        line, text = lines[at]
-        word, _, rest = text.strip().partition(" ")
-        at += 1
-        if word.upper() in ("HORIZONTAL", "VERTICAL"):
-            count = int(numbers(rest, line, 1, "the count of a cut's rows")[0])
-            rows = lines[at : at + count]
-            if len(rows) < count:
-                refuse(f"the cut has {len(rows)} rows, must be {count}: the file is cut short", line)
-            cuts[word.upper()] = np.array(
-                [numbers(row, n, 2, "an angle and a loss in dB") for n, row in rows]
-            )
-            at += count
-        else:
-            keys[word.upper()] = rest.strip()
-    if cuts.keys() != {"HORIZONTAL", "VERTICAL"}:
-        refuse("the cuts HORIZONTAL and VERTICAL are not both there, must be")
-    across, down = (_loss(cuts[name]) for name in ("HORIZONTAL", "VERTICAL"))
-    ripple = float(np.ptp(across))
-    if ripple > _FLAT_DB and not estimate:
-        refuse(
-            f"the horizontal cut changes by {ripple:.1f} dB. {_ESTIMATE} Only a flat horizontal cut can be "
-            "solved for; ask the maker for the whole pattern"
-        )
-    theta, phi = np.meshgrid(np.arange(0.0, 181.0), np.arange(0.0, 360.0), indexing="ij")
-    front, back = down[(theta - 90.0).astype(int) % 360], down[(270.0 - theta).astype(int) % 360]
-    ahead = 0.5 * (1.0 + np.cos(np.radians(phi)))
-    loss = ahead * front + (1.0 - ahead) * back
-    if ripple > _FLAT_DB:
-        side = across[(-phi).astype(int) % 360]
-        loss = loss + (side - ahead * across[0] - (1.0 - ahead) * across[180]) * np.sin(np.radians(theta))
-    block = Block(theta_deg=theta.ravel(), phi_deg=phi.ravel(), gain=from_db(_gain_dbi(keys) - loss).ravel())
-    block.frequency_hz = _frequency(keys)
-    block.notes = (
-        [_ESTIMATE] if ripple > _FLAT_DB else ["Read as the same all round: its horizontal cut is flat."]
+    keys = {text.split()[0].upper(): (i, text.split(None, 1)[-1]) for i, (_, text) in enumerate(lines)}
+    across, down = (_loss_db(lines, keys, name) for name in ("HORIZONTAL", "VERTICAL"))
+    at, gain = keys.get("GAIN", (0, ""))
+    amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", gain.strip(), flags=re.IGNORECASE))]
+    gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
+    stated = "dBi" if "dbi" in gain.lower() else "dBd"
+    theta, phi = np.meshgrid(np.arange(181), np.arange(360), indexing="ij")
+    front, back = down[(theta - 90) % 360], down[(270 - theta) % 360]
+    strong = np.minimum(front, back) < np.min(down) + _WEAK_DB
+    uneven_db = max(float(np.ptp(across)), float(np.max(np.abs(front - back)[strong])))
+    # between the cuts: the vertical one by its weight ahead, and what the horizontal one adds at the equator
+    ahead = 0.5 + 0.5 * np.cos(np.radians(phi))
+    added = across[-phi % 360] - ahead * across[0] - (1.0 - ahead) * across[180]
+    loss = ahead * front + (1.0 - ahead) * back + added * np.sin(np.radians(theta))
+    loss = np.maximum(loss, min(np.min(across), np.min(down)))
+    frequency_hz = None
+    with suppress(KeyError, ValueError):  # a range of frequencies is none
+        frequency_hz = 1e6 * float(keys["FREQUENCY"][1])
+    yield Block(
+        theta_deg=theta.ravel().astype(float),
+        phi_deg=phi.ravel().astype(float),
+        gain=from_db(gain_dbi + (_DBD if stated == "dBd" else 0.0) - loss).ravel(),
+        frequency_hz=frequency_hz,
+        notes=(
+            f"Its gain is read as {stated}.",
+            _CLOCKWISE,
+            *([_ALL_ROUND] if uneven_db <= _FLAT_DB else []),
+        ),
+        doubt=_DOUBT.format(uneven_db) if uneven_db > _FLAT_DB else "",
     )
-    yield block
 
 
-def _loss(rows: np.ndarray) -> np.ndarray:
-    """Return the loss at each whole degree."""
-    angle, order = np.unique(np.mod(rows[:, 0], 360.0), return_index=True)
-    return np.asarray(np.interp(np.arange(360.0), angle, rows[order, 1], period=360.0))
-
-
-def _gain_dbi(keys: dict[str, str]) -> float:
-    words = keys.get("GAIN", "").split()
-    if not words:
-        refuse("GAIN is missing, must be told in dBd or dBi")
-    value = numbers(words[0].rstrip("dBbiID"), 0, 1, "GAIN")[0]
-    return value if "DBI" in keys["GAIN"].upper() else value + _DBD
-
-
-def _frequency(keys: dict[str, str]) -> float | None:
-    try:
-        return float(keys["FREQUENCY"].split()[0]) * 1e6
-    except (KeyError, IndexError, ValueError):
-        return None
+def _loss_db(lines: Lines, keys: dict[str, tuple[int, str]], name: str) -> FloatArray:
+    """Return a cut's loss at every whole degree, (360,)."""
+    if name not in keys:
+        refuse(f"the cut {name} is missing; both must be there. Is the file cut short?")
+    at, count = keys[name]
+    rows = numbers([(lines[at][0], count)], 1, f"how many rows the cut {name} has")[0, 0]
+    values = rows_of(lines, at + 1, rows, 2, "an angle and a loss in dB")
+    angle, order = np.unique(values[:, 0] % 360.0, return_index=True)
+    return np.asarray(np.interp(np.arange(360.0), angle, values[order, 1], period=360.0))

@@ -1,84 +1,91 @@
-"""A pattern file as a figure: three cuts, and the surface."""
+"""A radiation pattern in three cuts and as a surface."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from nullpose.antenna.harmonics import fit, highest_degree
+from nullpose.antenna.harmonics import directions
 from nullpose.antenna.table import PatternTable
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import INK
+from nullpose.report.figures.style import GREY, INK, house_style
 
-_RANGE_DB = 40.0  # from the outer ring to the middle
-_RING_DB = 10.0
-_HIGHEST = 48
-_CUTS = {
-    "azimuth cut, theta 90": ("phi", 0.0),
-    "elevation cut, phi 0 and 180": ("theta", 0.0),
-    "elevation cut, phi 90 and 270": ("theta", 90.0),
-}
+_RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
+_LINE, _COLOURS = "#0a3fd6", colormaps["viridis"]
+_SPOKES_DEG = np.arange(0, 360, 45)
+_PLACES = ((0.06, 0.53), (0.56, 0.53), (0.06, 0.04))
+_LARGEST = 91  # rows and columns of the surface; finer ones look the same
 
 
 def draw_pattern(table: PatternTable) -> Figure:
-    """Return the figure of a pattern: cuts in dBi, and the surface of its gain in dB.
+    """Return the cut nearest to theta 90, those nearest to phi 0 and 90, and the gain in dB as a surface.
 
     Args:
-        table: over the whole sphere.
+        table: the pattern.
     """
-    figure = Figure(figsize=(9.0, 7.6), layout="constrained")
-    harmonics = fit(table, min(_HIGHEST, highest_degree(table)))
-    top_dbi = float(np.ceil(10.0 * np.log10(np.max(table.gain)) / 5.0) * 5.0)
-    turn = np.radians(np.arange(0.0, 361.0))
-    for place, (title, (angle, phi_deg)) in enumerate(_CUTS.items(), 1):
-        axes: Any = figure.add_subplot(2, 2, place, projection="polar")
-        ones, phi = np.ones_like(turn), np.radians(phi_deg)
-        if angle == "phi":
-            ways = np.stack([np.cos(turn), np.sin(turn), 0.0 * ones], axis=-1)
-        else:  # theta grows from the zenith, drawn clockwise from the top
-            ways = np.stack([np.sin(turn) * np.cos(phi), np.sin(turn) * np.sin(phi), np.cos(turn)], axis=-1)
-            axes.set_theta_zero_location("N")
-            axes.set_theta_direction(-1)
-        gain_dbi = _dbi(harmonics.gain(ways))
-        axes.plot(turn, np.maximum(gain_dbi, top_dbi - _RANGE_DB), color="#0a3fd6", linewidth=1.6)
-        axes.set_ylim(top_dbi - _RANGE_DB, top_dbi)
-        axes.set_yticks(np.arange(top_dbi - _RANGE_DB + _RING_DB, top_dbi + 1.0, _RING_DB))
-        axes.set_rlabel_position(22.5)
-        axes.tick_params(labelsize=8, colors=INK)
-        axes.set_title(f"{title} (dBi)", fontsize=10, color=INK, pad=12)
-        axes.grid(color="#d5d8de", linewidth=0.6)
-    _draw_surface(figure, harmonics.on_grid(*_sphere()), top_dbi)
-    figure.suptitle(table.source, fontsize=11, color=INK)
+    gain_dbi = 10.0 * np.log10(np.maximum(table.gain, 1e-30))
+    top_dbi = _TOP_STEP_DB * float(np.ceil(np.max(gain_dbi) / _TOP_STEP_DB))
+    theta, phi = table.theta_deg, table.phi_deg
+    level = int(np.argmin(np.abs(theta - 90.0)))
+    x, y, back, right = (int(np.argmin(np.abs(phi - at))) for at in (0.0, 90.0, 180.0, 270.0))
+    cuts = [(f"Azimuth phi at theta {theta[level]:g}, seen from above", 1, phi, gain_dbi[level])]
+    for one, other in ((x, back), (y, right)):
+        title = f"Polar angle theta: phi {phi[one]:g} right, {phi[other]:g} left"
+        whole = np.concatenate([gain_dbi[:, one], gain_dbi[-2:0:-1, other]])
+        cuts.append((title, -1, np.concatenate([theta, 360.0 - theta[-2:0:-1]]), whole))
+    with house_style():
+        figure = Figure(figsize=(8.4, 8.6))
+        figure.text(0.5, 0.965, f"{table.source}: {table.quantity} in dBi", ha="center", fontsize=11.0)
+        for (title, turn, at_deg, values_dbi), place in zip(cuts, _PLACES, strict=True):
+            axes: Any = figure.add_axes((*place, 0.38, 0.36), polar=True)
+            axes.set_title(title, fontsize=9.5, pad=12.0)
+            _draw_cut(axes, turn, at_deg, np.maximum(values_dbi, top_dbi - _RANGE_DB), top_dbi)
+        _draw_surface(figure, table, gain_dbi, [(level, x), (level, y), (0, 0)])
     return figure
 
 
-def _sphere() -> tuple[FloatArray, FloatArray]:
-    return np.radians(np.linspace(0.0, 180.0, 91)), np.radians(np.linspace(0.0, 360.0, 181))
+def _draw_cut(axes: Any, turn: int, at_deg: FloatArray, values_dbi: FloatArray, top_dbi: float) -> None:
+    """Draw a cut, 0 degrees up: azimuths grow to the left, as seen from above, polar angles to both sides."""
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(turn)
+    closed = np.append(np.radians(at_deg), np.radians(at_deg[0])), np.append(values_dbi, values_dbi[0])
+    axes.plot(*closed, color=_LINE, linewidth=1.6)
+    axes.set_ylim(top_dbi - _RANGE_DB, top_dbi)
+    told = _SPOKES_DEG if turn > 0 else np.minimum(_SPOKES_DEG, 360 - _SPOKES_DEG)
+    axes.set_thetagrids(_SPOKES_DEG, [f"{degrees}°" for degrees in told])
+    rings = np.arange(top_dbi - _RANGE_DB + _RING_DB, top_dbi + 1.0, _RING_DB)
+    axes.set_rgrids(rings, [])
+    look = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0}
+    for ring in rings:  # above the line, which tick labels would be below
+        axes.text(
+            turn * np.radians(-22.5), ring, f"{ring:g}", color=GREY, fontsize=7.5, bbox=look, ha="center"
+        )
 
 
-def _dbi(gain: FloatArray) -> FloatArray:
-    return np.asarray(10.0 * np.log10(np.maximum(gain, 1e-12)))
-
-
-def _draw_surface(figure: Figure, gain: FloatArray, top_dbi: float) -> None:
-    """Draw the surface: the distance is how far the gain is above the least that is drawn, in dB."""
-    from matplotlib import colormaps
-
-    axes: Any = figure.add_subplot(2, 2, 4, projection="3d")
-    theta, phi = _sphere()
-    reach = np.clip(_dbi(gain) - top_dbi + _RANGE_DB, 0.0, None)
-    x = reach * np.outer(np.sin(theta), np.cos(phi))
-    y = reach * np.outer(np.sin(theta), np.sin(phi))
-    z = reach * np.outer(np.cos(theta), np.ones_like(phi))
-    colours = colormaps["viridis"](reach / _RANGE_DB)
-    axes.plot_surface(x, y, z, facecolors=colours, rcount=91, ccount=181, linewidth=0.0, shade=False)
-    most = float(np.max(reach))
-    for (dx, dy, dz), name in zip(np.eye(3) * 1.25 * most, "xyz", strict=True):
-        axes.plot([0.0, dx], [0.0, dy], [0.0, dz], color=INK, linewidth=0.8)
-        axes.text(1.08 * dx, 1.08 * dy, 1.08 * dz, name, color=INK, fontsize=9)
-    axes.set_box_aspect((1, 1, 1))
-    axes.set(xlim=(-most, most), ylim=(-most, most), zlim=(-most, most))
+def _draw_surface(
+    figure: Figure, table: PatternTable, gain_dbi: FloatArray, ends: list[tuple[int, int]]
+) -> None:
+    """Draw how far the gain in dB is above the range's end as a distance, body axes and a bar of colours."""
+    axes: Any = figure.add_axes((0.50, 0.01, 0.42, 0.44), projection="3d")
+    peak_dbi = float(np.max(gain_dbi))
+    around = np.append(np.arange(len(table.phi_deg)), 0)  # closed
+    far = np.maximum((gain_dbi - peak_dbi) / _RANGE_DB + 1.0, 0.0)
+    surface = np.moveaxis((far[..., None] * directions(table.theta_deg, table.phi_deg))[:, around], -1, 0)
+    norm = Normalize(peak_dbi - _RANGE_DB, peak_dbi)
+    look: dict[str, Any] = {"edgecolor": (0.0, 0.0, 0.0, 0.15), "linewidth": 0.2, "shade": False}
+    colours = _COLOURS(norm(gain_dbi[:, around]))
+    axes.plot_surface(*surface, rcount=_LARGEST, ccount=_LARGEST, facecolors=colours, **look)
+    for axis, name, end in zip(np.eye(3), "xyz", ends, strict=True):
+        axes.plot(*np.outer(axis, (far[end], 1.3)), color=INK, linewidth=1.0, zorder=10)
+        axes.text(*(1.45 * axis), name, color=INK, ha="center", va="center")
+    axes.set(xlim=(-0.8, 0.8), ylim=(-0.8, 0.8), zlim=(-0.8, 0.8), box_aspect=(1.0, 1.0, 1.0))
+    axes.view_init(elev=25.0, azim=35.0)
     axes.set_axis_off()
-    axes.set_title(f"gain in dB, middle {top_dbi - _RANGE_DB:g} dBi", fontsize=10, color=INK, pad=0)
+    bar = figure.colorbar(ScalarMappable(norm, _COLOURS), cax=figure.add_axes((0.92, 0.10, 0.014, 0.26)))
+    bar.ax.set_title("dBi", fontsize=8.5)
+    bar.ax.grid(False)

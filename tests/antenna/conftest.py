@@ -1,0 +1,230 @@
+"""What the tests of pattern files share: a pattern without any symmetry, and a writer for each format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+DATA = Path(__file__).parent / "data"
+FREQUENCY_HZ = 2.4e9
+
+Field = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.complex128]]
+"""From polar angles and azimuths (degrees, any shape) to the parts along theta and phi, (..., 2)."""
+
+_RNG = np.random.default_rng(7)
+_FLAT, _SLOPE = _RNG.normal(size=(2, 3)) + 1j * _RNG.normal(size=(2, 3))
+_TOWARDS = _RNG.normal(size=3)
+
+
+def _raw_field(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Returns the part across the direction d of the vector ``flat + (towards . d) slope``."""
+    theta, phi = np.radians(np.broadcast_arrays(theta_deg, phi_deg))
+    out = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    along = np.stack([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta)], axis=-1)
+    round_z = np.stack([-np.sin(phi), np.cos(phi), np.zeros(phi.shape)], axis=-1)
+    vector = _FLAT + (out @ _TOWARDS)[..., None] * _SLOPE
+    return np.stack([np.sum(along * vector, axis=-1), np.sum(round_z * vector, axis=-1)], axis=-1)
+
+
+_Z, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+_MEAN = np.sum(
+    _WEIGHTS[:, None, None]
+    * np.abs(_raw_field(np.degrees(np.arccos(_Z))[:, None], np.arange(0.0, 360.0, 15.0))) ** 2
+) / (2.0 * 24.0)
+
+
+def field_of(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Returns the field of an antenna without symmetry and without losses: its gain averages to 1."""
+    return _raw_field(theta_deg, phi_deg) / np.sqrt(_MEAN)
+
+
+def db(power: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns decibels."""
+    return 10.0 * np.log10(np.maximum(power, 1e-99))
+
+
+def _rows(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64], *, theta_inner: bool) -> list[tuple]:
+    """Returns theta, phi and both parts of the field of every direction, in a file's order."""
+    theta, phi = np.meshgrid(theta_deg, phi_deg, indexing="ij")
+    if theta_inner:
+        theta, phi = theta.T, phi.T
+    field = field_of(theta, phi).reshape(-1, 2)
+    return list(zip(theta.ravel(), phi.ravel(), field[:, 0], field[:, 1], strict=True))
+
+
+def _nec_rows(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> str:
+    lines = []
+    for theta, phi, along, round_z in _rows(theta_deg, phi_deg, theta_inner=True):
+        gains = " ".join(f"{float(db(np.array(p))):8.2f}" for p in (abs(along) ** 2, abs(round_z) ** 2))
+        total = float(db(np.array(abs(along) ** 2 + abs(round_z) ** 2)))
+        parts = " ".join(
+            f"{0.37 * abs(part):.4E} {np.degrees(np.angle(part)):9.2f}" for part in (along, round_z)
+        )
+        lines.append(f"{theta:8.2f} {phi:8.2f} {gains} {total:8.2f} 0.5000 12.00 RIGHT {parts}")
+    return "\n".join(lines)
+
+
+def write_nec() -> str:
+    """Returns what nec2c writes."""
+    table = _nec_rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 361.0, 5.0))
+    return (
+        " --------- FREQUENCY --------\n FREQUENCY : 2.4000E+03 MHz\n\n"
+        " ---------- RADIATION PATTERNS -----------\n\n"
+        " ---- ANGLES -----  ----- POWER GAINS -----  -- POLARIZATION --  -- E(THETA) --  -- E(PHI) --\n"
+        "  THETA  PHI  VERTC  HORIZ  TOTAL  AXIAL  TILT  SENSE  MAGNITUDE  PHASE  MAGNITUDE  PHASE\n"
+        " DEGREES DEGREES  DB  DB  DB  RATIO  DEGREES  VOLTS/M  DEGREES  VOLTS/M  DEGREES\n"
+        f"{table}\n\n\n TOTAL RUN TIME: 0 msec\n"
+    )
+
+
+def write_4nec2() -> str:
+    """Returns what 4nec2 writes: polar angles from -180, half of the azimuths."""
+    table = _nec_rows(np.arange(-180.0, 181.0, 5.0), np.arange(0.0, 181.0, 5.0))
+    return (
+        " - - - - FREQUENCY - - - -\n\n FREQUENCY= 2.4000E+03 MHZ\n\n\n - - - RADIATION PATTERNS - - -\n\n"
+        "  - - ANGLES - -   - POWER GAINS -   - - - POLARIZATION - - -   - E(THETA) -   - E(PHI) -\n"
+        "  THETA  PHI  VERT.  HOR.  TOTAL  AXIAL  TILT  SENSE  MAGNITUDE  PHASE  MAGNITUDE  PHASE\n"
+        " DEGREES DEGREES  DB  DB  DB  RATIO  DEG.  VOLTS/M  DEGREES  VOLTS/M  DEGREES\n"
+        f"{table}\n\n\n   AVERAGE POWER GAIN= 1.00940E+00\n"
+    )
+
+
+def write_ffd() -> str:
+    """Returns what HFSS writes: polar angles in the outer loop, azimuths from -180, volts."""
+    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(-180.0, 181.0, 5.0), theta_inner=False)
+    table = "\n".join(
+        f"{9 * a.real:.8e} {9 * a.imag:.8e} {9 * b.real:.8e} {9 * b.imag:.8e}" for _, _, a, b in rows
+    )
+    return f"0 180 37\n-180 180 73\nFrequencies 1\nFrequency 2.4e9\n{table}\n"
+
+
+def write_ffs(powers: tuple[float, ...] = (0.4, 0.4, 0.5)) -> str:
+    """Returns what CST writes as a far-field source: azimuth first, polar angle in the inner loop."""
+    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 361.0, 5.0), theta_inner=True)
+    volts = np.sqrt(376.730313 / (2.0 * np.pi) * powers[1])
+    table = "\n".join(
+        f"{phi:9.3f} {theta:9.3f} " + " ".join(f"{volts * x:.8e}" for x in (a.real, a.imag, b.real, b.imag))
+        for theta, phi, a, b in rows
+    )
+    told = "\n".join(f"{power:e}" for power in powers)
+    return (
+        "// CST Farfield Source File\n\n// Version:\n3.0\n\n// Data Type\nFarfield\n\n// #Frequencies\n1\n\n"
+        "// Position\n0 0 0\n\n// zAxis\n0 0 1\n\n// xAxis\n1 0 0\n\n"
+        f"// Radiated/Accepted/Stimulated Power , Frequency\n{told}\n{FREQUENCY_HZ:e}\n\n"
+        "// >> Total #phi samples, total #theta samples\n73 37\n\n"
+        f"// >> Phi, Theta, Re(E_Theta), Im(E_Theta), Re(E_Phi), Im(E_Phi):\n{table}\n"
+    )
+
+
+def write_cst() -> str:
+    """Returns what CST writes as a table in text."""
+    lines = [
+        "Theta [deg.]  Phi   [deg.]  Abs(Dir.)[dBi   ]   Abs(Theta)[dBi   ]  Phase(Theta)[deg.]  "
+        "Abs(Phi  )[dBi   ]  Phase(Phi  )[deg.]  Ax.Ratio[dB    ]",
+        "-" * 120,
+    ]
+    for theta, phi, a, b in _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=True):
+        total, along, round_z = (
+            float(db(np.array(p))) for p in (abs(a) ** 2 + abs(b) ** 2, abs(a) ** 2, abs(b) ** 2)
+        )
+        angles = [np.degrees(np.angle(part)) % 360.0 for part in (a, b)]
+        parts = f"{along:.4e} {angles[0]:8.3f} {round_z:.4e} {angles[1]:8.3f}"
+        lines.append(f"{theta:8.3f} {phi:8.3f} {total:.4e} {parts} 4.000e+01")
+    return "\n".join(lines) + "\n"
+
+
+def write_csv() -> str:
+    """Returns a table of gains, its rows in no order."""
+    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=True)
+    lines = [
+        f"{theta:g},{phi:g},{float(db(np.array(abs(a) ** 2 + abs(b) ** 2))):.4f}" for theta, phi, a, b in rows
+    ]
+    np.random.default_rng(1).shuffle(lines)
+    return "\n".join(["theta_deg,phi_deg,gain_dbi", *lines]) + "\n"
+
+
+def write_complex_csv() -> str:
+    """Returns a table of fields."""
+    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=False)
+    lines = [f"{t:g},{p:g},{a.real:.7f},{a.imag:.7f},{b.real:.7f},{b.imag:.7f}" for t, p, a, b in rows]
+    return "\n".join(["theta_deg,phi_deg,re_theta,im_theta,re_phi,im_phi", *lines]) + "\n"
+
+
+def write_emane() -> str:
+    """Returns a profile with 3 dB too much everywhere, which the body takes away; bearings are clockwise."""
+    elevation, bearing = np.meshgrid(np.arange(-90, 91), np.arange(360), indexing="ij")
+    gain_dbi = db(np.sum(np.abs(field_of(90.0 - elevation, -bearing)) ** 2, axis=-1)) + 3.0
+    rings = "".join(
+        f"<elevation min='{row - 90}' max='{row - 90}'>\n"
+        + "".join(
+            f"<bearing min='{at}' max='{at}'><gain value='{value:.4f}'/></bearing>\n"
+            for at, value in enumerate(ring)
+        )
+        + "</elevation>\n"
+        for row, ring in enumerate(gain_dbi)
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<!DOCTYPE antennaprofile SYSTEM "file:///usr/share/emane/dtd/antennaprofile.dtd">\n'
+        f"<antennaprofile>\n<antennapattern>\n{rings}</antennapattern>\n<blockagepattern>\n"
+        "<elevation min='-90' max='90'><bearing min='0' max='359'><gain value='-3'/></bearing></elevation>\n"
+        "</blockagepattern>\n</antennaprofile>\n"
+    )
+
+
+def write_msi(
+    across_db: NDArray[np.float64], down_db: NDArray[np.float64], gain: str = "5.0 dBd", mhz: str = "2400"
+) -> str:
+    """Returns two cuts, losses at every degree: clockwise from ahead, and downwards from ahead."""
+    cuts = [
+        f"{name} 360\n" + "\n".join(f"{at} {loss:.4f}" for at, loss in enumerate(losses))
+        for name, losses in (("HORIZONTAL", across_db), ("VERTICAL", down_db))
+    ]
+    head = f"NAME test\nMAKE nullpose\nFREQUENCY {mhz}\nGAIN {gain}\nTILT 0\nPOLARIZATION V\n"
+    return head + "\n".join(cuts) + "\n"
+
+
+WRITERS: dict[str, tuple[str, Callable[[], str]]] = {
+    "nec": ("nec", write_nec),
+    "4nec2": ("nec", write_4nec2),
+    "ffd": ("ffd", write_ffd),
+    "ffs": ("ffs", write_ffs),
+    "cst": ("cst", write_cst),
+    "csv": ("csv", write_csv),
+    "complex-csv": ("csv", write_complex_csv),
+    "emane": ("emane", write_emane),
+}
+
+
+@pytest.fixture(scope="session")
+def written() -> dict[str, str]:
+    """The pattern without symmetry in each format, by the writer's name."""
+    return {name: write() for name, (_, write) in WRITERS.items()}
+
+
+@pytest.fixture(scope="session")
+def formats() -> dict[str, str]:
+    """Which format each writer writes."""
+    return {name: told for name, (told, _) in WRITERS.items()}
+
+
+@pytest.fixture(scope="session")
+def field() -> Field:
+    """The field of the pattern without symmetry."""
+    return field_of
+
+
+@pytest.fixture(scope="session")
+def msi() -> Callable[..., str]:
+    """The writer of two cuts."""
+    return write_msi
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """The folder of genuine files."""
+    return DATA

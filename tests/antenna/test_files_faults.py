@@ -1,0 +1,224 @@
+"""Pattern files that are refused: one message each, with the file, the line and what to do."""
+
+import gzip
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose.antenna.files import read_pattern, read_profile
+from nullpose.errors import ScenarioError
+
+Texts = dict[str, str]
+Change = Callable[[str], str]
+
+
+def csv(gain_dbi: Callable[[int, int], float], step: int = 10) -> str:
+    """Returns a table of gains."""
+    rows = [f"{t},{p},{gain_dbi(t, p):.4f}" for t in range(0, 181, step) for p in range(0, 360, step)]
+    return "\n".join(["theta_deg,phi_deg,gain_dbi", *rows]) + "\n"
+
+
+def line(number: int, text: str) -> Change:
+    """Returns what replaces a line, which is counted from 1; a list of none leaves it out."""
+    return lambda whole: "\n".join(
+        text if at == number else old for at, old in enumerate(whole.split("\n"), 1) if at != number or text
+    )
+
+
+def cut(lines: int) -> Change:
+    """Returns what keeps the first lines only."""
+    return lambda whole: "\n".join(whole.split("\n")[:lines])
+
+
+def swap(old: str, new: str) -> Change:
+    """Returns what puts one text in place of another, which must be there."""
+
+    def swapped(whole: str) -> str:
+        assert old in whole
+        return whole.replace(old, new, 1)
+
+    return swapped
+
+
+def twice(whole: str) -> str:
+    """Returns a .ffd file with its pattern at a second frequency as well."""
+    return whole + "Frequency 9e8\n" + whole.split("2.4e9\n")[1]
+
+
+FIELDS, GAINS = "complex-csv", "csv"
+FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
+    "empty": (GAINS, lambda _: " \n\n", {}, "the file is empty"),
+    "unknown": (GAINS, lambda _: "hello\n", {}, "no known format; must be one of nec, ffs, cst"),
+    "other format": (GAINS, str, {"format": "ffd"}, "stated to be ffd, and looks like csv"),
+    "no such format": (GAINS, str, {"format": "ffe"}, "got the format 'ffe', must be one of nec"),
+    "short csv": (FIELDS, cut(1000), {}, "angles are 0, 5, 10 ... 65 degrees, must go from 0 to 180"),
+    "short nec": ("nec", cut(1000), {}, "azimuths are 0, 5, 10 .* must go from 0 to 360 .* cut short"),
+    "short nec head": ("nec", cut(6), {}, "there is no row of theta, phi, three gains"),
+    "no field": ("nec", lambda text: text.replace("E-0", "E-900"), {}, "line 4: the table has no field but"),
+    "no nec table": ("nec", swap("RADIATION PATTERNS", "CURRENTS"), {"format": "nec"}, "looks like none of"),
+    "short ffd": ("ffd", cut(1000), {}, "line 1000: 2701 rows are announced and 996 lines follow"),
+    "short ffs": ("ffs", cut(1000), {}, "line 1000: 2701 rows are announced and"),
+    "ffs without power": ("ffs", swap("Stimulated Power", ""), {}, "the powers, or the counts"),
+    "ffs with no power": ("ffs", swap("1\n4.0", "1\n0.0"), {}, "line 22: got an accepted power of 0 W"),
+    "ffd of nothing": ("ffd", line(1, "0 180 -3"), {}, "-219 rows are announced"),
+    "short cst": ("cst", cut(2), {}, "there is no row of theta, phi, abs"),
+    "cst without gain": ("cst", swap("Abs(Dir.)", "Foo"), {}, "line 1: must have columns Theta, Phi and"),
+    "short emane": ("emane", cut(5000), {}, "line 50.*: this is not XML: no element found"),
+    "no number": (GAINS, line(7, "0,0,x"), {}, "line 7: got '0,0,x', must be 3 finite numbers"),
+    "nan": (GAINS, line(7, "0,0,nan"), {}, "line 7: got '0,0,nan', must be 3 finite numbers"),
+    "nan in nec": ("nec", line(40, "155 0 1 1 1 1 1 nan 0 0 0"), {}, "line 40: got '155 0 .* 11 finite"),
+    "infinite": ("ffd", line(9, "1 2 inf 0"), {}, "line 9: got '1 2 inf 0', must be 4 finite numbers"),
+    "overflow": ("ffd", line(9, "1 2 1e200 0"), {}, "line 9: got '1 2 1e200 0', must be 4 finite"),
+    "beyond measure": ("ffs", swap("\n4.000000e-01\n4.0", "\n1.0\n1e-300\n4.0"), {}, "has a field beyond"),
+    "columns": (GAINS, line(7, "0,0"), {}, "line 7: got '0,0', must be 3 finite numbers"),
+    "header": (GAINS, line(1, "theta_deg,phi_deg,gain"), {}, "line 1: got the header .* must have theta_deg"),
+    "hole": (FIELDS, line(800, ""), {}, "no row for theta = 55, phi = 30 degrees; the grid must"),
+    "beyond theta": (FIELDS, line(9, "181,0,0,0,0,0"), {}, "line 9: theta = 181, phi = 0 .* beyond"),
+    "beyond phi": (FIELDS, line(9, "0,361,0,0,0,0"), {}, "line 9: theta = 0, phi = 361 .* beyond"),
+    "twice": (FIELDS, swap("\n5,5,", "\n5,0,1,2,3,4\n5,5,"), {}, "line 74: theta = 5, .* is given twice"),
+    "pole": (FIELDS, line(9, "0,35,9,9,9,9"), {}, "line 9: .* phi = 35 degrees is given twice"),
+    "seam": ("ffd", line(77, "9 9 9 9"), {}, "line 77: theta = 0, phi = 180 degrees is given twice"),
+    "uneven": (FIELDS, lambda text: text.replace("\n5,", "\n6,"), {}, "are 0, 6, 10 .* equal steps"),
+    "half a sphere": (
+        "csv",
+        lambda _: "\n".join(csv(lambda t, p: 0.0).split("\n")[: 1 + 10 * 36]),
+        {},
+        "polar angles are 0, 10, 20 ... 90 degrees, must go from 0 to 180",
+    ),
+    "frequencies": ("ffd", twice, {}, "2 tables, at 2400000000, 900000000 Hz; state one frequency"),
+    "frequency": ("ffd", twice, {"frequency_hz": 1e9}, "1000000000 Hz, must be one of .* 900000000 Hz"),
+    "no frequency": (GAINS, str, {"frequency_hz": 0.0}, "got the frequency 0 Hz, must be more than 0"),
+    "only frequency": ("nec", str, {"frequency_hz": 1e9}, "must be one of the file's: 2400000000 Hz"),
+    "nothing": (GAINS, lambda _: csv(lambda t, p: -999.0), {}, "no direction has any gain"),
+    "entities": (
+        "emane",
+        swap(".dtd\">", ".dtd\" [<!ENTITY a 'b'>]>"),
+        {},
+        "line 2: it declares entities, which are not read",
+    ),
+    "blockage only": (
+        "emane",
+        lambda text: text.replace("antennapattern", "blockagepattern"),
+        {},
+        "no <antennapattern> in it",
+    ),
+    "elevation": ("emane", swap("min='-90'", "min='-91'"), {}, "line 5: got elevation min='-91' .* whole"),
+    "blank lines": ("emane", swap("<antennapattern>", "\n\n<x>"), {}, "line 65.*: this is not XML: mism"),
+    "gain": ("emane", swap("gain value=", "gain worth="), {}, "line 6: got '', must be one finite"),
+    "over-fed": (GAINS, lambda _: csv(lambda t, p: 3.0), {}, "average gain .* is 3.0 dB: it radiates more"),
+    "floor": (GAINS, lambda _: csv(lambda t, p: 0.0 if t < 90 else -999.99), {}, "54 % of all directions"),
+    "coarse": (
+        "csv",
+        lambda _: csv(lambda t, p: -1.0 - 6.0 * np.sin(np.radians(9.0 * t)) ** 2, 30),
+        {},
+        "steps of 30 degrees do not follow the pattern: .* export finer steps",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_faults(written: Texts, tmp_path: Path, name: str) -> None:
+    """A fault is one message that names the file, and says what is wrong and what must be."""
+    kind, change, options, message = FAULTS[name]
+    path = tmp_path / "pattern.txt"
+    path.write_text(change(written[kind]), encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message) as caught:
+        read_pattern(path, **options)
+    assert len(caught.value.faults) == 1
+    assert str(caught.value).startswith(f"{path}: 1 fault\n")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (None, "cannot be read: No such file"),
+        (
+            gzip.compress(b"theta_deg,phi_deg,gain_dbi\n" * 1000)[:-30],
+            "its content is cut short, or exceeds 60 MB",
+        ),
+        (gzip.compress(bytes(61_000_000)), "its content is cut short, or exceeds 60 MB"),
+        (b"\x1f\x8bnothing", "cannot be read: Error -3"),
+        (bytes(range(256)), "no known format"),
+    ],
+    ids=["missing", "cut", "bomb", "broken", "binary"],
+)
+def test_files_that_cannot_be_read(tmp_path: Path, content: bytes | None, message: str) -> None:
+    """What is no readable file is told so, however it is broken, and a bomb is not unpacked."""
+    path = tmp_path / "pattern.gz"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ScenarioError, match=message):
+        read_pattern(path)
+
+
+@pytest.mark.parametrize("level", [0.0, -999.99])
+def test_the_average_may_be_half_a_decibel_high(tmp_path: Path, level: float) -> None:
+    """Rounding and meshes are forgiven, and directions without gain where they are few."""
+    path = tmp_path / "pattern.csv"
+    path.write_text(csv(lambda t, p: 0.4 if 0 < t < 180 else max(level, -40.0)), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="do not follow") if level else pytest.MonkeyPatch.context():
+        read_pattern(path)
+
+
+@pytest.mark.parametrize(
+    ("across_db", "behind_db"), [(0.6, 0.0), (0.0, 0.6)], ids=["horizontal cut", "vertical cut"]
+)
+def test_two_cuts_are_no_pattern(
+    msi: Callable[..., str], tmp_path: Path, across_db: float, behind_db: float
+) -> None:
+    """An antenna that is not the same all round, by either cut, is refused; its estimate is not."""
+    path = tmp_path / "pattern.msi"
+    at = np.radians(np.arange(360.0))
+    down_db = 8.0 * np.sin(at) ** 2 + np.where(np.cos(at) < 0.0, behind_db * np.cos(at) ** 2, 0.0)
+    path.write_text(msi(across_db * np.sin(at / 2.0) ** 2, down_db, "0 dBi"), encoding="utf-8")
+    with pytest.raises(ScenarioError, match=r"it is not the same all round: its cuts change by 0\.6 dB"):
+        read_pattern(path)
+    assert "Not fit for solving" in read_pattern(path, estimate=True).notes[2]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (swap("GAIN 0 dBi", ""), "line 1: got '', must be one finite number: GAIN"),
+        (swap("VERTICAL 360", ""), "cut VERTICAL is missing"),
+        (cut(300), "line 300: 360 rows are announced"),
+        (swap("\n7 ", "\nx "), "line 15: got 'x .*must be 2 finite numbers: an angle and a loss"),
+    ],
+    ids=["gain", "cut", "short", "number"],
+)
+def test_faults_of_two_cuts(msi: Callable[..., str], tmp_path: Path, change: Change, message: str) -> None:
+    """The cuts and the gain must all be there."""
+    path = tmp_path / "pattern.msi"
+    path.write_text(change(msi(np.zeros(360), np.zeros(360), "0 dBi")), encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message):
+        read_pattern(path)
+
+
+def test_an_estimate_is_no_way_round_other_refusals(tmp_path: Path) -> None:
+    """Only two cuts are estimated: what misleads in a whole table is refused all the same."""
+    path = tmp_path / "pattern.csv"
+    path.write_text(csv(lambda t, p: 3.0), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="more than it is fed"):
+        read_pattern(path, estimate=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("angle_deg,gain_dbi\n0,0\n90,0\n", "angles are 0, 90, 90 degrees .* must go from 0 to 180"),
+        ("angle_deg,gain_dbi\n5,0\n180,0\n", "must go from 0 to 180"),
+        ("angle_deg,gain_dbi\n0,0\n90,0\n90,1\n180,0\n", "each given once"),
+        ("angle_deg,gain_dbi\n", "there is no row of angle_deg,gain_dbi"),
+        ("angle_deg,gain_dbi\n0,0\n90,inf\n180,0\n", "line 3: got '90,inf'"),
+        ("theta_deg,phi_deg,gain_dbi\n0,0,0\n", "line 1: got the header .* must have angle_deg,gain_dbi"),
+        ("", "the file is empty"),
+    ],
+)
+def test_faults_of_profiles(tmp_path: Path, text: str, message: str) -> None:
+    """A profile must span all angles, each once."""
+    path = tmp_path / "profile.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message):
+        read_profile(path)

@@ -1,0 +1,37 @@
+"""Genuine output of nec2c: peaks, ripples and nulls as they are known from finer grids."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose.antenna.files import read_pattern
+from nullpose.antenna.summary import summary_of
+
+# Peak (dBi), ripple round the equator and depth of the deepest null (dB), on grids of 1 degree.
+KNOWN = {
+    "alone_half": (2.14, 0.0, np.inf),
+    "alone_short": (1.77, 0.0, np.inf),
+    "hex35_above_10_half_off20mm": (3.4, 1.8, 32.0),
+    "hex35_beside_10_half": (4.0, 4.1, 28.0),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_patterns(data: Path, name: str) -> None:
+    """Peak, ripple and null are those of the finer grids, to what 5 degrees show; nothing is lost."""
+    summary = summary_of(read_pattern(data / f"{name}_5deg.out.gz"))
+    peak_dbi, ripple_db, null_db = KNOWN[name]
+    assert summary.peak_dbi == pytest.approx(peak_dbi, abs=0.1)
+    assert summary.ripple_db == pytest.approx(ripple_db, abs=0.2)
+    assert min(summary.null_db, 99.0) == pytest.approx(min(null_db, 99.0), abs=5.0)
+    assert summary.mean_db == pytest.approx(0.0, abs=0.03)
+    assert np.isinf(summary.null_db) == np.isinf(null_db)
+    assert summary.table.frequency_hz == 2.4e9
+
+
+def test_the_short_dipole_is_the_formula(data: Path) -> None:
+    """The gain of the dipole alone is 1.5 sin^2 but for its length, a tenth of a wavelength."""
+    table = read_pattern(data / "alone_short_5deg.out.gz")
+    known = 1.5 * np.sin(np.radians(table.theta_deg[1:-1]))[:, None] ** 2
+    assert np.max(np.abs(10.0 * np.log10(table.gain[1:-1] / known))) < 0.1

@@ -1,0 +1,115 @@
+"""The verb `antenna FILE`: what a pattern file holds."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+DATA = Path(__file__).parents[1] / "antenna" / "data"
+HALF = DATA / "alone_half_5deg.out.gz"
+
+
+@pytest.mark.parametrize(
+    "words", [("antenna", HALF), ("antenna", "show", HALF), ("antenna", "--format", "nec", HALF)]
+)
+def test_the_table(run: Run, words: tuple[object, ...]) -> None:
+    """What was read, whether the word show is there or not, and options before the file or after."""
+    result = run(*words)
+    assert (result.exit_code, result.stderr) == (0, "")
+    for told in (
+        "alone_half_5deg.out.gz (nec)",
+        "2.14 dBi, at theta 90, phi 0",
+        "exact, at theta 0",
+        "linear along theta, at the peak",
+        "2400 MHz",
+        "steps of 5 degrees, with phases",
+    ):
+        assert told in result.stdout
+
+
+def test_json(run: Run) -> None:
+    """One object with every number of the table; an infinite depth is null."""
+    result = run("antenna", HALF, "--json")
+    assert result.exit_code == 0
+    data = json.loads(result.stdout)
+    assert list(data) == [
+        *(
+            "source",
+            "quantity",
+            "frequency_hz",
+            "notes",
+            "peak_dbi",
+            "peak_rad",
+            "mean_db",
+            "null_db",
+            "null_rad",
+        ),
+        *(
+            "ripple_db",
+            "polarisation",
+            "axial_ratio_db",
+            "degree",
+            "supported_degree",
+            "step_rad",
+            "largest_m",
+        ),
+    ]
+    assert data["peak_dbi"] == pytest.approx(2.14, abs=0.005)
+    assert data["null_db"] is None
+    assert data["peak_rad"] == pytest.approx([math.pi / 2.0, 0.0])
+
+
+def test_the_figure(run: Run, tmp_path: Path) -> None:
+    """It is written where it was asked for, and named."""
+    figure = tmp_path / "deeper" / "pattern.png"
+    result = run("antenna", HALF, "--figure", figure)
+    assert result.exit_code == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert result.stdout.endswith(f"Wrote {figure}\n")
+    told = json.loads(run("antenna", HALF, "--figure", figure, "--json").stdout)
+    assert told["files"] == [str(figure)]
+
+
+def test_two_cuts_are_shown_with_a_warning(run: Run, tmp_path: Path) -> None:
+    """An estimate is good to look at, and says what it is not good for."""
+    file = tmp_path / "sector.msi"
+    cut = "\n".join(f"{at} {min(at, 360 - at) / 12:.2f}" for at in range(360))
+    file.write_text(f"GAIN 4 dBi\nHORIZONTAL 360\n{cut}\nVERTICAL 360\n{cut}\n", encoding="utf-8")
+    result = run("antenna", file)
+    assert result.exit_code == 0
+    assert "Not fit for solving: it is not the same all round" in result.stdout
+
+
+def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
+    """Bad input exits with 2, nothing on standard output and the place on standard error."""
+    file = tmp_path / "pattern.csv"
+    file.write_text("theta_deg,phi_deg,gain_dbi\n0,0,0\n0,10,x\n", encoding="utf-8")
+    result = run("antenna", file)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(
+        f"error: {file}: 1 fault\n  line 3: got '0,10,x', must be 3 finite numbers"
+    )
+    for words in ((file, "--format", "msi"), (HALF, "--frequency", "1e9"), (tmp_path / "none.csv",)):
+        refused = run("antenna", *words)
+        assert (refused.exit_code, refused.stdout) == (2, "")
+
+
+def test_a_figure_never_takes_the_place_of_the_file(run: Run, tmp_path: Path) -> None:
+    """The pattern is not overwritten, and only pictures are drawn."""
+    file = tmp_path / "pattern.png"
+    file.write_bytes(HALF.read_bytes())
+    assert run("antenna", file, "--figure", file).exit_code == 2
+    assert file.read_bytes() == HALF.read_bytes()
+    assert "ends in .png or .svg" in run("antenna", HALF, "--figure", tmp_path / "x.gif").stderr
+
+
+def test_help_shows_both_ways(run: Run) -> None:
+    """The group's help names the file and the comparison."""
+    told = run("antenna", "--help").stdout
+    assert "FILE | compare FILE" in told
+    assert "show" in told
+    assert "compare" in run("antenna", "compare", "--help").stdout
