@@ -1,8 +1,10 @@
 """Which antenna the drone carries."""
 
+from pathlib import Path
+
 import pytest
 
-from nullpose import ScenarioError
+from nullpose import Scenario, ScenarioError
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.scenario import apply_overrides, load
 
@@ -43,3 +45,73 @@ def test_elements_of_an_array_are_short_dipoles() -> None:
     """An array of dipoles with shallow nulls is refused."""
     with pytest.raises(ScenarioError, match="short dipoles"):
         apply_overrides(load("examples/array.toml"), ["antenna.null_depth_db=30"])
+
+
+ROWS = [[1.0], [0.1, 0.2, 0.3]]
+
+
+def faults_of(antenna: dict[str, object], **more: object) -> dict[str, str]:
+    """Return the faults of the paper's scene with an antenna, by their place."""
+    data = load("examples/paper.toml").to_dict() | {"antenna": antenna} | more
+    try:
+        Scenario.from_dict(data)
+    except ScenarioError as error:
+        return {fault.path: fault.message for fault in error.faults}
+    return {}
+
+
+@pytest.mark.parametrize(
+    ("antenna", "place", "words"),
+    [
+        ({"kind": "pattern"}, "antenna.file", "missing, but kind"),
+        ({"kind": "profile", "file": "a.csv"}, "antenna.file", "only a scenario file on this machine"),
+        ({"kind": "half-wave", "file": "a.csv"}, "antenna.file", "has no meaning with kind"),
+        (
+            {"kind": "pattern", "harmonics": ROWS, "null_depth_db": 20.0},
+            "antenna.null_depth_db",
+            "no meaning",
+        ),
+        ({"kind": "pattern", "harmonics": [[1.0], [1.0]]}, "antenna.harmonics[1]", "must be 3"),
+        (
+            {"kind": "pattern", "harmonics": [[float("nan")]]},
+            "antenna.harmonics[0][0]",
+            "must be a coefficient",
+        ),
+    ],
+)
+def test_faults_of_other_antennas(antenna: dict[str, object], place: str, words: str) -> None:
+    """What a kind lacks, and what has no meaning with it, each at its place."""
+    faults = faults_of(antenna)
+    assert list(faults) == [place]
+    assert words in faults[place]
+
+
+def test_a_dipole_on_the_ground_needs_one_on_the_drone() -> None:
+    """A power pattern tells no polarisation, so a whip beside it is refused."""
+    node = load("examples/paper.toml").to_dict()["nodes"][0] | {"antenna": "dipole"}
+    faults = faults_of({"kind": "pattern", "harmonics": ROWS}, nodes=[node])
+    assert "whose polarisation is known" in faults["nodes[0].antenna"]
+
+
+def test_a_pattern_from_a_file_round_trips(tmp_path: Path) -> None:
+    """A scenario that was read with its pattern's file is the same without the file."""
+    scenario = load("examples/frame.toml")
+    assert Scenario.from_dict(scenario.to_dict()) == scenario
+    (tmp_path / "again.toml").write_text(scenario.to_toml())
+    assert load(tmp_path / "again.toml").antenna_record == scenario.antenna_record
+
+
+def test_a_file_outside_the_folder_is_refused(tmp_path: Path) -> None:
+    """The file of a pattern is inside the scenario's folder unless that is allowed."""
+    text = Path("examples/frame.toml").read_text()
+    path = tmp_path / "scenario.toml"
+    path.write_text(text.replace('"hexarotor', f'"{Path("examples").resolve()}/hexarotor'))
+    with pytest.raises(ScenarioError, match=r"antenna\.file: .*outside the folder"):
+        load(path)
+    assert load(path, allow_outside=True).antenna_record.harmonics.degree > 4
+
+
+def test_another_file_by_an_override_is_refused() -> None:
+    """What was read of a file is not kept for another file."""
+    with pytest.raises(ScenarioError, match=r"antenna\.file: only a scenario file"):
+        apply_overrides(load("examples/frame.toml"), ["antenna.file=other.out"])

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
-from nullpose.antenna import SHORT_DIPOLE
+from nullpose.antenna import SHORT_DIPOLE, PatternAntenna
+from nullpose.antenna.pattern import harmonics_of_rows
 from nullpose.physics import Pose, antenna_gain
 from nullpose.scenario import NoFlyZone
 from nullpose.studio import meshes
@@ -107,3 +108,12 @@ def test_the_multirotor_is_in_one_piece() -> None:
         assert mesh.faces.min() == 0
         assert mesh.faces.max() == len(mesh.vertices) - 1
         assert _volume(mesh) > 0.0
+
+
+def test_pattern() -> None:
+    """Every vertex is as far out as the gain in its direction, over the largest."""
+    antenna = PatternAntenna("pattern", "any", harmonics_of_rows([[1.0], [0.1, 0.2, 0.3]]))
+    mesh = meshes.pattern_mesh(antenna, 2.0)
+    distance = np.linalg.norm(mesh.vertices, axis=1)
+    gain = antenna.gain(mesh.vertices / distance[:, None])
+    np.testing.assert_allclose(distance, 2.0 * gain / antenna.peak, rtol=1e-9)
