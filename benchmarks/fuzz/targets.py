@@ -92,10 +92,12 @@ def targets(folder: Path) -> tuple[Target, ...]:
     paper = (EXAMPLES / "paper.toml").read_bytes()
     proof = certificate_text(certificate_of(solve(load(EXAMPLES / "paper.toml"), gap=0.1))).encode()
     geojson = (EXAMPLES / "nodes.geojson").read_bytes()
+    pattern = "hexarotor-433mhz.out.gz"
+    beside = {"nodes.geojson": geojson, pattern: (EXAMPLES / pattern).read_bytes()}
     csv, geo = (_SCENE.format(nodes=name).encode() for name in ("n.csv", "n.json"))
     return (
         *(
-            Target("scenario", "s.toml", path.read_bytes(), _check, {"nodes.geojson": geojson})
+            Target("scenario", "s.toml", path.read_bytes(), _check, beside)
             for path in sorted(EXAMPLES.glob("*.toml"))
             if path.name != "study.toml"
         ),

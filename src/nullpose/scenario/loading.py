@@ -104,7 +104,12 @@ def _with_antenna_from(tables: dict[str, Any], folder: Path, allow_outside: bool
     if not isinstance(antenna, dict) or not isinstance(file, str) or "harmonics" in antenna:
         return tables
     path = inside(folder, file, allow_outside, "antenna.file")
-    return tables | {"antenna": with_harmonics(antenna, path)}
+    try:
+        return tables | {"antenna": with_harmonics(antenna, path)}
+    except ScenarioError as error:
+        raise ScenarioError(
+            [_at(f"antenna.file: {file}", fault.path, fault) for fault in error.faults]
+        ) from None
 
 
 def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> Scenario:
