@@ -23,7 +23,7 @@ def unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
-@pytest.mark.parametrize("degree", [2, 5, 11])
+@pytest.mark.parametrize("degree", [1, 2, 5, 11, 30])
 def test_samples_are_within(degree: int) -> None:
     """Gains and derivatives along great circles, by differences, are within a cap's bounds."""
     rng = np.random.default_rng(degree)

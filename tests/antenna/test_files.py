@@ -37,7 +37,7 @@ def test_every_format_gives_the_same_antenna(
 ) -> None:
     """In every direction the gain is the antenna's to .01 dB, whether the format is stated or told."""
     for stated in (None, formats[name]):
-        table = read(written[name], tmp_path, format=stated)
+        table = read(written[name], tmp_path, file_format=stated)
         assert largest_error_db(table, field) < 0.01
         assert table.source == f"pattern.txt ({formats[name]})"
         assert table.theta_deg[[0, -1]].tolist() == [0.0, 180.0]

@@ -11,7 +11,7 @@ from nullpose.antenna import PatternAntenna
 from nullpose.antenna.harmonics import directions, fit
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import UsageError
-from nullpose.physics import evaluate, min_sinr
+from nullpose.physics import Pose, evaluate, min_sinr
 from nullpose.solve.certificate_from_proof import certificate_of
 from nullpose.solve.robust import solve_robust
 
@@ -77,7 +77,11 @@ def test_airframe(kind: str) -> None:
     whole, less = solve(free, gap=2e-2), solve(tilted, gap=2e-2)
     assert less.pose.tilt_rad <= math.radians(20.0) + 1e-9
     assert less.objective.value <= whole.objective.upper_bound
-    assert less.objective.upper_bound >= less.objective.value
+    for roll, pitch, yaw, x, y in np.random.default_rng(1).uniform(-1.0, 1.0, (2000, 5)):
+        place_m = less.pose.position_m + 20.0 * np.array([x, y, 0.0])
+        pose = Pose(place_m, 0.4 * roll, 0.4 * pitch, math.pi * yaw, math.radians(30.0))
+        if pose.tilt_rad <= math.radians(20.0):
+            assert min_sinr(tilted, pose) <= less.objective.upper_bound
 
 
 def test_limits_leave_a_bound() -> None:

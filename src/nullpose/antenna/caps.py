@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nullpose.antenna.harmonics import FloatArray, Harmonics, recurrence
 
-_ROWS = 128  # of the table, twice as many columns: powers of two
+_ROWS = {24: 128, 48: 256}  # of the table up to a degree, twice as many columns: powers of two
 _DIRECTIONS = 16  # round half a circle, along which derivatives are taken
 _ORDER = 4  # highest derivative that is looked at; the next is bounded by the degree
 
@@ -52,6 +52,7 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
     """
     used = np.any(harmonics.cosine != 0.0, axis=0) | np.any(harmonics.sine != 0.0, axis=0)
     finest = _finest(harmonics)
+    rows = len(finest)
     blocks, offset = [], []
     filled = 0
     while len(finest) > 0:
@@ -79,7 +80,7 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
         orders,
         table,
         np.array(offset, dtype=np.int64),
-        _ROWS,
+        rows,
     )
 
 
@@ -91,9 +92,10 @@ def _finest(harmonics: Harmonics) -> FloatArray:
     cell's middle for some w, and the bound ``|f'| <= degree max |f|`` of Bernstein for what lies between,
     make bounds for the cell.
     """
-    step = math.pi / _ROWS
-    theta = np.asarray((np.arange(_ROWS) + 0.5) * step, dtype=np.float64)
-    phi = np.asarray((np.arange(2 * _ROWS) + 0.5) * step, dtype=np.float64)
+    rows = next(rows for degree, rows in _ROWS.items() if harmonics.degree <= degree)
+    step = math.pi / rows
+    theta = np.asarray((np.arange(rows) + 0.5) * step, dtype=np.float64)
+    phi = np.asarray((np.arange(2 * rows) + 0.5) * step, dtype=np.float64)
     radius = math.hypot(step, step) / 2.0
     degree = max(1, harmonics.degree)
     angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
@@ -128,20 +130,24 @@ def _finest(harmonics: Harmonics) -> FloatArray:
 def _padded(gain: FloatArray, slopes: list[FloatArray], radius: float, degree: int) -> FloatArray:
     """Return bounds over cells from what holds at their middles.
 
+    While a direction moves over the sphere and carries its tangent with it, the symmetric derivative of
+    order m changes by that of order m + 1 and, since the sphere is curved, by at most 2/3 of the first for
+    m = 2 and 2 times the second for m = 3.
+
     Args:
         gain: at the middles.
         slopes: the derivatives of order 1 to 4 there.
         radius: of a cell.
         degree: of the pattern.
     """
-    inside = max(1e-3, 1.0 - radius * degree)  # sup |f| <= max over middles + radius degree sup |f|
-    fifth = degree * float(np.max(slopes[3])) / inside
-    bent = [1.0 + 2.0 * m * radius for m in range(4)]  # turning with the direction mixes in lower orders
-    third = (slopes[2] + radius * slopes[3] + radius**2 / 2.0 * fifth) * bent[3]
-    second = (slopes[1] + radius * third) * bent[2]
-    first = (slopes[0] + radius * second) * bent[1]
-    change = radius * slopes[0] + radius**2 / 2.0 * slopes[1] + radius**3 / 6.0 * third
-    return np.stack([change - gain, gain + change, first, second, third], axis=-1)
+    rate = degree + 4.0 * (math.pi / 2.0 + math.pi**3 / 24.0)  # Bernstein, and the turning of w
+    most = float(np.max(slopes[3])) / (1.0 - radius * rate)
+    fourth = slopes[3] + radius * rate * most
+    mixed = np.array([[0.0, 1.0, 0.0], [2.0 / 3.0, 0.0, 1.0], [0.0, 2.0, 0.0]])
+    at_middles = np.stack([slopes[0], slopes[1], slopes[2] + radius * fourth])
+    bounds = np.tensordot(np.linalg.inv(np.eye(3) - radius * mixed), at_middles, axes=1)
+    change = radius * slopes[0] + radius**2 / 2.0 * slopes[1] + radius**3 / 6.0 * bounds[2]
+    return np.stack([change - gain, gain + change, *bounds], axis=-1)
 
 
 def _complex(harmonics: Harmonics) -> NDArray[np.complex128]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -12,10 +13,10 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
 from nullpose.antenna.caps import PatternArrays, pattern_arrays
-from nullpose.antenna.harmonics import FloatArray, Harmonics, fit, highest_degree
+from nullpose.antenna.harmonics import HIGHEST_DEGREE, FloatArray, Harmonics, fit, supported_degree
 from nullpose.antenna.table import PatternTable
 
-_HIGHEST = 48  # degree that a file is fitted with: a frame of half a metre at 2.4 GHz needs about 40
+_TINY = 1e-7  # of the largest gain
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = (
@@ -58,12 +59,6 @@ class PatternAntenna:
         return float(np.max(np.abs(self.harmonics.on_grid(*_GRID)))) / (1.0 - bend)
 
     @property
-    def is_even(self) -> bool:
-        """Whether opposite directions have the same gain, to a millionth of the mean."""
-        odd = self.harmonics.spectrum[1::2]
-        return bool(np.sum(odd) <= (1e-6 * self.harmonics.cosine[0, 0]) ** 2)
-
-    @property
     def arrays(self) -> PatternArrays:
         """The pattern as the solver takes it, made once for the same harmonics."""
         return _arrays(*(part.tobytes() for part in (self.harmonics.cosine, self.harmonics.sine)))
@@ -90,7 +85,7 @@ def _arrays(cosine: bytes, sine: bytes) -> PatternArrays:
     return pattern_arrays(Harmonics(*parts))
 
 
-def harmonics_of_rows(rows: ArrayLike) -> Harmonics:
+def harmonics_of_rows(rows: Sequence[Sequence[float]]) -> Harmonics:
     """Return the harmonics that :meth:`PatternAntenna.rows` tells.
 
     Args:
@@ -99,9 +94,8 @@ def harmonics_of_rows(rows: ArrayLike) -> Harmonics:
     Raises:
         ValueError: a row has another length.
     """
-    values: list[Any] = list(rows)  # type: ignore[arg-type]
-    cosine, sine = np.zeros((2, len(values), len(values)))
-    for n, row in enumerate(values):
+    cosine, sine = np.zeros((2, len(rows), len(rows)))
+    for n, row in enumerate(rows):
         if len(row) != 2 * n + 1:
             raise ValueError(f"harmonics[{n}]: got {len(row)} numbers, must be {2 * n + 1}")
         cosine[n, : n + 1], sine[n, 1 : n + 1] = row[: n + 1], row[n + 1 :]
@@ -113,7 +107,9 @@ def half_wave_harmonics() -> Harmonics:
 
     Source: Balanis, Antenna Theory, eq. 4-85, squared and normalised.
     """
-    return _axial(lambda c: np.cos(0.5 * np.pi * c) ** 2 / (1.0 - c * c), _HALF_WAVE_DEGREE)
+    whole = _axial(lambda c: np.cos(0.5 * np.pi * c) ** 2 / (1.0 - c * c), _HALF_WAVE_DEGREE)
+    whole.cosine[1::2] = 0.0  # the same up and down
+    return whole
 
 
 def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
@@ -123,7 +119,7 @@ def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
         angle_deg: (n,) angles from the axis, rising from 0 to 180.
         gain: (n,) power gain there, linear; it changes linearly between.
     """
-    whole = _axial(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), _HIGHEST)
+    whole = _axial(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), HIGHEST_DEGREE)
     return _shortened(whole, float(np.max(gain)))
 
 
@@ -134,8 +130,7 @@ def table_harmonics(table: PatternTable) -> Harmonics:
         table: over the whole sphere.
     """
     peak = float(np.max(table.gain))
-    supported = highest_degree(table) * (1 if table.field is None else 2)  # a power's is twice its field's
-    return _shortened(fit(table, min(_HIGHEST, supported)), peak)
+    return _shortened(fit(table, supported_degree(table)), peak)
 
 
 def normalised(harmonics: Harmonics) -> Harmonics:
@@ -155,12 +150,13 @@ def _axial(function: Any, degree: int) -> Harmonics:
     for n in range(degree + 1):
         mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[n])) / 2.0
         cosine[n, 0] = mean * math.sqrt(2.0 * n + 1.0)
-    cosine[np.abs(cosine) < 1e-14] = 0.0
     return Harmonics(cosine, np.zeros_like(cosine))
 
 
 def _shortened(harmonics: Harmonics, peak: float) -> Harmonics:
-    """Return the harmonics without the high degrees, lifted so that no gain is negative."""
+    """Return the harmonics without the high degrees and tiny terms, lifted so that no gain is negative."""
+    for terms in (harmonics.cosine, harmonics.sine):
+        terms[np.abs(terms) < _TINY * peak] = 0.0  # a symmetry of the antenna is then one of the terms
     left_out = np.sqrt(np.cumsum(harmonics.spectrum[::-1])[::-1])
     degree = int(np.argmax(np.append(left_out[1:], 0.0) <= _LEFT_OUT * peak))
     kept = harmonics.truncated(degree)

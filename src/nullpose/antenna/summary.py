@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from nullpose.antenna.files.block import FloatArray
-from nullpose.antenna.files.reading import mean_gain, supported_degree
-from nullpose.antenna.harmonics import fit
+from nullpose.antenna.files.reading import mean_gain
+from nullpose.antenna.harmonics import fit, supported_degree
 from nullpose.antenna.table import PatternTable
 
 _NEAR_PEAK = 1e-2  # of it; the gains that the degree has to reproduce

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from nullpose.antenna import Antenna as AnyAntenna
 from nullpose.antenna import PatternAntenna, short_dipole
+from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.antenna.pattern import (
     half_wave_harmonics,
     harmonics_of_rows,
@@ -18,6 +19,7 @@ from nullpose.antenna.pattern import (
     profile_harmonics,
     table_harmonics,
 )
+from nullpose.errors import ScenarioError
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Choice, ListOf
 from nullpose.scenario.section import Section
@@ -25,7 +27,7 @@ from nullpose.scenario.units import Coefficient, Hertz, NullDepthDecibels
 
 _KINDS = ("dipole", "half-wave", "profile", "pattern")
 _FILED = ("profile", "pattern")
-_MOST_ROWS = 65
+_MOST_ROWS = HIGHEST_DEGREE + 1
 
 _Kind = Annotated[str, Choice("an antenna", _KINDS)]
 _Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
@@ -130,18 +132,25 @@ class Antenna(Section):
 
 
 def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
-    """Return a raw table with what its file holds.
+    """Return a raw table with what its file holds, or as it is where another of its keys is at fault.
 
     Args:
         table: of a profile or a pattern.
         path: of its file.
 
     Raises:
-        PatternError: the file cannot be read as stated.
+        ScenarioError: the file cannot be read as stated.
     """
     from nullpose.antenna.files import read_pattern, read_profile
 
-    if table.get("kind") == "profile":
+    if table.get("kind") not in _FILED:
+        return dict(table)
+    unread = {**table, "harmonics": [[1.0]]}
+    try:
+        Antenna.from_dict(unread)
+    except ScenarioError:
+        return unread  # its faults are told with the rest of the scenario's
+    if table["kind"] == "profile":
         harmonics = profile_harmonics(*read_profile(path))
     else:
         frequency = table.get("frequency_hz")

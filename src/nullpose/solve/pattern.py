@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from functools import partial
 
 import numpy as np
@@ -20,13 +21,12 @@ from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import NO_POSITION
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.pattern_search import PatternSearch
-from nullpose.solve.proof import INTERRUPT
+from nullpose.solve.proof import INTERRUPT, reach_by_distance
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.solve_and_prove import Outcome
-from nullpose.solve.worker_pool import processors
+from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
 _CHUNK = 20_000  # cells between two looks at the clock
-_DEPTH = 4_000  # cells that a stack has room for beside those it begins with
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
@@ -63,7 +63,7 @@ def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
     airframe = scenario.airframe
     tilt, mount = (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
     up = rotation_world_from_body(0.0, mount, 0.0).T[:, 2].copy()
-    return Reach(tilt, mount, up, antenna.harmonics.is_axisymmetric, antenna.is_even)
+    return Reach(tilt, mount, up, antenna.harmonics.is_axisymmetric, antenna.harmonics.is_even)
 
 
 class PatternRun:
@@ -85,10 +85,10 @@ class PatternRun:
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
-        from nullpose.solve.kernels import pattern_branch  # compiled before the clock begins
+        from nullpose.solve.kernels.pattern_branch import branch_pattern
 
-        self.kernel = pattern_branch
-        self.search.compile()
+        self.branch = branch_pattern
+        self.search.compile()  # before the clock begins
         began = time.perf_counter()
         self.search.run(light=self.options.certify)
         if not math.isfinite(self.search.best):
@@ -119,7 +119,7 @@ class PatternRun:
         """Close the gap asked for, or else wider ones; return why it was not closed."""
         limits = self.options
         whole = began + limits.time_limit_s
-        self.proved = self._by_distance()
+        self.proved = reach_by_distance(self.search.loudest)[0]
         target = _INSIDE * limits.ratio_gap(self.value)
         try:
             if self.proved <= self.value * (1.0 + target):
@@ -133,56 +133,30 @@ class PatternRun:
         except KeyboardInterrupt:
             return INTERRUPT
 
-    def _by_distance(self) -> float:
-        """Return a bound from distances and the largest gain alone."""
-        peak = self.family.changed(numerator_weight=self.family.numerator_weight * self.antenna.peak)
-        from nullpose.solve.proof import reach_by_distance
-
-        return reach_by_distance(peak)[0]
-
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         threads = self.options.threads or processors()
-        with ThreadPoolExecutor(threads) as pool:
-            stacks = [_Stack(cells) for cells in _dealt(self._roots(gap), threads)]
-            while True:
-                _share(stacks)
-                busy = [stack for stack in stacks if stack.top]
-                if not busy:
-                    self.proved = min(self.proved, self.value * (1.0 + gap))
-                    return ""
+        workers = WorkerPool(self._roots(gap), threads, orientation=(3, 3))
+        with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
+            while not workers.done:
                 if time.perf_counter() > until:
                     return f"the time limit of {self.options.time_limit_s:g} s"
                 if self.cells >= self.options.node_limit:
                     return f"the node limit of {self.options.node_limit}"
-                level = self.value * (1.0 + gap)
-                for stack in pool.map(partial(self._work, level), busy):
-                    self.cells += stack.done
-                    if stack.better is not None:
-                        before = self.search.best
-                        self.search.improve(stack.better)
-                        # what does not help, by rounding, must not be met again and again
-                        self.doubt *= 1.0 if self.search.best > before else 10.0
+                self.cells += workers.work(self._excluding(gap), _CHUNK, pool)
+                for position_m, rotation in workers.better():
+                    # what does not help, by rounding, must not be met again and again
+                    self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
                 if self.options.on_progress is not None:
                     self.options.on_progress(self.proved / self.value - 1.0, self.cells)
+        self.proved = min(self.proved, self.value * (1.0 + gap))
+        return ""
 
-    def _work(self, level: float, stack: _Stack) -> _Stack:
-        pose = np.empty(stack.cells.shape[1])
-        stack.reserve()
-        code, stack.top, stack.done = self.kernel.branch_pattern(
-            self.family.arrays,
-            self.family.domain,
-            self.antenna.arrays,
-            self.reach,
-            level,
-            self.value * (1.0 + self.doubt),
-            stack.cells,
-            stack.top,
-            _CHUNK,
-            pose,
-        )
-        stack.better = pose if code == self.kernel.BETTER else None
-        return stack
+    def _excluding(self, gap: float) -> Kernel:
+        """Return the kernel that excludes all above ``value (1 + gap)``."""
+        family, antenna = self.family, self.antenna
+        problem = family.arrays, family.domain, antenna.arrays, self.reach
+        return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt))
 
     def _roots(self, gap: float) -> FloatArray:
         """Return the cells that hold every pose above the best value, or above a gap over it."""
@@ -225,39 +199,3 @@ class PatternRun:
         sides = half[order]
         level = math.hypot(max(0.0, way[0] - sides[0]), max(0.0, way[2] - sides[2]))
         return level / math.hypot(level, way[1] + sides[1]) if level > 0.0 else 0.0
-
-
-class _Stack:
-    """The cells that one thread works off."""
-
-    def __init__(self, cells: FloatArray) -> None:
-        self.cells, self.top = cells.copy(), len(cells)
-        self.done, self.better = 0, None
-
-    better: FloatArray | None
-
-    def reserve(self) -> None:
-        """Make room for the depth of the tree."""
-        if len(self.cells) < self.top + _DEPTH:
-            room = np.empty((self.top + 2 * _DEPTH, self.cells.shape[1]))
-            room[: self.top] = self.cells[: self.top]
-            self.cells = room
-
-    def give(self) -> FloatArray:
-        """Return every second cell, which the stack no longer has."""
-        kept, given = self.cells[: self.top : 2].copy(), self.cells[1 : self.top : 2].copy()
-        self.top = len(kept)
-        self.cells[: self.top] = kept
-        return given
-
-
-def _dealt(cells: FloatArray, hands: int) -> list[FloatArray]:
-    return [cells[i::hands] for i in range(hands)]
-
-
-def _share(stacks: list[_Stack]) -> None:
-    """Give cells of the fullest stack to those that have none."""
-    for at, idle in enumerate(stacks):
-        richest = max(stacks, key=lambda stack: stack.top)
-        if not idle.top and richest.top > 1:
-            stacks[at] = _Stack(richest.give())

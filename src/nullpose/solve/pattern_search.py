@@ -37,7 +37,8 @@ class PatternSearch:
 
     def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, seed: int) -> None:
         self.family, self.arrays, self.reach = family, antenna.arrays, reach
-        self.peak = antenna.peak
+        # with the largest gain in every direction
+        self.loudest = family.changed(numerator_weight=family.numerator_weight * antenna.peak)
         grid = directions(np.arange(181.0), np.arange(360.0)).reshape(-1, 3)
         gains = antenna.gain(grid)
         self.lowest = grid[gains <= np.quantile(gains, _LOW)]
@@ -53,19 +54,9 @@ class PatternSearch:
 
         self.kernels, self.domain, self.cut = pattern_search, domain, search.cut_box
         self.judged(np.ones((1, 3)), np.eye(3)[None])
-        none = np.empty((8, attitude.WARM + len(self.logs)))
-        pattern_branch.branch_pattern(
-            self.family.arrays,
-            self.family.domain,
-            self.arrays,
-            self.reach,
-            1.0,
-            1.0,
-            none,
-            0,
-            1,
-            none[0],
-        )
+        none, pose = np.empty((8, attitude.WARM + len(self.logs))), (np.empty(3), np.empty((3, 3)))
+        problem = self.family.arrays, self.family.domain, self.arrays, self.reach
+        pattern_branch.branch_pattern(*problem, 1.0, 1.0, none, 0, none, 0, 1, *pose)
         self.evaluations = 0
 
     def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
@@ -74,9 +65,8 @@ class PatternSearch:
         Args:
             log_value: logarithm of the smallest ratio.
         """
-        louder = self.family.changed(numerator_weight=self.family.numerator_weight * self.peak)
         low_m, high_m = np.empty(3), np.empty(3)
-        self.cut(louder.arrays, self.family.low_m, self.family.high_m, log_value - 1e-9, low_m, high_m)
+        self.cut(self.loudest.arrays, self.family.low_m, self.family.high_m, log_value - 1e-9, low_m, high_m)
         return low_m, high_m
 
     def judged(self, positions_m: FloatArray, rotations: FloatArray) -> FloatArray:
@@ -113,7 +103,7 @@ class PatternSearch:
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             rotations = self._attitudes(drawn)
-            rotations[1::2] = self._all_reached(self._shunning(positions_m[1::2]))
+            rotations[1::2] = self._all_reached(self._nulled(positions_m[1::2]))
             values = self.judged(positions_m, rotations)
             climbed = np.argsort(-values)[:climbs]
             for k in climbed:
@@ -154,7 +144,7 @@ class PatternSearch:
         """Return the metres that count as much as a radian."""
         return max(1.0, float(np.linalg.norm(position_m - self.family.points_m[0])))
 
-    def _shunning(self, positions_m: FloatArray) -> FloatArray:
+    def _nulled(self, positions_m: FloatArray) -> FloatArray:
         """Return rotations that have the strongest interferer, or the first point, where the gain is low."""
         weights = self.family.denominator_weight
         strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
@@ -165,17 +155,18 @@ class PatternSearch:
         chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(ways))]
         return np.asarray(_frames(ways) @ spins.as_matrix() @ _frames(chosen).transpose(0, 2, 1))
 
-    def improve(self, cell: FloatArray) -> None:
-        """Take up the pose at a cell's middle, and what a climb from there leads to.
+    def improve(self, position_m: FloatArray, rotation: FloatArray) -> bool:
+        """Take up a pose, and what a climb from there leads to; return whether that is better than before.
 
         Args:
-            cell: its row.
+            position_m: (3,).
+            rotation: (3, 3) to the world from the antenna's axes.
         """
-        rotation = np.empty((3, 3))
-        self.kernels.rotation_of(self.family.arrays, cell, np.empty((18, 3)), rotation)
-        rotation = self._reached(rotation)
-        self.take(cell[:3].copy(), rotation)
-        self.polish(cell[:3], rotation)
+        before = self.best
+        rotation = self.least_tilted(rotation)
+        self.take(position_m, rotation)
+        self.polish(position_m, rotation)
+        return self.best > before
 
     def take(self, position_m: FloatArray, rotation: FloatArray) -> None:
         """Keep a pose if it is allowed and the best so far.
@@ -196,8 +187,12 @@ class PatternSearch:
         """
         return math.acos(max(-1.0, min(1.0, float(rotation[2] @ self.reach.up))))
 
-    def _reached(self, rotation: FloatArray) -> FloatArray:
-        """Return a rotation of the same gains and the least tilt, or the nearest that is reached."""
+    def least_tilted(self, rotation: FloatArray) -> FloatArray:
+        """Return a rotation of the same gains and the least tilt, or the nearest that is reached.
+
+        Args:
+            rotation: (3, 3) to the world from the antenna's axes.
+        """
         if self.reach.spins and self.reach.tilt_max_rad < math.pi:
             axes = [rotation[:, 2], -rotation[:, 2]] if self.reach.even else [rotation[:, 2]]
             rotation = min((self._spun(axis) for axis in axes), key=self.tilt)
@@ -210,10 +205,10 @@ class PatternSearch:
         return np.asarray(Rotation.from_rotvec(excess * about).as_matrix() @ rotation)
 
     def _all_reached(self, rotations: FloatArray) -> FloatArray:
-        """Return :meth:`_reached` of many rotations, where that is not all of them."""
+        """Return :meth:`least_tilted` of many rotations, where that is not all of them."""
         if self.reach.tilt_max_rad >= math.pi:
             return rotations
-        return np.array([self._reached(rotation) for rotation in rotations])
+        return np.array([self.least_tilted(rotation) for rotation in rotations])
 
     def _spun(self, axis: FloatArray) -> FloatArray:
         """Return the rotation of least tilt that has the antenna's axis there."""
@@ -232,14 +227,14 @@ class PatternSearch:
         """
         position_m, rotation = position_m.copy(), np.array(rotation, order="C")
         self._climbed(position_m, rotation)
-        rotation = self._reached(rotation)
+        rotation = self.least_tilted(rotation)
         self.take(position_m, rotation)
         low_m, high_m, scale = self.family.low_m, self.family.high_m, self._scale_m(position_m)
         logs = np.empty((7, len(self.logs)))
 
         def pose(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             where = np.clip(position_m + scale * x[:3], low_m, high_m)
-            return where, self._reached(rotation @ Rotation.from_rotvec(x[3:6]).as_matrix())
+            return where, self.least_tilted(rotation @ Rotation.from_rotvec(x[3:6]).as_matrix())
 
         def ratios(x: FloatArray) -> FloatArray:
             self.kernels.fill_log_ratios(self.family.arrays, self.arrays, *pose(x), self.links, logs[0])

@@ -36,10 +36,10 @@ class _Worker:
     Both arrays grow in place: a larger copy would hold them twice.
     """
 
-    def __init__(self, nodes: FloatArray) -> None:
+    def __init__(self, nodes: FloatArray, orientation: tuple[int, ...]) -> None:
         self.stack, self.leaves = np.empty((0, nodes.shape[1])), np.empty((_FIRST, nodes.shape[1]))
         self.top = self.filled = 0
-        self.position_m, self.axis = np.empty(3), np.empty(3)
+        self.position_m, self.orientation = np.empty(3), np.empty(orientation)
         self.better = False
         self.take(nodes)
 
@@ -67,7 +67,9 @@ class _Worker:
             if self.filled == len(self.leaves):
                 _make_room(self.leaves, self.filled + min(self.filled, _BLOCK))
             stacks = self.stack, self.top, self.leaves, self.filled
-            code, self.top, self.filled, done, _ = kernel(*stacks, budget - total, self.position_m, self.axis)
+            code, self.top, self.filled, done, _ = kernel(
+                *stacks, budget - total, self.position_m, self.orientation
+            )
             total += done
             self.better = code == BETTER
         return total
@@ -79,16 +81,19 @@ class WorkerPool:
     Args:
         start: (n, columns) the nodes to begin with.
         workers: how many threads.
+        orientation: shape of what a pose has beside its position: an axis, or a rotation.
     """
 
-    def __init__(self, start: FloatArray, workers: int) -> None:
+    def __init__(self, start: FloatArray, workers: int, orientation: tuple[int, ...] = (3,)) -> None:
         count = max(1, min(workers, _MOST_WORKERS))
-        self._workers = [_Worker(start[i::count]) for i in range(count)]
+        self._orientation = orientation
+        self._workers = [_Worker(start[i::count], orientation) for i in range(count)]
 
     def grow(self, workers: int) -> None:
         """Bring the pool to so many workers, new ones without nodes."""
         none = self._workers[0].stack[:0]
-        self._workers += [_Worker(none) for _ in range(len(self._workers), min(workers, _MOST_WORKERS))]
+        more = range(len(self._workers), min(workers, _MOST_WORKERS))
+        self._workers += [_Worker(none, self._orientation) for _ in more]
 
     @property
     def done(self) -> bool:
@@ -112,8 +117,8 @@ class WorkerPool:
         return sum(pool.map(lambda worker: worker.work(kernel, budget), busy))
 
     def better(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Return the poses, position and axis, that beat the incumbent."""
-        return [(w.position_m.copy(), w.axis.copy()) for w in self._workers if w.better]
+        """Return the poses, position and orientation, that beat the incumbent."""
+        return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.better]
 
     def nodes(self) -> FloatArray:
         """Return the nodes that are left, (n, columns)."""

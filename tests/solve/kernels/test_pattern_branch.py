@@ -10,8 +10,9 @@ from nullpose.antenna.harmonics import Harmonics
 from nullpose.family import Family
 from nullpose.family.records import Reach
 from nullpose.solve.kernels.attitude import ANCHOR, CHART, FACE, HALF, WARM
-from nullpose.solve.kernels.pattern_branch import DONE, branch_pattern
-from nullpose.solve.kernels.pattern_search import judge, rotation_of
+from nullpose.solve.kernels.branch import BETTER, DONE
+from nullpose.solve.kernels.pattern_branch import branch_pattern
+from nullpose.solve.kernels.pattern_search import judge
 
 ANY = Reach(np.pi, 0.0, np.array([0.0, 0.0, 1.0]), False, False)
 
@@ -44,8 +45,8 @@ def random_family(rng: np.random.Generator) -> Family:
         denominator_start=np.array([0, jammers]),
         denominator_point=np.arange(nodes, nodes + jammers),
         denominator_weight=1000.0 * 10.0 ** rng.uniform(-2.0, 2.0, jammers),
-        low_m=np.array([-1e3, -1e3, 8.0]),
-        high_m=np.array([1e3, 1e3, 60.0]),
+        low_m=np.full(3, -1e3),
+        high_m=np.full(3, 1e3),
         keep_out_points_m=np.zeros((0, 3)),
         keep_out_m=1.0,
     )
@@ -65,6 +66,17 @@ def random_cell(rng: np.random.Generator, family: Family) -> np.ndarray:
     return cell
 
 
+def rotation_at(family: Family, cell: np.ndarray) -> np.ndarray:
+    """Return the rotation to the world from the antenna's axes at a cell's middle: any beats nothing."""
+    point, position, rotation = cell.copy(), np.empty(3), np.empty((3, 3))
+    point[HALF : HALF + 6] = 0.0
+    stack, problem = np.array([point] * 4), (family.arrays, family.domain, ARRAYS[0], ANY)
+    code, *_ = branch_pattern(*problem, 0.0, -1.0, stack, 1, stack, 0, 1, position, rotation)
+    assert code == BETTER
+    np.testing.assert_array_equal(position, cell[:3])
+    return rotation
+
+
 @pytest.mark.parametrize("which", range(len(PATTERNS)))
 @settings(max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1))
@@ -75,16 +87,14 @@ def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     cell = random_cell(rng, family)
     inside = cell.copy()
     inside[:6] += cell[HALF : HALF + 6] * rng.uniform(-1.0, 1.0, 6)
-    rotation, value = np.empty((3, 3)), np.empty(1)
-    rotation_of(family.arrays, inside, np.empty((18, 3)), rotation)
+    rotation, value = rotation_at(family, inside), np.empty(1)
     scratch = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
     judge(family.arrays, ARRAYS[which], inside[None, :3], rotation[None], *scratch, value)
     level = float(np.exp(value[0])) * (1.0 - 1e-9)
     stack = np.empty((4000, len(cell)))
     stack[0] = cell
-    code, top, _ = branch_pattern(
-        family.arrays, family.domain, ARRAYS[which], ANY, level, np.inf, stack, 1, 400, cell.copy()
-    )
+    problem, pose = (family.arrays, family.domain, ARRAYS[which], ANY), (np.empty(3), np.empty((3, 3)))
+    code, top, *_ = branch_pattern(*problem, level, np.inf, stack, 1, stack, 0, 400, *pose)
     assert code != DONE
     assert top > 0
 
@@ -94,8 +104,8 @@ def test_rotations_are_rotations() -> None:
     rng = np.random.default_rng(5)
     family = random_family(rng)
     for _ in range(50):
-        cell, rotation = random_cell(rng, family), np.empty((3, 3))
-        rotation_of(family.arrays, cell, np.empty((18, 3)), rotation)
+        cell = random_cell(rng, family)
+        rotation = rotation_at(family, cell)
         np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(rotation) == pytest.approx(1.0)
         way = family.points_m[int(cell[ANCHOR])] - cell[:3]

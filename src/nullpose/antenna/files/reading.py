@@ -18,7 +18,7 @@ from nullpose.antenna.files.emane import read_emane
 from nullpose.antenna.files.hfss import read_ffd
 from nullpose.antenna.files.msi import read_msi
 from nullpose.antenna.files.nec import read_nec
-from nullpose.antenna.harmonics import fit, highest_degree
+from nullpose.antenna.harmonics import fit, supported_degree
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import ScenarioError
 from nullpose.files import read_bytes
@@ -27,7 +27,7 @@ _MOST_BYTES = 60_000_000  # fields of several frequencies, 65,341 rows for 1 deg
 _SAME_FREQUENCY = 1e-3
 _OVER_FED = 10.0**0.05
 _FLOOR, _MOST_FLOOR = 1e-8, 0.01  # of the peak, and of the sphere
-_DEGREE, _MISSED = 48, 0.01  # what solvers take, and the root mean square that it may miss, of the peak
+_MISSED = 0.01  # root mean square that the degree which solvers take may miss, of the peak
 
 FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
     "nec": (r"RADIATION PATTERNS", read_nec),
@@ -43,7 +43,7 @@ FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
 
 def read_pattern(
     path: str | os.PathLike[str],
-    format: str | None = None,  # noqa: A002
+    file_format: str | None = None,
     frequency_hz: float | None = None,
     *,
     estimate: bool = False,
@@ -52,7 +52,7 @@ def read_pattern(
 
     Args:
         path: the file, which may be compressed by gzip.
-        format: a key of ``FORMATS``; None to let the file tell it.
+        file_format: a key of ``FORMATS``; None to let the file tell it.
         frequency_hz: which of several frequencies, to a thousandth.
         estimate: whether two cuts are read as a guess, for looking at, where they do not tell the pattern;
             the notes then say why nothing should be solved with it.
@@ -63,7 +63,7 @@ def read_pattern(
     source = os.fspath(path)
     try:
         lines = _lines(Path(source))
-        name = _format_of("\n".join(text for _, text in lines), format)
+        name = _format_of("\n".join(text for _, text in lines), file_format)
         block = _picked(list(FORMATS[name][1](lines)), frequency_hz)
         table = _scaled(gridded(block, f"{Path(source).name} ({name})"))
         doubts = [*filter(None, [block.doubt]), *_misleading(table)]
@@ -113,17 +113,6 @@ def mean_gain(table: PatternTable) -> float:
         table: any.
     """
     return float(np.sum(solid_angles(table) * table.gain))
-
-
-def supported_degree(table: PatternTable) -> int:
-    """Return the highest degree of a table's power gain that its grid tells, and that solvers take.
-
-    The power of a field has twice its degree.
-
-    Args:
-        table: any.
-    """
-    return min(_DEGREE, highest_degree(table) * (1 if table.field is None else 2))
 
 
 def _lines(path: Path) -> Lines:

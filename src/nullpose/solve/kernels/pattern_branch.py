@@ -10,6 +10,7 @@ import numpy as np
 from nullpose.objectives import FloatArray
 from nullpose.solve.kernels.array_branch import is_forbidden
 from nullpose.solve.kernels.attitude import ANCHOR, CHART, HALF, WARM
+from nullpose.solve.kernels.branch import BETTER, DONE, FULL, LIMIT
 from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solve.kernels.pattern_bound import (
@@ -21,8 +22,6 @@ from nullpose.solve.kernels.pattern_bound import (
     middle,
     square_range,
 )
-
-DONE, OUT_OF_BUDGET, BETTER, FULL = 0, 1, 2, 3
 
 _HAIR = 1e-9  # radians
 
@@ -85,8 +84,10 @@ def tilt_of(reach, x, y, z):
 
 
 @heap_kernel
-def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, budget, pose):
-    """Work off cells; return why it ended, the cells left and how many were examined.
+def branch_pattern(
+    family, domain, pattern, reach, level, floor, stack, top, leaves, filled, budget, position, rotation
+):
+    """Work off cells; return why it ended, how many are left, ``filled``, how many were examined, and 0.
 
     Args:
         family: the ratios.
@@ -97,8 +98,11 @@ def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, bud
         floor: an allowed middle above this is a better pose, and ends the call.
         stack: (size, columns) cells.
         top: how many of them there are.
+        leaves: not written: an excluded cell is not kept.
+        filled: how many leaves there are.
         budget: cells to examine at most.
-        pose: output, (columns,): the cell whose middle is better.
+        position: output, (3,): that of the better pose.
+        rotation: output, (3, 3): its rotation to the world from the antenna's axes.
     """
     m, n = family.points_m.shape[0], family.numerator_point.shape[0]
     room = Room(
@@ -132,9 +136,9 @@ def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, bud
     done = 0
     while top > 0:
         if done >= budget:
-            return OUT_OF_BUDGET, top, done
+            return LIMIT, top, filled, done, 0
         if top + 2 > stack.shape[0]:
-            return FULL, top, done
+            return FULL, top, filled, done, 0
         top -= 1
         done += 1
         row[:] = stack[top]
@@ -148,9 +152,13 @@ def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, bud
         multipliers[:] = row[WARM : WARM + n]
         value, promising = middle(family, pattern, level, row, room)
         if value > floor and least <= reach.tilt_max_rad and contains(domain, row[:3]):
-            pose[:] = row
+            first = int(row[CHART])
+            for i in range(3):
+                position[i] = row[i]
+                for k in range(3):
+                    rotation[(first + i) % 3, k] = room.frame[i, k]
             stack[top] = row
-            return BETTER, top + 1, done
+            return BETTER, top + 1, filled, done, 0
         if promising:
             expand(family, pattern, row, room)
             fill_constants(family, level, room)
@@ -166,4 +174,4 @@ def branch_pattern(family, domain, pattern, reach, level, floor, stack, top, bud
             row[axis] = before + side * row[HALF + axis]
             stack[top] = row
             top += 1
-    return DONE, top, done
+    return DONE, top, filled, done, 0

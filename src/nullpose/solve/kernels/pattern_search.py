@@ -1,14 +1,12 @@
-"""Poses of an antenna with a pattern: their ratios, and cells as poses."""
+"""Poses of an antenna with a pattern: their ratios, and climbs among them."""
 
 from __future__ import annotations
 
 import math
 
-from nullpose.solve.kernels.attitude import ANCHOR, CHART, fill_frame
 from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.harmonics import gain_at
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.pattern_bound import way_to
 from nullpose.solve.kernels.pattern_branch import tilt_of
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
 from nullpose.solve.kernels.vectors import cross, row
@@ -55,16 +53,6 @@ def judge(family, pattern, positions, rotations, links, logs, out):
     """Fill the smallest log ratio of many poses, (n, 3) and (n, 3, 3)."""
     for i in range(positions.shape[0]):
         out[i] = fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
-
-
-@kernel
-def rotation_of(family, cell, frame, out):
-    """Fill the rotation to the world from the antenna's axes at a cell's middle; ``frame`` is scratch."""
-    first = int(cell[CHART])
-    fill_frame(cell, way_to(family.points_m, int(cell[ANCHOR]), cell), frame)
-    for i in range(3):
-        for k in range(3):
-            out[(first + i) % 3, k] = frame[i, k]
 
 
 @inner_kernel
