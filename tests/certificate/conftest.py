@@ -15,7 +15,8 @@ from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.family import Family, build_family
 from nullpose.scenario import Scenario
 from nullpose.solve import solve
-from nullpose.solve.certificate_from_proof import certificate_of, leaves_of
+from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solve.leaves_from_proof import leaves_of
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.solve_and_prove import solve_and_prove
 
@@ -81,7 +82,7 @@ def put_together() -> Callable[..., Certificate]:
             roll_rad=attitude[0],
             pitch_rad=attitude[1],
             yaw_rad=attitude[2],
-            trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p)) for axis, p in trees),
+            trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p, axis)) for axis, p in trees),
         )
 
     return make

@@ -9,6 +9,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.antenna import PatternAntenna
+from nullpose.certificate.profile import ProfileField
 from nullpose.family import AxisField
 from nullpose.scenario import Scenario
 from nullpose.schemes import RECORDS
@@ -22,6 +24,7 @@ AFFINE = 2  # the axis that the position gives
 FAR = 3  # a node out of reach
 KEPT_OUT = 4  # inside a keep-out ball or a forbidden zone
 OFF_BAND = 5  # a cell of axes that the airframe does not reach
+PROFILE = 6  # any axis of an antenna that is the same all round
 
 # What is known of each leaf: kind and shape of the entry, by the name of the column.
 COLUMNS: Mapping[str, tuple[type, tuple[int, ...]]] = {
@@ -46,10 +49,12 @@ class Leaves:
 
     Args:
         box: (l, 6) depth and index along x, y and z.
-        cell: (l, 5) face of the cube of axes, -1 for every axis, then depth and index along its two sides.
-        test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR``, ``KEPT_OUT`` or ``OFF_BAND``.
-        point: (l,) the point that the frame turns towards, the ratio that is out of reach, or the keep-out
-            ball or zone; -1 where there is none.
+        cell: (l, 5) face of the cube of axes, -1 for every axis, then depth and index along its two sides;
+            for ``PROFILE`` the chart, then depth and index of the angle from the anchor and of the spin.
+        test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR``, ``KEPT_OUT``, ``OFF_BAND`` or
+            ``PROFILE``.
+        point: (l,) the point that the frame turns towards, the anchor, the ratio that is out of reach, or
+            the keep-out ball or zone; -1 where there is none.
         level: (l,) the smallest ratio that no pose of the leaf reaches.
         mix: (l,) index into ``mixes``; -1 where none is needed.
         mixes: multipliers of ratios, each a mapping from ratio to weight.
@@ -88,7 +93,8 @@ class Tree:
     """The proof for one axis field.
 
     Args:
-        axis: ``"free"``, ``"band"``, ``"vertical"``, ``"broadside"`` or ``"null NAME"`` with a jammer's name.
+        axis: ``"free"``, ``"band"``, ``"vertical"``, ``"broadside"``, ``"null NAME"`` with a jammer's name,
+            or ``"profile"`` for an antenna that is no dipole.
         root_m: (2, 3) lowest and highest corner of the root box, metres.
         leaves: they cover the root.
     """
@@ -133,7 +139,7 @@ class Certificate:
 def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField] | None:
     """Return the axis fields of a scheme by the names they have in a certificate; None if there are none.
 
-    They are those of one dipole in the scene as stated, uncertainties and arrays left out.
+    They are those of one antenna in the scene as stated, uncertainties and arrays left out.
 
     Args:
         scenario: nodes, jammers and airframe.
@@ -143,4 +149,9 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Ma
     record = RECORDS.get(scheme)
     if record is None or (null_jammer is not None and not record.nulls_a_jammer):
         return None
-    return record.fields(scenario, null_jammer)
+    antenna = scenario.antenna_record
+    if not isinstance(antenna, PatternAntenna):
+        return record.fields(scenario, null_jammer)
+    if not (record.any_antenna and antenna.harmonics.is_axisymmetric):
+        return None
+    return {"profile": ProfileField(antenna, scenario)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.certificate.certificate import IntArray, Leaves
+from nullpose.certificate.certificate import PROFILE, IntArray, Leaves
 
 _DEPTH = slice(0, 10, 2)
 
@@ -16,12 +16,13 @@ def uncovered(leaves: Leaves) -> str:
     in it is finer, and both halves are covered.
 
     Args:
-        leaves: to be checked; depths and indices in range.
+        leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
+            hold all axes in any one chart; those of a dipole on three faces.
     """
     face = leaves.cell[:, 0]
     # depth and index along x, y, z and the two sides of a cell, which is whole where there is none
     grid = np.concatenate([leaves.box, np.where(face[:, None] < 0, 0, leaves.cell[:, 1:])], axis=1)
-    everything = np.arange(len(leaves))
+    everything, is_profile = np.arange(len(leaves)), bool(np.all(leaves.test == PROFILE))
     todo: list[tuple[IntArray, tuple[int, ...], int, str]] = [(everything, (0,) * 5, -1, "root")]
     while todo:
         members, depth, on_face, path = todo.pop()
@@ -29,8 +30,10 @@ def uncovered(leaves: Leaves) -> str:
             return f"the leaves do not cover the root: nothing covers {path}"
         least = grid[members, _DEPTH].min(axis=0)
         if on_face < 0 and np.all(face[members] >= 0):
-            todo += [(members[face[members] == f], depth, f, f"{path}/face{f}") for f in range(3)]
-            continue
+            charts = set(face[members].tolist()) if is_profile else {0, 1, 2}
+            if not is_profile or len(charts) == 1:
+                todo += [(members[face[members] == f], depth, f, f"{path}/face{f}") for f in charts]
+                continue
         finer = [i for i in range(5 if on_face >= 0 else 3) if least[i] > depth[i]]
         if not finer:
             as_large = np.all(grid[members, _DEPTH] <= depth, axis=1)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import isqrt
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.family import AxisField, Family
+
+if TYPE_CHECKING:
+    from nullpose.certificate.profile import Profile
 
 # An array of fractions.
 Exact: TypeAlias = NDArray[Any]
@@ -89,6 +92,21 @@ def sine2(x: Exact, y: Exact) -> Fraction:
     return Fraction(cross @ cross, (x @ x) * (y @ y))
 
 
+def profile_link(point: Exact, position: Exact, axis: Exact, profile: Profile) -> Fraction:
+    """Return a link's gain over ``|r|^2`` for an antenna that is the same all round, to thirty digits.
+
+    Args:
+        point: on the ground, metres.
+        position: where the antenna is.
+        axis: its axis, of any length.
+        profile: its gain.
+    """
+    r = point - position
+    along, square, length2 = (Fraction(a @ b) for a, b in ((axis, r), (r, r), (axis, axis)))
+    cosine = square_root(along**2 / (square * length2))
+    return profile.exact(cosine if along >= 0 else -cosine) / square
+
+
 def link(point: Exact, position: Exact, axis: Exact, leak: Fraction, dipole: Exact | None = None) -> Fraction:
     """Return a link's gain over ``|r|^2``, exactly; without a leak and a dipole, paper eqs. 1.2 to 1.4.
 
@@ -102,19 +120,27 @@ def link(point: Exact, position: Exact, axis: Exact, leak: Fraction, dipole: Exa
     return (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
 
 
-def smallest_ratio(family: Family, position: Exact, axis: Exact) -> Fraction:
+def smallest_ratio(family: Family, position: Exact, axis: Exact, profile: Profile | None = None) -> Fraction:
     """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
 
     Args:
         family: the ratios.
         position: where, metres.
         axis: the antenna's axis, of any length.
+        profile: its gain, if it is no dipole.
     """
     leak = Fraction(family.leak)
     axes = family.ground_axes
     dipoles = [None] * len(family.points_m) if axes is None else exact(axes)
     pairs = zip(exact(family.points_m), dipoles, strict=True)
-    links = np.array([link(point, position, axis, leak, dipole) for point, dipole in pairs])
+    links = np.array(
+        [
+            link(point, position, axis, leak, dipole)
+            if profile is None
+            else profile_link(point, position, axis, profile)
+            for point, dipole in pairs
+        ]
+    )
     entries = exact(family.denominator_weight) * links[family.denominator_point]
     starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
     denominators = np.array(

@@ -15,6 +15,7 @@ from nullpose.certificate.certificate import (
     FAR,
     KEPT_OUT,
     OFF_BAND,
+    PROFILE,
     TOWARDS,
     WORLD,
     Certificate,
@@ -27,6 +28,8 @@ from nullpose.certificate.claim import claim_fault, pose_fault
 from nullpose.certificate.coverage import uncovered
 from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
 from nullpose.certificate.free_test import free_holds
+from nullpose.certificate.profile import ProfileField, loudest
+from nullpose.certificate.profile_test import profile_holds
 from nullpose.certificate.sentence import sentence
 from nullpose.family import AxisField, Family, build_family
 
@@ -79,6 +82,7 @@ _TESTS = {
     FAR: _Test("distance", far_holds, points=lambda f: len(f.numerator_point)),
     KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
     OFF_BAND: _Test("axes out of reach", off_band_holds),
+    PROFILE: _Test("any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.points_m)),
 }
 
 
@@ -95,7 +99,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
         on_progress: called with the leaves checked and how many there are.
     """
     total = sum(len(tree.leaves) for tree in certificate.trees)
-    family = build_family(certificate.scenario)
+    family = build_family(certificate.scenario, any_antenna=True)
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
     reason = claim_fault(certificate, family, fields) or pose_fault(certificate, family, fields or {})
     done = 0
@@ -120,7 +124,7 @@ def _tree_fault(
 ) -> str:
     fault = (
         _range_fault(family, field, tree, upper_bound)
-        or root_holds(family, tree.root_m, upper_bound)
+        or root_holds(loudest(family, field), tree.root_m, upper_bound)
         or uncovered(tree.leaves)
         or _leaf_fault(family, field, tree, checked)
     )
@@ -161,6 +165,8 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its level is not positive": ~(leaves.level > 0.0),
         "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
+        "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
+        "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.cell[:, 0] < 0),
         "its point does not exist": no_point,
         "its multipliers do not exist": no_mix,
         "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),
@@ -186,6 +192,8 @@ def _outside(index: IntArray, count: int | IntArray) -> np.ndarray:
 def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> int | None:
     """Return the first leaf of the boxes that is not excluded, cutting boxes that fail narrowly, or None."""
     failed = boxes.chosen(~_holds(family, field, leaves, boxes))
+    if isinstance(field, ProfileField) and len(failed):  # whose test cuts cells by itself
+        return int(failed.leaf.min())
     for start in range(0, len(failed), _CUT_AT_ONCE):
         left = failed.chosen(slice(start, start + _CUT_AT_ONCE))
         for _ in range(_CUTS):

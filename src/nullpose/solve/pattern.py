@@ -21,12 +21,13 @@ from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import NO_POSITION
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.pattern_search import PatternSearch
-from nullpose.solve.proof import INTERRUPT, reach_by_distance
+from nullpose.solve.proof import INTERRUPT, Proof, reach_by_distance
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.solve_and_prove import Outcome
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
 _CHUNK = 20_000  # cells between two looks at the clock
+_MOST_LEAVES = 250_000  # of a certificate; with more the proof goes on, and has none
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
@@ -82,6 +83,8 @@ class PatternRun:
         self.cells = 0
         self.proved = math.inf
         self.doubt = _DOUBT
+        self.root = np.zeros((2, 3))
+        self.leaves: FloatArray | None = None
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
@@ -108,7 +111,18 @@ class PatternRun:
         if not self.options.certify:
             return Outcome(incumbent=found)
         bound = float(bound_above(self.value, self.proved))
-        return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.cells)
+        if self.leaves is None:
+            return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.cells)
+        proof = Proof(
+            incumbent=found,
+            upper_bound=bound,
+            root=self.root,
+            leaves=self.leaves,
+            reason=reason,
+            nodes=self.cells,
+            is_even=self.reach.even,
+        )
+        return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=(proof,))
 
     @property
     def value(self) -> float:
@@ -136,27 +150,29 @@ class PatternRun:
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         threads = self.options.threads or processors()
-        workers = WorkerPool(self._roots(gap), threads, orientation=(3, 3))
+        workers, keep = WorkerPool(self._roots(gap), threads, orientation=(3, 3)), self.reach.spins
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
                 if time.perf_counter() > until:
                     return f"the time limit of {self.options.time_limit_s:g} s"
                 if self.cells >= self.options.node_limit:
                     return f"the node limit of {self.options.node_limit}"
-                self.cells += workers.work(self._excluding(gap), _CHUNK, pool)
+                self.cells += workers.work(self._excluding(gap, keep), _CHUNK, pool)
+                keep = keep and workers.filled <= _MOST_LEAVES
                 for position_m, rotation in workers.better():
                     # what does not help, by rounding, must not be met again and again
                     self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
                 if self.options.on_progress is not None:
                     self.options.on_progress(self.proved / self.value - 1.0, self.cells)
         self.proved = min(self.proved, self.value * (1.0 + gap))
+        self.leaves = workers.leaves() if keep else None
         return ""
 
-    def _excluding(self, gap: float) -> Kernel:
-        """Return the kernel that excludes all above ``value (1 + gap)``."""
+    def _excluding(self, gap: float, keep: bool) -> Kernel:
+        """Return the kernel that excludes all above ``value (1 + gap)``, and keeps the leaves if asked to."""
         family, antenna = self.family, self.antenna
         problem = family.arrays, family.domain, antenna.arrays, self.reach
-        return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt))
+        return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt), keep)
 
     def _roots(self, gap: float) -> FloatArray:
         """Return the cells that hold every pose above the best value, or above a gap over it."""
@@ -165,7 +181,8 @@ class PatternRun:
             level = max(level, 0.0) + math.log1p(gap)
         low_m, high_m = self.search.box(level)
         found: list[FloatArray] = []
-        self._add_roots(low_m, np.maximum(low_m, high_m), found)
+        self.root = np.array([low_m, np.maximum(low_m, high_m)])
+        self._add_roots(self.root[0], self.root[1], found)
         return np.array(found)
 
     def _add_roots(self, low_m: FloatArray, high_m: FloatArray, found: list[FloatArray]) -> None:

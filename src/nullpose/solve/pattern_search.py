@@ -11,9 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import PatternAntenna
 from nullpose.antenna.harmonics import directions
-from nullpose.family import Family
+from nullpose.family import AxisField, Family
 from nullpose.family.records import Reach
 from nullpose.objectives import FloatArray
+from nullpose.solve.multistart import multistart
 
 _HARD = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
 _LIGHTLY = 6_000, 120, 4  # where one does, which repairs what this misses
@@ -50,13 +51,13 @@ class PatternSearch:
 
     def compile(self) -> None:
         """Compile what a search and a proof need."""
-        from nullpose.solve.kernels import attitude, domain, pattern_branch, pattern_search, search
+        from nullpose.solve.kernels import attitude, pattern_branch, pattern_search, search
 
-        self.kernels, self.domain, self.cut = pattern_search, domain, search.cut_box
+        self.kernels, self.cut = pattern_search, search.cut_box
         self.judged(np.ones((1, 3)), np.eye(3)[None])
         none, pose = np.empty((8, attitude.WARM + len(self.logs))), (np.empty(3), np.empty((3, 3)))
         problem = self.family.arrays, self.family.domain, self.arrays, self.reach
-        pattern_branch.branch_pattern(*problem, 1.0, 1.0, none, 0, none, 0, 1, *pose)
+        pattern_branch.branch_pattern(*problem, 1.0, 1.0, False, none, 0, none, 0, 1, *pose)
         self.evaluations = 0
 
     def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
@@ -70,16 +71,15 @@ class PatternSearch:
         return low_m, high_m
 
     def judged(self, positions_m: FloatArray, rotations: FloatArray) -> FloatArray:
-        """Return the smallest log ratio of many poses.
+        """Return the smallest log ratio of many poses, minus infinity for positions that are not allowed.
 
         Args:
             positions_m: (n, 3).
             rotations: (n, 3, 3) to the world from the antenna's axes.
         """
         values = np.empty(len(positions_m))
-        self.kernels.judge(
-            self.family.arrays, self.arrays, positions_m, rotations, self.links, self.logs, values
-        )
+        problem = self.family.arrays, self.family.domain, self.arrays
+        self.kernels.judge(*problem, positions_m, rotations, self.links, self.logs, values)
         self.evaluations += len(positions_m)
         return values
 
@@ -105,7 +105,10 @@ class PatternSearch:
             rotations = self._attitudes(drawn)
             rotations[1::2] = self._all_reached(self._nulled(positions_m[1::2]))
             values = self.judged(positions_m, rotations)
-            climbed = np.argsort(-values)[:climbs]
+            if not np.any(np.isfinite(values)):  # a narrow airspace: begin where a dipole would be
+                positions_m[:] = multistart(self.family, AxisField.free(), seed=0).position_m
+                values = self.judged(positions_m, rotations)
+            climbed = np.argsort(-values)[: min(climbs, int(np.isfinite(values).sum()))]
             for k in climbed:
                 values[k] = self._climbed(positions_m[k], rotations[k])
             for k in climbed[np.argsort(-values[climbed])][:polished]:
@@ -176,7 +179,7 @@ class PatternSearch:
             rotation: (3, 3) to the world from the antenna's axes, one that is reached.
         """
         value = float(self.judged(position_m[None], rotation[None])[0])
-        if value > self.best and self.domain.contains(self.family.domain, position_m):
+        if value > self.best:
             self.best, self.pose = value, (position_m, rotation)
 
     def tilt(self, rotation: FloatArray) -> float:

@@ -51,6 +51,7 @@ class Proof:
         leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box.
         reason: why the target gap was not reached; empty if it was.
         nodes: nodes examined.
+        is_even: of an antenna that is no dipole: whether opposite directions have the same gain.
     """
 
     incumbent: Incumbent
@@ -59,6 +60,7 @@ class Proof:
     leaves: FloatArray
     reason: str
     nodes: int
+    is_even: bool = False
 
 
 class _Run:

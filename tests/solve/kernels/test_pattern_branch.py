@@ -71,7 +71,7 @@ def rotation_at(family: Family, cell: np.ndarray) -> np.ndarray:
     point, position, rotation = cell.copy(), np.empty(3), np.empty((3, 3))
     point[HALF : HALF + 6] = 0.0
     stack, problem = np.array([point] * 4), (family.arrays, family.domain, ARRAYS[0], ANY)
-    code, *_ = branch_pattern(*problem, 0.0, -1.0, stack, 1, stack, 0, 1, position, rotation)
+    code, *_ = branch_pattern(*problem, 0.0, -1.0, False, stack, 1, stack, 0, 1, position, rotation)
     assert code == BETTER
     np.testing.assert_array_equal(position, cell[:3])
     return rotation
@@ -89,12 +89,12 @@ def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     inside[:6] += cell[HALF : HALF + 6] * rng.uniform(-1.0, 1.0, 6)
     rotation, value = rotation_at(family, inside), np.empty(1)
     scratch = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
-    judge(family.arrays, ARRAYS[which], inside[None, :3], rotation[None], *scratch, value)
+    judge(family.arrays, family.domain, ARRAYS[which], inside[None, :3], rotation[None], *scratch, value)
     level = float(np.exp(value[0])) * (1.0 - 1e-9)
     stack = np.empty((4000, len(cell)))
     stack[0] = cell
     problem, pose = (family.arrays, family.domain, ARRAYS[which], ANY), (np.empty(3), np.empty((3, 3)))
-    code, top, *_ = branch_pattern(*problem, level, np.inf, stack, 1, stack, 0, 400, *pose)
+    code, top, *_ = branch_pattern(*problem, level, np.inf, False, stack, 1, stack, 0, 400, *pose)
     assert code != DONE
     assert top > 0
 

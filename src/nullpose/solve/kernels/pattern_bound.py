@@ -90,7 +90,7 @@ def fill_points(family, pattern, row, room):
 
 @inner_kernel
 def hopeless(family, level, room):
-    """Return whether one ratio stays below a level by the bounds of its points over the cell."""
+    """Return a ratio that stays below a level by the bounds of its points over the cell, or -1."""
     for k in range(family.numerator_point.shape[0]):
         g = family.denominator_of[k]
         below = family.denominator_isotropic[g]
@@ -99,8 +99,8 @@ def hopeless(family, level, room):
         above = family.numerator_isotropic[k]
         above += family.numerator_weight[k] * room.wide[family.numerator_point[k], 1]
         if above < level * below * (1.0 - 1e-12):
-            return True
-    return False
+            return k
+    return -1
 
 
 @inner_kernel

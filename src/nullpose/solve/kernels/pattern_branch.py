@@ -22,6 +22,7 @@ from nullpose.solve.kernels.pattern_bound import (
     middle,
     square_range,
 )
+from nullpose.solve.kernels.symmetric import copy_into
 
 _HAIR = 1e-9  # radians
 
@@ -83,9 +84,29 @@ def tilt_of(reach, x, y, z):
     return min(least, abs(math.pi - angle - reach.mount_rad)) if reach.even else least
 
 
+@inner_kernel
+def kept(keep, row, by, leaves, filled):
+    """Keep an excluded cell if that is asked for; return how many leaves there are then.
+
+    Args:
+        keep: whether it is.
+        row: the cell.
+        by: the ratio that excludes it alone, -1 for none, or, for several, how many ratios there are.
+        leaves: output.
+        filled: how many there are.
+    """
+    if not keep:
+        return filled
+    copy_into(row, leaves[filled])
+    if by < row.shape[0] - WARM:
+        for k in range(row.shape[0] - WARM):
+            leaves[filled, WARM + k] = 1.0 if k == by else 0.0
+    return filled + 1
+
+
 @heap_kernel
 def branch_pattern(
-    family, domain, pattern, reach, level, floor, stack, top, leaves, filled, budget, position, rotation
+    family, domain, pattern, reach, level, floor, keep, stack, top, leaves, filled, budget, position, rotation
 ):
     """Work off cells; return why it ended, how many are left, ``filled``, how many were examined, and 0.
 
@@ -98,7 +119,9 @@ def branch_pattern(
         floor: an allowed middle above this is a better pose, and ends the call.
         stack: (size, columns) cells.
         top: how many of them there are.
-        leaves: not written: an excluded cell is not kept.
+        keep: whether excluded cells become leaves.
+        leaves: (l, columns) output, excluded cells with the multipliers that do so in place of those to begin
+            with; all zero where no pose of the cell is allowed.
         filled: how many leaves there are.
         budget: cells to examine at most.
         position: output, (3,): that of the better pose.
@@ -137,17 +160,20 @@ def branch_pattern(
     while top > 0:
         if done >= budget:
             return LIMIT, top, filled, done, 0
-        if top + 2 > stack.shape[0]:
+        if top + 2 > stack.shape[0] or (keep and filled >= leaves.shape[0]):
             return FULL, top, filled, done, 0
         top -= 1
         done += 1
         row[:] = stack[top]
         if is_forbidden(domain, (row[0], row[1], row[2]), (row[6], row[7], row[8])):
+            filled = kept(keep, row, -1, leaves, filled)
             continue
         turning = fill_points(family, pattern, row, room)
         up = room.frame[(2 - int(row[CHART])) % 3]
         least = tilt_of(reach, up[0], up[1], up[2])
-        if least - turning > reach.tilt_max_rad + _HAIR or hopeless(family, level, room):
+        weak = hopeless(family, level, room)
+        if weak >= 0 or least - turning > reach.tilt_max_rad + _HAIR:
+            filled = kept(keep, row, weak, leaves, filled)
             continue
         multipliers[:] = row[WARM : WARM + n]
         value, promising = middle(family, pattern, level, row, room)
@@ -163,6 +189,8 @@ def branch_pattern(
             expand(family, pattern, row, room)
             fill_constants(family, level, room)
             if excluded_by_sum(family, level, row, multipliers, room):
+                row[WARM : WARM + n] = multipliers
+                filled = kept(keep, row, n, leaves, filled)
                 continue
         else:
             room.rest[:] = math.inf

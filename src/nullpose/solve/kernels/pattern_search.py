@@ -49,10 +49,12 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
 
 
 @kernel
-def judge(family, pattern, positions, rotations, links, logs, out):
-    """Fill the smallest log ratio of many poses, (n, 3) and (n, 3, 3)."""
+def judge(family, domain, pattern, positions, rotations, links, logs, out):
+    """Fill the smallest log ratio of many poses, (n, 3) and (n, 3, 3), minus infinity if not allowed."""
     for i in range(positions.shape[0]):
-        out[i] = fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
+        out[i] = -math.inf
+        if contains(domain, positions[i]):
+            out[i] = fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
 
 
 @inner_kernel

@@ -1,0 +1,204 @@
+"""The gain of an antenna that is the same all round: a polynomial of the cosine to its axis, with bounds."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.antenna import PatternAntenna
+from nullpose.certificate.interval import Interval
+from nullpose.certificate.pose_value import sine_cosine
+from nullpose.family import AxisField, Family
+from nullpose.scenario import Scenario
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+
+_CELLS = 4096  # of the cosine: a power of two, so that ends and middles are exact
+_ORDER = 7  # of the Taylor series in each, whose remainder is bounded by the next derivative
+_BITS = 256  # of whole numbers in place of real ones
+_PAD = 1e-50  # more than what so many bits leave out
+
+
+class Profile:
+    """A polynomial of the cosine c to the antenna's axis, |c| <= 1.
+
+    Args:
+        weights: (d + 1,) of the Legendre polynomials. They are taken as exact.
+    """
+
+    def __init__(self, weights: FloatArray) -> None:
+        self.powers = _powers(weights)
+        one = 1 << _BITS
+        at = np.array([(2 * i + 1 - _CELLS) * one // _CELLS for i in range(_CELLS)], dtype=object)
+        self.middles: FloatArray = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
+        self.terms = [_values(self.powers, order, at) for order in range(_ORDER + 1)]  # over the factorials
+        self.rest = _upwards(_most(weights, _ORDER + 1) / math.factorial(_ORDER + 1))
+        whole = Interval(np.full(_CELLS, -1.0 / _CELLS), np.full(_CELLS, 1.0 / _CELLS))
+        self.spans = [_spans(self._series(order, np.arange(_CELLS), whole)) for order in range(3)]
+        least, most = self.within(0, Interval([-1.0], [1.0])).ends
+        self.lift = max(0.0, -float(least[0]))
+        """What makes the polynomial positive everywhere."""
+        self.peak = float(most[0]) + self.lift
+
+    def exact(self, cosine: Fraction) -> Fraction:
+        """Return the gain at a cosine, which is zero where the polynomial is negative."""
+        return max(Fraction(0), sum((a * cosine**n for n, a in enumerate(self.powers)), Fraction(0)))
+
+    def near(self, order: int, cosine: Interval) -> Interval:
+        """Return a derivative's values at cosines that are all but known, (b,).
+
+        Args:
+            order: of the derivative, 0 to 2.
+            cosine: (b,).
+        """
+        middle = np.nan_to_num(cosine.middle())
+        cell = np.clip(((middle + 1.0) * (0.5 * _CELLS)).astype(np.int64), 0, _CELLS - 1)
+        return self._series(order, cell, cosine - self.middles[cell])
+
+    def within(self, order: int, cosine: Interval) -> Interval:
+        """Return bounds of a derivative over ranges of cosines, (b,).
+
+        Args:
+            order: of the derivative, 0 to 2.
+            cosine: (b,), of which what is beyond -1 and 1 does not count.
+        """
+        low, high = (
+            np.clip(np.where(np.isnan(end), side, end), -1.0, 1.0)
+            for end, side in zip((cosine.low, cosine.high), (-1.0, 1.0), strict=True)
+        )
+        first, last = (
+            np.clip(np.floor((end + 1.0) * (0.5 * _CELLS) + slack).astype(np.int64), 0, _CELLS - 1)
+            for end, slack in ((low, -1e-9), (high, 1e-9))
+        )
+        last = np.maximum(first, last)
+        level = np.frexp(last - first + 1.0)[1] - 1
+        lows, highs = self.spans[order]
+        second = last + 1 - (1 << level)
+        return Interval(
+            np.minimum(lows[level, first], lows[level, second]),
+            np.maximum(highs[level, first], highs[level, second]),
+        )
+
+    def _series(self, order: int, cell: IntArray, step: Interval) -> Interval:
+        """Return a derivative a step away from the middles of cells, by Taylor's formula."""
+        beyond = Interval(step.magnitude())
+        rest = Interval(self.rest) * float(math.perm(_ORDER + 1, order))
+        for _ in range(_ORDER + 1 - order):
+            rest = rest * beyond
+        total = Interval(-rest.high, rest.high)
+        power = Interval(np.ones(len(cell)))
+        for n in range(order, _ORDER + 1):
+            total = total + self.terms[n][cell] * power * float(math.perm(n, order))
+            power = power * step
+        return total
+
+
+class ProfileField(AxisField):
+    """Any axis of an antenna that is the same all round, as far as the airframe reaches.
+
+    Args:
+        antenna: whose gain it is.
+        scenario: with its airframe.
+
+    Raises:
+        ValueError: the gain changes round the axis.
+    """
+
+    __slots__ = ("even", "profile", "tilts")
+
+    profile: Profile
+    tilts: tuple[tuple[float, float], ...]
+    even: bool
+
+    def __init__(self, antenna: PatternAntenna, scenario: Scenario) -> None:
+        if not antenna.harmonics.is_axisymmetric:
+            raise ValueError(f"{antenna.label}: its gain changes round its axis")
+        super().__init__(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
+        even = antenna.harmonics.is_even
+        for name, value in (
+            ("profile", _profile(antenna.harmonics.cosine[:, 0].tobytes())),
+            ("tilts", _tilts(scenario, even)),
+            ("even", even),
+        ):
+            object.__setattr__(self, name, value)
+
+
+def loudest(family: Family, field: AxisField) -> Family:
+    """Return a family in which no gain is above 1, as those of dipoles are.
+
+    Args:
+        family: the ratios.
+        field: the axes; with a profile numerators get its largest gain.
+    """
+    if not isinstance(field, ProfileField):
+        return family
+    return family.changed(numerator_weight=np.nextafter(family.numerator_weight * field.profile.peak, np.inf))
+
+
+@lru_cache(maxsize=8)
+def _profile(terms: bytes) -> Profile:
+    cosine = np.frombuffer(terms)
+    return Profile(cosine * np.sqrt(2.0 * np.arange(len(cosine)) + 1.0))
+
+
+def _tilts(scenario: Scenario, even: bool) -> tuple[tuple[float, float], ...]:
+    """Return least and greatest vertical component of the axes that the airframe reaches, a hair wider."""
+    airframe = scenario.airframe
+    if airframe is None or airframe.tilt_max_rad >= math.pi:
+        return ((-1.0, 1.0),)
+    ends = airframe.mount_rad + airframe.tilt_max_rad, airframe.mount_rad - airframe.tilt_max_rad
+    low, high = (float(sine_cosine(Fraction(min(max(end, 0.0), math.pi)))[1]) for end in ends)
+    one = (low - 1e-12, high + 1e-12)
+    return (one, (-one[1], -one[0])) if even else (one,)
+
+
+def _powers(weights: FloatArray) -> list[Fraction]:
+    """Return the coefficients of the powers of c, exactly."""
+    total = [Fraction(0)] * len(weights)
+    before, here = [Fraction(0)] * len(weights), [Fraction(0)] * len(weights)
+    here[0] = Fraction(1)
+    for n, weight in enumerate(weights.tolist()):
+        total = [t + Fraction(weight) * a for t, a in zip(total, here, strict=True)]
+        ahead = [Fraction(0), *here[:-1]]
+        before, here = here, [((2 * n + 1) * a - n * b) / (n + 1) for a, b in zip(ahead, before, strict=True)]
+    return total
+
+
+def _values(powers: list[Fraction], order: int, at: np.ndarray) -> Interval:
+    """Return a derivative over the factorial of its order, (cells,), at whole numbers of 2^-bits."""
+    total = at * 0
+    for n in range(len(powers) - 1, order - 1, -1):
+        term = powers[n] * math.comb(n, order)
+        total = (total * at >> _BITS) + (term.numerator << _BITS) // term.denominator
+    found = Interval((total / (1 << _BITS)).astype(float))
+    return found + Interval(-_PAD, _PAD)
+
+
+def _most(weights: FloatArray, order: int) -> Fraction:
+    """Return a bound on a derivative's magnitude: those of Legendre polynomials are largest at 1."""
+    total = Fraction(0)
+    for n, weight in enumerate(weights.tolist()):
+        if n >= order:
+            at_one = Fraction(math.factorial(n + order), 2**order * math.factorial(order))
+            total += abs(Fraction(weight)) * at_one / math.factorial(n - order)
+    return total
+
+
+def _upwards(x: Fraction) -> float:
+    return float(np.nextafter(float(x), np.inf))
+
+
+def _spans(bounds: Interval) -> tuple[FloatArray, FloatArray]:
+    """Return lower and upper bounds over 2^level cells from each on, (levels, cells)."""
+    lows, highs = [bounds.low], [bounds.high]
+    for level in range(_CELLS.bit_length() - 1):
+        ahead = np.minimum(np.arange(_CELLS) + (1 << level), _CELLS - 1)
+        lows.append(np.minimum(lows[-1], lows[-1][ahead]))
+        highs.append(np.maximum(highs[-1], highs[-1][ahead]))
+    return np.array(lows), np.array(highs)

@@ -1,0 +1,292 @@
+"""Leaves of an antenna that is the same all round: a weighted sum, negative whatever position and axis.
+
+With r the way from a position to the leaf's anchor, a ground point, an axis is told by the angle u from r to
+it and a spin s about r. With ``w_j = r + d_j`` the way to point j and x, y, z the coordinates of r in cyclic
+order from the leaf's chart on, the cosine between axis and w_j is
+
+    c_j |w_j| = cos u (r.w_j) / |r| + sin u sin s (f d_y - y (x d_x + z d_z)) / (|r| sqrt f)
+                - sin u cos s (z d_x - x d_z) / sqrt f,   f = x^2 + z^2.
+
+The sum of ``g(c_j) / |w_j|^2`` with the leaf's multipliers is bounded by its value and slopes at the centre
+and its second derivatives over the box.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import factorial
+from typing import TypeAlias
+
+import numpy as np
+
+from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.distance_tests import kept_out_holds
+from nullpose.certificate.interval import Interval, where
+from nullpose.certificate.jets import PAIRS, Jet, flat, largest
+from nullpose.certificate.profile import Profile, ProfileField
+from nullpose.certificate.weighted_sum import weighted_sum
+from nullpose.family import AxisField, Family
+
+_ROUNDS = 16  # of halving what is not excluded
+_MOST = 8  # pieces of a leaf at once, on average: a certificate that holds needs one or two
+_PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
+_TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
+_CHUNK = 4096
+_SQUARES = [n for n, (i, j) in enumerate(PAIRS) if i == j]
+
+
+Link: TypeAlias = tuple[Jet, Jet]
+"""The cosine between antenna axis and the way to a point, and one over the squared distance."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cells:
+    """Parts of leaves.
+
+    Args:
+        boxes: of positions, with the leaf of each.
+        turn: (b, 4) depth and index of the angle u, then of the spin.
+    """
+
+    boxes: Boxes
+    turn: IntArray
+
+    def chosen(self, mask: np.ndarray) -> _Cells:
+        return _Cells(self.boxes.chosen(mask), self.turn[mask])
+
+
+def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Return which boxes their leaves exclude.
+
+    Args:
+        family: the ratios.
+        field: with the antenna's gain.
+        leaves: of the boxes, with anchor, chart, cell of axes and multipliers.
+        boxes: to be tested.
+    """
+    assert isinstance(field, ProfileField)
+    holds = _all_kept_out(family, field, leaves, boxes)
+    rows = np.flatnonzero(~holds)
+    own = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows])
+    cells = _Cells(own, leaves.cell[rows, 1:])
+    most = _MOST * max(1, len(rows))
+    for _ in range(_ROUNDS):
+        if not 0 < len(cells.boxes) <= most:
+            break
+        excluded, side = _excluded(family, field, leaves.chosen(cells.boxes.leaf), cells)
+        cells = _halved(cells.chosen(~excluded), side[~excluded])
+    holds[rows] = True
+    holds[np.unique(cells.boxes.leaf)] = False
+    return holds
+
+
+def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Return which boxes lie in some keep-out ball or zone."""
+    holds = np.zeros(len(boxes), dtype=bool)
+    for border in range(len(family.keep_out_points_m) + len(family.zone_kind)):
+        same = replace(leaves, point=np.full(len(leaves), border))
+        holds |= kept_out_holds(family, field, same, boxes)
+    return holds
+
+
+def _halved(cells: _Cells, side: IntArray) -> _Cells:
+    """Return both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
+    boxes, turn = cells.boxes, cells.turn
+    both, rows = [], np.arange(len(boxes))
+    for way in (-1, 1):
+        centre, half, depth = boxes.centre.copy(), boxes.half.copy(), turn.copy()
+        cut = rows[side < 3], side[side < 3]
+        slack = 4e-16 * (np.abs(centre[cut]) + half[cut])
+        centre[cut] += way * 0.5 * half[cut]
+        half[cut] = np.nextafter(0.5 * half[cut] + slack, np.inf)
+        at = rows[side >= 3], 2 * (side[side >= 3] - 3)
+        depth[at] += 1
+        depth[at[0], at[1] + 1] = 2 * depth[at[0], at[1] + 1] + (way > 0)
+        both.append((Boxes(leaf=boxes.leaf, centre=centre, half=half), depth))
+    (one, low), (other, high) = both
+    whole = {
+        name: np.concatenate([getattr(one, name), getattr(other, name)])
+        for name in ("leaf", "centre", "half")
+    }
+    return _Cells(Boxes(**whole), np.concatenate([low, high]))
+
+
+def _excluded(
+    family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
+) -> tuple[np.ndarray, IntArray]:
+    """Return which cells are excluded, and the coordinate to halve of those that are not."""
+    excluded = _all_kept_out(family, field, leaves, cells.boxes)
+    side = np.zeros(len(cells.boxes), dtype=np.int64)
+    key = leaves.point * 3 + leaves.cell[:, 0]
+    for one in np.unique(key):
+        rows = np.flatnonzero((key == one) & ~excluded)
+        for start in range(0, len(rows), _CHUNK):
+            some = rows[start : start + _CHUNK]
+            excluded[some], side[some] = _negative(family, field, leaves.chosen(some), cells.chosen(some))
+    return excluded, side
+
+
+def _negative(
+    family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
+) -> tuple[np.ndarray, IntArray]:
+    """Return whether the sums of cells with one anchor and one chart are negative, or no axis is reached."""
+    chart, anchor = int(leaves.cell[0, 0]), int(leaves.point[0])
+    order = np.array([chart, chart + 1, chart + 2]) % 3
+    points_m, centre_m = family.points_m[:, order], cells.boxes.centre.T[order]
+    apart, way = Interval(points_m) - points_m[anchor], Interval(points_m[anchor][:, None]) - centre_m
+    depth, index = cells.turn.T[::2], cells.turn.T[1::2]
+    span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
+    half = np.vstack([cells.boxes.half.T[order], (_PI * (span * np.ldexp(0.5, -depth))).high])
+    turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
+    wide = way + Interval(-half[:3], half[:3]), [_about(t, h) for t, h in zip(turns, half[3:], strict=True)]
+    bound = _largest(
+        family, field.profile, leaves, (_links(apart, anchor, way, turns), _links(apart, anchor, *wide)), half
+    )
+    excluded = (bound < 0.0) | _out_of_reach(field, *wide, (2 - chart) % 3)
+    length_m = np.linalg.norm(way.middle(), axis=0)
+    side = np.argmax(half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))]), axis=0)
+    return excluded, np.where(side < 3, order[np.minimum(side, 2)], side)
+
+
+def _largest(
+    family: Family, profile: Profile, leaves: Leaves, links: tuple[list[Link], list[Link]], half: FloatArray
+) -> FloatArray:
+    """Return upper bounds of the sums over cells, (b,).
+
+    Args:
+        family: the ratios.
+        profile: the antenna's gain.
+        leaves: with multipliers and level.
+        links: of each point, at the centres and all over the cells.
+        half: (5, b) the cells' half sides.
+    """
+    identity, gains, losses = _factors(family, leaves)
+    at_centre, over = identity, identity
+    slopes, bends = Interval(np.zeros((5, len(leaves)))), Interval(np.zeros((len(PAIRS), len(leaves))))
+    for (cosine, near), (wide, near_wide), gain, loss in zip(*links, gains, losses, strict=True):
+        # a gain is positive with the lift, which costs those nothing that are taken away
+        weight, lift = gain - loss, gain * profile.lift
+        link = cosine.of(*(profile.near(n, cosine.value) for n in range(3))) * near
+        at_centre = at_centre + link.value * weight + near.value * lift
+        slopes = slopes + link.slopes * weight + near.slopes * lift
+        reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
+        c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
+        link = wide.of(*(profile.within(n, c) for n in range(3))) * near_wide
+        over = over + link.value * weight + near_wide.value * lift
+        bends = bends + link.bends * weight + near_wide.bends * lift
+    return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high))
+
+
+def _out_of_reach(
+    field: ProfileField, way: Interval, turns: list[tuple[Interval, Interval]], upright: int
+) -> np.ndarray:
+    """Return which cells have no axis that the airframe reaches.
+
+    Args:
+        field: with the vertical components of those.
+        way: (3, b) to the anchor, all over the cells.
+        turns: sine and cosine of the angle, then of the spin.
+        upright: which coordinate is the altitude.
+    """
+    if field.tilts == ((-1.0, 1.0),):
+        return np.zeros(way.low.shape[1], dtype=bool)
+    (su, cu), (ss, cs) = turns
+    x, y, z = way[0], way[1], way[2]
+    level2 = x.squared() + z.squared()
+    level = level2.sqrt()
+    length = (level2 + y.squared()).sqrt()
+    first = (z / level, Interval(0.0), -x / level)
+    second = (-(x * y) / (level * length), level / length, -(y * z) / (level * length))
+    axis = su * (ss * second[upright] - cs * first[upright]) + cu * (way[upright] / length)
+    missed = [(axis.high < low) | (axis.low > high) for low, high in field.tilts]
+    return np.asarray(np.all(missed, axis=0))
+
+
+def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], list[Interval]]:
+    """Return a sum's constant, and by what each point's gain over squared distance adds and takes away."""
+    identity, above, below = weighted_sum(family, leaves)
+    sides: list[list[Interval]] = []
+    for parts in (above, below):
+        each = []
+        for point in range(len(family.points_m)):
+            total = Interval(np.zeros(len(leaves)))
+            for which, scale in parts:
+                total = total + where(which == point, scale, 0.0)
+            each.append(total)
+        sides.append(each)
+    return identity, sides[0], sides[1]
+
+
+def _links(apart: Interval, anchor: int, way: Interval, turns: list[tuple[Interval, Interval]]) -> list[Link]:
+    """Return, for each point, the cosine to the antenna's axis, and one over the squared distance.
+
+    Args:
+        apart: (m, 3) from the anchor to each point, in the chart's order.
+        anchor: which point that is.
+        way: (3, b) from the positions to the anchor.
+        turns: sine and cosine of the angle, then of the spin.
+    """
+    (su, cu), (ss, cs) = turns
+    angle = flat(su, {3: cu}, {_SQUARES[3]: -su})
+    along = flat(cu, {3: -su}, {_SQUARES[3]: -cu})
+    spin = flat(ss, {4: cs}, {_SQUARES[4]: -ss})
+    across = angle * flat(cs, {4: -ss}, {_SQUARES[4]: -cs})
+    upwards = angle * spin
+    level2 = _square(way, (0, 2))
+    level, length = level2.inverse_root(), _square(way, (0, 1, 2)).inverse_root()
+    both = level * length
+    found = []
+    for j, d in enumerate(apart[j] for j in range(len(apart.low))):
+        to = way + d[:, None]
+        near = _square(to, (0, 1, 2)).inverse_root()
+        if j == anchor:
+            found.append((along, near * near))
+            continue
+        flat_way = flat(way[0] * d[0] + way[2] * d[2], {0: -d[0], 2: -d[2]}, {})
+        whole = flat(way[1] * d[1], {1: -d[1]}, {}) + flat_way + _square(way, (0, 1, 2))
+        level_part = flat(way[2] * d[0] - way[0] * d[2], {2: -d[0], 0: d[2]}, {}) * level
+        height = flat(way[1], {1: Interval(-1.0)}, {})
+        steep_part = (level2.times(d[1]) - height * flat_way) * both
+        cosine = (along * (whole * length) + upwards * steep_part - across * level_part) * near
+        found.append((cosine, near * near))
+    return found
+
+
+def _square(way: Interval, sides: tuple[int, ...]) -> Jet:
+    """Return the sum of squares of some coordinates of a way, (3, b), which positions shorten."""
+    return flat(
+        Interval(*(end[list(sides)] for end in way.ends)).squared().total(),
+        {i: way[i] * -2.0 for i in sides},
+        {_SQUARES[i]: Interval(2.0) for i in sides},
+    )
+
+
+def sine_cosine(x: FloatArray) -> tuple[Interval, Interval]:
+    """Return sine and cosine of multiples of pi, (b,), by their Taylor series within an eighth of a turn.
+
+    Args:
+        x: (b,) exact, from -1 to 1.
+    """
+    quarter = np.rint(2.0 * x)
+    angle = _PI * (x - 0.5 * quarter)
+    square = angle.squared()
+    sine, cosine = Interval(np.zeros(len(x))), Interval(np.zeros(len(x)))
+    for n in reversed(range(_TERMS)):
+        sine = Interval((-1.0) ** n) / factorial(2 * n + 1) + sine * square
+        cosine = Interval((-1.0) ** n) / factorial(2 * n) + cosine * square
+    rest = Interval(-_REST, _REST)
+    sine, cosine = sine * angle + rest, cosine + rest
+    turn = quarter.astype(np.int64) % 4
+    swap, first, second = turn % 2 == 1, np.where(turn >= 2, -1.0, 1.0), np.where(turn % 3 > 0, -1.0, 1.0)
+    return where(swap, cosine, sine) * first, where(swap, sine, cosine) * second
+
+
+def _about(turn: tuple[Interval, Interval], half: FloatArray) -> tuple[Interval, Interval]:
+    """Return sine and cosine within so many radians of an angle, (b,)."""
+    sine, cosine = turn
+    shrunk = Interval(np.maximum((1.0 - Interval(half).squared() * 0.5).low, -1.0), np.ones(len(half)))
+    step = Interval(-half, half)
+    both = sine * shrunk + cosine * step, cosine * shrunk + sine * step
+    one, other = (Interval(np.maximum(x.low, -1.0), np.minimum(x.high, 1.0)) for x in both)
+    return one, other

@@ -1,0 +1,70 @@
+"""The gain of an antenna that is the same all round, and its bounds."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+from nullpose.antenna.pattern import half_wave_harmonics
+from nullpose.certificate.interval import Interval
+from nullpose.certificate.profile import Profile, ProfileField
+from nullpose.scenario import Scenario, apply_overrides, load
+
+HALF_WAVE = half_wave_harmonics().cosine[:, 0] * np.sqrt(2.0 * np.arange(15) + 1.0)
+DRAWN = np.random.default_rng(3).normal(size=31) / (1.0 + np.arange(31.0)) ** 2
+
+
+@pytest.fixture(params=[HALF_WAVE, DRAWN], ids=["half-wave", "drawn"])
+def weights(request: pytest.FixtureRequest) -> np.ndarray:
+    """Return weights of Legendre polynomials."""
+    return np.asarray(request.param)
+
+
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_bounds_contain_samples(weights: np.ndarray, order: int) -> None:
+    """Values and derivatives within a range, and at single cosines."""
+    profile, rng = Profile(weights), np.random.default_rng(order)
+    wanted = legendre.legder(weights, order) if order else weights
+    low = rng.uniform(-1.1, 1.0, 400)
+    high = low + 10.0 ** rng.uniform(-6.0, 0.3, 400)
+    bounds = profile.within(order, Interval(low, high))
+    samples = np.clip(low + (high - low) * np.linspace(0.0, 1.0, 40)[:, None], -1.0, 1.0)
+    values = legendre.legval(samples, wanted)
+    slack = 1e-9 * np.max(np.abs(values))
+    assert np.all(values >= bounds.low - slack)
+    assert np.all(values <= bounds.high + slack)
+    exact = profile.near(order, Interval(samples[0]))
+    assert np.all(np.abs(values[0] - exact.middle()) <= slack)
+    assert np.all(exact.high - exact.low <= slack)
+
+
+def test_the_half_wave_dipole() -> None:
+    """The polynomial is that of the textbook, in exact arithmetic, and peak and lift are bounds."""
+    profile = Profile(HALF_WAVE)
+    for cosine in (0.0, 0.3, -0.3, 0.9):
+        wanted = np.cos(0.5 * np.pi * cosine) ** 2 / (1.0 - cosine**2)
+        assert float(profile.exact(Fraction(cosine))) == pytest.approx(wanted, abs=1e-10)
+    assert 1.0 <= profile.peak <= 1.0 + 1e-6
+    assert 0.0 <= profile.lift <= 1e-6
+
+
+def test_what_an_airframe_reaches() -> None:
+    """Vertical components of the axis at every attitude are within the ranges."""
+    data = load("examples/paper.toml").to_dict() | {"antenna": {"kind": "half-wave"}}
+    scenario = apply_overrides(
+        Scenario.from_dict(data), ["airframe.tilt_max_deg=20", "airframe.mount_deg=30"]
+    )
+    field = ProfileField(scenario.antenna_record, scenario)
+    angles = np.radians(np.linspace(10.0, 50.0, 9))
+    for sign in (1.0, -1.0):
+        reached = [any(low <= sign * c <= high for low, high in field.tilts) for c in np.cos(angles)]
+        assert all(reached)
+    assert not any(low <= np.cos(np.radians(52.0)) <= high for low, high in field.tilts)
+
+
+def test_a_gain_that_changes_round_the_axis_has_no_profile() -> None:
+    """Only an antenna that is the same all round has one."""
+    scenario = load("examples/frame.toml")
+    with pytest.raises(ValueError, match="changes round its axis"):
+        ProfileField(scenario.antenna_record, scenario)
