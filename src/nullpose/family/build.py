@@ -44,6 +44,8 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
+    if not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():  # wherever they are
+        return
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
     over_noise = family.denominator_weight / np.maximum(distance_m, family.keep_out_m) ** 2
     if not (over_noise > LOUDEST).any():

@@ -63,10 +63,16 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
-    nodes = (scenario.node_positions_m, scenario.node_powers_w)
-    signal_w = received_power_w(position_m, axis, *nodes, *link, scenario.node_antennas)
-    jammers = (scenario.jammer_positions_m, scenario.jammer_powers_w)
-    jamming_w = received_power_w(position_m, axis, *jammers, *link, scenario.jammer_antennas)
-    interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
-    return np.asarray(signal_w / (interference_w + scenario.objective_record.noise_w(scenario)))
+    received_w = received_power_w(
+        position_m,
+        axis,
+        scenario.source_positions_m,
+        scenario.source_powers_w,
+        scenario.receiver.reference_gain,
+        scenario.antenna_record,
+        scenario.source_antennas,
+    )
+    nodes = len(scenario.nodes)
+    interference_w = np.sum(received_w[..., nodes:], axis=-1, keepdims=True)
+    noise_w = scenario.objective_record.noise_w(scenario)
+    return np.asarray(received_w[..., :nodes] / (interference_w + noise_w))

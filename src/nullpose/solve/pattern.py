@@ -136,9 +136,9 @@ class PatternRun:
     def _by_distance(self) -> float:
         """Return a bound from distances and the largest gain alone."""
         peak = self.family.changed(numerator_weight=self.family.numerator_weight * self.antenna.peak)
-        from nullpose.solve.proof import reach_by_distance
+        from nullpose.solve.kernels.root import reach_by_distance
 
-        return reach_by_distance(peak)[0]
+        return float(reach_by_distance(peak.arrays, peak.domain)[0])
 
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
