@@ -82,15 +82,13 @@ class Family:
 def _read_only(value: Any) -> Any:
     if not isinstance(value, np.ndarray):
         return value
-    # kernels are compiled for these two types
-    kind = np.dtype(np.int64 if value.dtype.kind in "iu" else np.float64)
-    if value.dtype == kind and value.flags.c_contiguous and not value.flags.writeable:
-        return value
-    array = np.array(value, dtype=kind, order="C")
-    array.flags.writeable = False
-    return array
+    if value.flags.writeable or not value.flags.c_contiguous or value.dtype not in _KINDS:
+        value = np.array(value, dtype=_KINDS[value.dtype.kind in "iu"], order="C")
+        value.flags.writeable = False
+    return value
 
 
+_KINDS = np.dtype(np.float64), np.dtype(np.int64)  # those that kernels are compiled for
 DEFAULTS = {
     name: _read_only(value) for name, value in (Ratios._field_defaults | Domain._field_defaults).items()
 }

@@ -40,7 +40,7 @@ def received_power_w(
         Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-    distance_sq = np.sum(to_points**2, axis=-1)  # m^2
+    distance_sq = (to_points**2).sum(axis=-1)  # m^2
     gain = link_gain(position_m, axis, points_m, antenna, ground)
     return np.asarray(
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
@@ -73,6 +73,6 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
         scenario.source_antennas,
     )
     nodes = len(scenario.nodes)
-    interference_w = np.sum(received_w[..., nodes:], axis=-1, keepdims=True)
+    interference_w = received_w[..., nodes:].sum(axis=-1, keepdims=True)
     noise_w = scenario.objective_record.noise_w(scenario)
     return np.asarray(received_w[..., :nodes] / (interference_w + noise_w))

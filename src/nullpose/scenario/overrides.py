@@ -14,7 +14,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import path_of, refusal
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.section import Section, inner_section
+from nullpose.scenario.section import Section, table_of
 from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.wording import listed, nearest, plain
 
@@ -74,7 +74,9 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     Raises:
         ScenarioError: with every path that does not exist and every fault of the result.
     """
-    data = scenario.to_dict()
+    # tables are frozen: those that no path leads into are taken as they are
+    stated = {key: getattr(scenario, key) for key in Scenario.model_fields}
+    data = {key: value for key, value in stated.items() if value is not None}
     faults: list[Fault] = []
     given = list(overrides)
     for override in given:
@@ -98,6 +100,8 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
         raise refusal(path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
     steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
+    touched = (*POINT_LISTS, "origin") if steps[0] == "origin" else steps[:1]
+    data |= {key: _raw(data[key]) for key in touched if key in data}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
@@ -106,6 +110,13 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
             for point in points if isinstance(points, list) else ():
                 if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
                     point.pop("position_m", None)
+
+
+def _raw(value: Any) -> Any:
+    """Returns a table, or each of a list of them, as plain values."""
+    if isinstance(value, tuple | list):
+        return [_raw(member) for member in value]
+    return value.to_dict() if isinstance(value, Section) else value
 
 
 def _value(path: str, text: str) -> object:
@@ -139,7 +150,7 @@ def _assign(
         raise refusal(path, f"got {path_of((step,))}, {_instead(step, members, path)}")
     here = members[step]
     table = kind if isinstance(holder, dict) else None
-    inner = kind if table is None else inner_section(table.model_fields[str(here)].annotation)
+    inner = kind if table is None else table_of(table, str(here))
     if rest:
         is_table = inner is not None and inner.letter is None
         below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]

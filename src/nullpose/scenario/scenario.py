@@ -207,7 +207,7 @@ class Scenario(Section):
         """What each node's SINR is divided by to give its margin, linear, (n_nodes,), read-only."""
         return read_only([node.required_sinr for node in self.nodes], (-1,))
 
-    @property
+    @cached_property
     def has_margins(self) -> bool:
         """Whether any node states a weight or a required SINR."""
         return any(node.weight is not None or node.min_sinr_db is not None for node in self.nodes)
