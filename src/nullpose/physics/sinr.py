@@ -47,7 +47,9 @@ def received_power_w(
     )
 
 
-def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+def sinr(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike | None = None
+) -> FloatArray:
     """Return the signal to interference-plus-noise ratio of every node.
 
     ``Gamma_i = (G(gamma_i) P_i / d_i^2) / (sum_j G(gamma_j) J_j / d_j^2 + sigma^2)``, with the jammers summed
@@ -59,6 +61,8 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
         scenario: nodes, jammers and receiver.
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: where the nodes and then the jammers are, ``(n_nodes + n_jammers, 3)``, metres; where the
+            scenario has them without it.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
@@ -66,7 +70,7 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
     received_w = received_power_w(
         position_m,
         axis,
-        scenario.source_positions_m,
+        scenario.source_positions_m if points_m is None else points_m,
         scenario.source_powers_w,
         scenario.receiver.reference_gain,
         scenario.antenna_record,

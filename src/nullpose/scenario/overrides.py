@@ -10,6 +10,8 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
+from pydantic_core import to_jsonable_python
+
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import path_of, refusal
 from nullpose.scenario.origin import POINT_LISTS
@@ -20,6 +22,7 @@ from nullpose.scenario.wording import listed, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+_FROZEN = Section, tuple
 _PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
@@ -75,8 +78,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         ScenarioError: with every path that does not exist and every fault of the result.
     """
     # tables are frozen: those that no path leads into are taken as they are
-    stated = {key: getattr(scenario, key) for key in Scenario.model_fields}
-    data = {key: value for key, value in stated.items() if value is not None}
+    data = {key: value for key in Scenario.model_fields if (value := getattr(scenario, key)) is not None}
     faults: list[Fault] = []
     given = list(overrides)
     for override in given:
@@ -99,9 +101,11 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     if not _PATH.fullmatch(path):
         raise refusal(path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
-    steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
+    steps: list[Any] = [
+        int(index) if index else double or single or bare for double, single, bare, index in found
+    ]
     touched = (*POINT_LISTS, "origin") if steps[0] == "origin" else steps[:1]
-    data |= {key: _raw(data[key]) for key in touched if key in data}
+    data |= {key: to_jsonable_python(data[key]) for key in touched if isinstance(data.get(key), _FROZEN)}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
@@ -110,13 +114,6 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
             for point in points if isinstance(points, list) else ():
                 if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
                     point.pop("position_m", None)
-
-
-def _raw(value: Any) -> Any:
-    """Returns a table, or each of a list of them, as plain values."""
-    if isinstance(value, tuple | list):
-        return [_raw(member) for member in value]
-    return value.to_dict() if isinstance(value, Section) else value
 
 
 def _value(path: str, text: str) -> object:

@@ -85,9 +85,9 @@ class PatternRun:
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
-        from nullpose.solve.kernels import pattern_branch  # compiled before the clock begins
+        from nullpose.solve.kernels import pattern_branch, root  # compiled before the clock begins
 
-        self.kernel = pattern_branch
+        self.kernel, self.root = pattern_branch, root
         self.search.compile()
         began = time.perf_counter()
         self.search.run(light=self.options.certify)
@@ -119,7 +119,8 @@ class PatternRun:
         """Close the gap asked for, or else wider ones; return why it was not closed."""
         limits = self.options
         whole = began + limits.time_limit_s
-        self.proved = self._by_distance()
+        peak = self.family.changed(numerator_weight=self.family.numerator_weight * self.antenna.peak)
+        self.proved = float(self.root.reach_by_distance(peak.arrays, peak.domain)[0])
         target = _INSIDE * limits.ratio_gap(self.value)
         try:
             if self.proved <= self.value * (1.0 + target):
@@ -132,13 +133,6 @@ class PatternRun:
             return reason
         except KeyboardInterrupt:
             return INTERRUPT
-
-    def _by_distance(self) -> float:
-        """Return a bound from distances and the largest gain alone."""
-        peak = self.family.changed(numerator_weight=self.family.numerator_weight * self.antenna.peak)
-        from nullpose.solve.kernels.root import reach_by_distance
-
-        return float(reach_by_distance(peak.arrays, peak.domain)[0])
 
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""

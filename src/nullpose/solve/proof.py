@@ -98,6 +98,8 @@ class _Run:
             self.favourite,
         )
         self.root = self.favourite[None]
+        self.leaves = self.root.copy()  # one, which shows the bound from distances alone
+        self.leaves[0, [node.LEVEL, node.KIND, node.ANCHOR]] = self.proved, node.FAR, self.farthest
 
     @property
     def value(self) -> float:
@@ -134,14 +136,13 @@ class _Run:
     def _volume(self, nodes: FloatArray) -> float:
         return float(np.sum(np.prod(nodes[:, self.node.HALF : self.node.LEVEL], axis=1)))
 
-    def stage(self, gap: float, start: FloatArray, most: int) -> tuple[FloatArray, str]:
-        """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
-        return self.work_off(WorkerPool(start, self.threads), gap, most, self.deadline, self.threads)
-
     def work_off(
         self, workers: WorkerPool, gap: float, most: int, deadline: float, threads: int = 1
     ) -> tuple[FloatArray, str]:
-        """Do a stage's work on nodes that are already with the workers."""
+        """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did.
+
+        The nodes are with the workers already.
+        """
         none = np.empty((0, self.node.COLUMNS))
         until = self.nodes + most
         workers.grow(threads)
@@ -152,8 +153,10 @@ class _Run:
                 for position_m, axis in workers.better():
                     self._improve(position_m, axis)
                 if workers.done:
-                    self.proved = min(self.proved, self.value * (1.0 + gap))
-                    return workers.leaves(), ""
+                    self.proved, done = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
+                    if done[:, self.node.LEVEL].max() <= self.proved:  # or the bound was better before
+                        self.leaves = done
+                    return done, ""
                 if self.on_progress is not None:
                     self.on_progress(self.proved / self.value - 1.0, self.nodes)
                 if time.perf_counter() > deadline:
@@ -191,28 +194,17 @@ class _Run:
         else:  # the two evaluations differ in their rounding: do not ask again
             self.doubt = max(1e-9, 10.0 * self.doubt)
 
-    def result(self, leaves: FloatArray, reason: str) -> Proof:
+    def result(self, reason: str) -> Proof:
         """Return what the run has come to."""
         middle, side = self.root[0, : self.node.LEVEL].reshape(2, 3)
         return Proof(
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
-            leaves=leaves,
+            leaves=self.leaves,
             reason=reason,
             nodes=self.nodes,
         )
-
-    def shown(self, done: FloatArray, leaves: FloatArray) -> FloatArray:
-        """Return the leaves that show the bound: a stage's, unless the bound was better before."""
-        return done if done[:, self.node.LEVEL].max() <= self.proved else leaves
-
-    def by_distance(self) -> FloatArray:
-        """Return the leaf that shows the bound from distances alone, by which a run begins."""
-        leaf = self.root.copy()
-        leaf[0, self.node.KIND], leaf[0, self.node.ANCHOR] = self.node.FAR, self.farthest
-        leaf[0, self.node.LEVEL] = self.proved
-        return leaf
 
 
 def prove(
@@ -242,24 +234,23 @@ def prove(
     """
     began = time.perf_counter() if began is None else began
     run = _Run(family, axis_field, incumbent, limits, began, nodes, bound)
-    leaves, target, reason = run.by_distance(), run.target, ""
+    target, reason = run.target, ""
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
-            return run.result(leaves, "")
+            return run.result("")
         done, reason = run.directly()
-        if not reason:
-            leaves = run.shown(done, leaves)
-        elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
+        if reason and run.nodes < run.node_limit and time.perf_counter() < run.deadline:
             start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
                 if len(start) > _MOST_REFINED:
                     reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
                     break
-                done, reason = run.stage(gap, start, run.node_limit - run.nodes)
+                most, threads = run.node_limit - run.nodes, run.threads
+                done, reason = run.work_off(WorkerPool(start, threads), gap, most, run.deadline, threads)
                 if reason:
                     break
-                leaves, start = run.shown(done, leaves), done
+                start = done
     except KeyboardInterrupt:
         reason = INTERRUPT
-    return run.result(leaves, reason)
+    return run.result(reason)

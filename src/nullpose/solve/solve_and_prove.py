@@ -66,7 +66,10 @@ def solve_and_prove(
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)(family.ground_axes is not None)
     began = time.perf_counter()
-    each = [known or _searched(family, field, options) for field in fields]
+    each = [
+        known or multistart(family, one, seed=options.seed, settings=search_settings(options.certify, one))
+        for one in fields
+    ]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
@@ -77,8 +80,7 @@ def solve_and_prove(
         # the level to exclude is that of the best of all; where to look for better poses is this field's
         least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
         level, start = max(best.log_value, least), each[i]
-        if level != start.log_value:
-            start = replace(start, log_value=level)
+        start = start if start.log_value == level else replace(start, log_value=level)
         nodes = sum(p.nodes for p in proofs)
         proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound)
         proofs.append(proof)
@@ -95,8 +97,3 @@ def solve_and_prove(
         upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
         reason=reason,
     )
-
-
-def _searched(family: Family, field: AxisField, options: SolveOptions) -> Incumbent:
-    settings = search_settings(options.certify, field)
-    return multistart(family, field, seed=options.seed, settings=settings)
