@@ -93,7 +93,8 @@ def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
 
 def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
     """The field's axis at the position found is the axis found, of the length of the way to the jammer."""
-    found = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "M2").incumbent
+    outcome, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "M2")
+    found = outcome.incumbent
     np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
     assert build_family(three_jammers).low_m[2] <= found.position_m[2]
 
@@ -117,14 +118,13 @@ def test_an_end_on_a_ball_and_the_floor_is_exact(seed: int, scene: Callable) -> 
 
 def test_every_jammer_s_null_is_proved(three_jammers: Scenario) -> None:
     """With no jammer named there is a proof for each, all of the same bound: that of the best."""
-    outcome = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), None)
+    outcome, fields = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), None)
     assert outcome.reason == ""
-    assert len(outcome.proofs) == 3
+    assert len(outcome.proofs) == len(fields) == 3
     assert outcome.nodes == sum(proof.nodes for proof in outcome.proofs)
     value = np.exp(outcome.incumbent.log_value)
     assert value <= outcome.upper_bound <= value * (1.0 + 1e-6)
-    alone = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), "M2")
+    alone, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), "M2")
     assert len(alone.proofs) == 1
-    assert (
-        solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), None).upper_bound is None
-    )
+    searched, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), None)
+    assert searched.upper_bound is None

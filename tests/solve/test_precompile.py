@@ -10,12 +10,12 @@ from nullpose.solve.kernels.branch import branch
 from nullpose.solve.kernels.links import min_log_ratio
 from nullpose.solve.kernels.multistart import search_and_climb
 from nullpose.solve.kernels.node import keep_largest
-from nullpose.solve.kernels.search import cut_box
+from nullpose.solve.kernels.root import fill_root
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.precompile import compile_proof, compile_search, precompile
 from nullpose.solve.solve_and_prove import solve_and_prove
 
-KERNELS = (branch, search_and_climb, min_log_ratio, keep_largest, cut_box)
+KERNELS = (branch, search_and_climb, min_log_ratio, keep_largest, fill_root)
 
 
 def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:

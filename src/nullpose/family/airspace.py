@@ -7,7 +7,8 @@ from typing import TypeAlias
 import numpy as np
 
 from nullpose.family.convex import convex_parts, hull_and_pockets
-from nullpose.family.family import Family
+from nullpose.family.family import DEFAULTS, Family
+from nullpose.family.records import Domain
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import area_m2
@@ -35,7 +36,7 @@ def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
         zones.append((kind, edges, *zone.forbidden_range_m(airspace.altitude_m)))
     if len(airspace.geofence_outline_m):
         zones.append((FENCE, _edges(airspace.geofence_outline_m), -np.inf, np.inf))
-    return _arrays(zones) if zones else dict(_NO_ZONES)
+    return _arrays(zones) if zones else {name: DEFAULTS[name] for name in Domain._field_defaults}
 
 
 def loosened(family: Family, by_m: float) -> Family:
@@ -105,6 +106,3 @@ def _outer_sides(part_m: FloatArray) -> FloatArray:
     offset = np.sum(normal * part_m, axis=1)
     zero = np.zeros(len(part_m))
     return np.column_stack([zero, normal, zero, offset])
-
-
-_NO_ZONES = _arrays([])

@@ -44,6 +44,8 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
+    if not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():  # wherever they are
+        return
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
     over_noise = family.denominator_weight / np.maximum(distance_m, family.keep_out_m) ** 2
     if not (over_noise > LOUDEST).any():
@@ -70,11 +72,11 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
         points_m: the points that are to be kept clear of, (m, 3), metres.
     """
     airspace = scenario.airspace
-    low_m, high_m = np.array(airspace.lower_m), np.array(airspace.upper_m)
+    low_m, high_m = airspace.lower_m, airspace.upper_m
     outline = airspace.geofence_outline_m
     if len(outline):
-        low_m[:2] = np.maximum(low_m[:2], outline.min(axis=0))
-        high_m[:2] = np.minimum(high_m[:2], outline.max(axis=0))
+        low_m = np.array([*np.maximum(low_m[:2], outline.min(axis=0)), low_m[2]])
+        high_m = np.array([*np.minimum(high_m[:2], outline.max(axis=0)), high_m[2]])
     return {
         "low_m": low_m,
         "high_m": high_m,

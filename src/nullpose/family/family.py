@@ -16,8 +16,8 @@ class Family:
     """Ratios over the link forms of points, and their domain. Every array of either is read on it too.
 
     Args:
-        fields: those of :class:`nullpose.objectives.Ratios` and of :class:`Domain`; arrays are copied and
-            made read-only.
+        fields: those of :class:`nullpose.objectives.Ratios` and of :class:`Domain`; arrays that could be
+            written to are copied, and the copies cannot.
     """
 
     __slots__ = ("arrays", "domain")
@@ -26,8 +26,8 @@ class Family:
     domain: Domain
 
     def __init__(self, **fields: Any) -> None:
-        kept = _DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
-        object.__setattr__(self, "arrays", Ratios(**{name: kept.pop(name) for name in Ratios._fields}))
+        kept = DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
+        object.__setattr__(self, "arrays", Ratios(*map(kept.pop, Ratios._fields)))
         object.__setattr__(self, "domain", Domain(**kept))
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -82,12 +82,14 @@ class Family:
 def _read_only(value: Any) -> Any:
     if not isinstance(value, np.ndarray):
         return value
-    whole = value.dtype.kind in "iu"  # kernels are compiled for these two types
-    array = np.array(value, dtype=np.int64 if whole else np.float64, order="C")
-    array.flags.writeable = False
-    return array
+    if value.flags.writeable or not value.flags.c_contiguous or value.dtype not in _KINDS:
+        value = np.array(value, dtype=_KINDS[value.dtype.kind in "iu"], order="C")
+        value.flags.writeable = False
+    return value
 
 
-_DEFAULTS = {
+_KINDS = np.dtype(np.float64), np.dtype(np.int64)  # those that kernels are compiled for
+DEFAULTS = {
     name: _read_only(value) for name, value in (Ratios._field_defaults | Domain._field_defaults).items()
 }
+"""The arrays of a family that are not stated, read-only."""

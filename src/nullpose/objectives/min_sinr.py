@@ -22,7 +22,7 @@ def _ratios(scenario: Scenario) -> Ratios:
     scale = scenario.receiver.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
     axes, shares = ground_of(scenario, "node", "jammer")
     return Ratios(
-        points_m=np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)]),
+        points_m=scenario.source_positions_m,
         numerator_isotropic=np.zeros(n_nodes),
         numerator_weight=scale * scenario.node_powers_w / scenario.node_required_sinr * shares[:n_nodes],
         numerator_point=np.arange(n_nodes, dtype=np.int64),

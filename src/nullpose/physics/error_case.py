@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics.secrecy import node_snr
-from nullpose.physics.sinr import received_power_w
+from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -109,14 +109,8 @@ def sinr_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
     p, u = _actual(position_m, axis, case)
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
     jammers_m = scenario.jammer_positions_m + case.jammer_offsets_m
-    nodes = (scenario.node_positions_m, scenario.node_powers_w)
-    signal_w = received_power_w(p, u, *nodes, *link, scenario.node_antennas)
-    jammers = (jammers_m, scenario.jammer_powers_w)
-    jamming_w = received_power_w(p, u, *jammers, *link, scenario.jammer_antennas)
-    noise_w = np.sum(jamming_w, axis=-1, keepdims=True) + scenario.objective_record.noise_w(scenario)
-    return np.asarray(signal_w / noise_w)
+    return sinr(scenario, p, u, np.vstack([scenario.node_positions_m, jammers_m]))
 
 
 def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:

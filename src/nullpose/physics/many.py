@@ -29,15 +29,12 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     g0 = np.array([[one.receiver.reference_gain] for one in scenarios])
     noise_w = np.array([[one.receiver.noise_power_w] for one in scenarios])
     required = np.array([one.node_required_sinr for one in scenarios])
-    node_m = np.array([one.node_positions_m for one in scenarios])
-    jammer_m = np.array([one.jammer_positions_m.reshape(-1, 3) for one in scenarios])
-    node_w = np.array([one.node_powers_w for one in scenarios])
-    jammer_w = np.array([one.jammer_powers_w for one in scenarios])
+    source_m = np.array([one.source_positions_m for one in scenarios])
+    source_w = np.array([one.source_powers_w for one in scenarios])
     antenna = scenarios[0].antenna_record
-    if any(one.antenna_record != antenna or one.node_antennas or one.jammer_antennas for one in scenarios):
+    if any(one.antenna_record != antenna or one.source_antennas for one in scenarios):
         poses = zip(scenarios, np.asarray(position_m), np.asarray(axis), strict=True)
         return np.array([margin(*each) for each in poses])
-    signal_w = received_power_w(position_m, axis, node_m, node_w, g0, antenna)
-    jamming_w = received_power_w(position_m, axis, jammer_m, jammer_w, g0, antenna)
-    interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
-    return np.asarray(signal_w / (interference_w + noise_w) / required)
+    received_w, nodes = received_power_w(position_m, axis, source_m, source_w, g0, antenna), required.shape[1]
+    interference_w = np.sum(received_w[:, nodes:], axis=-1, keepdims=True)
+    return np.asarray(received_w[:, :nodes] / (interference_w + noise_w) / required)

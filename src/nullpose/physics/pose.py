@@ -46,7 +46,7 @@ class Pose:
         position_m = np.array(self.position_m, dtype=float)
         names = ("roll_rad", "pitch_rad", "yaw_rad", "mount_rad")
         angles = tuple(float(getattr(self, name)) for name in names)
-        if position_m.shape != (3,) or not np.all(np.isfinite(position_m)) or not np.all(np.isfinite(angles)):
+        if position_m.shape != (3,) or not all(map(math.isfinite, (*position_m.tolist(), *angles))):
             raise ValueError(
                 "a pose takes three finite coordinates and finite angles; "
                 f"given {self.position_m!r}, {angles}"

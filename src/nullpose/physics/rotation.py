@@ -122,9 +122,8 @@ def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[Float
     forward = cy * u[..., 0] + sy * u[..., 1]
     left = cy * u[..., 1] - sy * u[..., 0]
     up = u[..., 2]
-    level = up == 0.0
-    flip = np.where(level, np.where(forward == 0.0, left > 0.0, forward < 0.0), up < 0.0)
-    sign = np.where(flip, -1.0, 1.0)
+    flip = (up < 0.0) | ((up == 0.0) & ((forward < 0.0) | ((forward == 0.0) & (left > 0.0))))
+    sign = 1.0 - 2.0 * flip
     forward, left, up = sign * forward, sign * left, np.abs(up)
     roll = np.arctan2(-left, np.hypot(forward, up))
     pitch = np.arctan2(forward, up)

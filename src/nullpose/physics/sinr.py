@@ -40,14 +40,16 @@ def received_power_w(
         Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-    distance_sq = np.sum(to_points**2, axis=-1)  # m^2
+    distance_sq = (to_points**2).sum(axis=-1)  # m^2
     gain = link_gain(position_m, axis, points_m, antenna, ground)
     return np.asarray(
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
     )
 
 
-def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+def sinr(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike | None = None
+) -> FloatArray:
     """Return the signal to interference-plus-noise ratio of every node.
 
     ``Gamma_i = (G(gamma_i) P_i / d_i^2) / (sum_j G(gamma_j) J_j / d_j^2 + sigma^2)``, with the jammers summed
@@ -59,14 +61,22 @@ def sinr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArr
         scenario: nodes, jammers and receiver.
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: where the nodes and then the jammers are, ``(n_nodes + n_jammers, 3)``, metres; where the
+            scenario has them without it.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
-    nodes = (scenario.node_positions_m, scenario.node_powers_w)
-    signal_w = received_power_w(position_m, axis, *nodes, *link, scenario.node_antennas)
-    jammers = (scenario.jammer_positions_m, scenario.jammer_powers_w)
-    jamming_w = received_power_w(position_m, axis, *jammers, *link, scenario.jammer_antennas)
-    interference_w = np.sum(jamming_w, axis=-1, keepdims=True)
-    return np.asarray(signal_w / (interference_w + scenario.objective_record.noise_w(scenario)))
+    received_w = received_power_w(
+        position_m,
+        axis,
+        scenario.source_positions_m if points_m is None else points_m,
+        scenario.source_powers_w,
+        scenario.receiver.reference_gain,
+        scenario.antenna_record,
+        scenario.source_antennas,
+    )
+    nodes = len(scenario.nodes)
+    interference_w = received_w[..., nodes:].sum(axis=-1, keepdims=True)
+    noise_w = scenario.objective_record.noise_w(scenario)
+    return np.asarray(received_w[..., :nodes] / (interference_w + noise_w))

@@ -50,11 +50,15 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     if len(scenario.jammers) != 1:
         raise ValueError(f"eq. 3.2 is for one jammer; this scenario has {len(scenario.jammers)}")
     p = np.asarray(position_m, dtype=float)
-    axis, jammer_m = zero_interference_axis(p, scenario.jammer_positions_m[0]), scenario.jammer_positions_m
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
-    nodes = (scenario.node_positions_m, scenario.node_powers_w)
-    received_w = received_power_w(p, axis, *nodes, *link, scenario.node_antennas)
-    jamming_w = received_power_w(p, axis, jammer_m, scenario.jammer_powers_w, *link, scenario.jammer_antennas)
+    received_w = received_power_w(
+        p,
+        zero_interference_axis(p, scenario.jammer_positions_m[0]),
+        scenario.source_positions_m,
+        scenario.source_powers_w,
+        scenario.receiver.reference_gain,
+        scenario.antenna_record,
+        scenario.source_antennas,
+    )
     if scenario.antenna_record.leak == 0.0:
-        jamming_w = np.zeros_like(jamming_w)  # as it is but for rounding
-    return np.asarray(received_w / (jamming_w + scenario.receiver.noise_power_w))
+        received_w[..., -1] = 0.0  # as it is but for rounding
+    return np.asarray(received_w[..., :-1] / (received_w[..., -1:] + scenario.receiver.noise_power_w))

@@ -13,7 +13,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
 from nullpose.scenario.reach import airspace_faults
-from nullpose.scenario.section import inner_section
+from nullpose.scenario.section import table_of
 
 SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
@@ -81,11 +81,11 @@ def _objective_faults(scenario: Any, points: Mapping[Place, GroundPoint]) -> Ite
     if record is None:
         return
     for what in (*record.needs, *record.unused):
-        others = [f'"{other.name}"' for other in RECORDS.values() if what not in other.unused]
         for place, keys, given in _stated(what, scenario, points):
             if what in record.needs and not given:
                 yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
             for where in given if what in record.unused else ():
+                others = [f'"{other.name}"' for other in RECORDS.values() if what not in other.unused]
                 yield (
                     where,
                     f'has no meaning with objective = "{record.name}"; remove it, or write objective = '
@@ -108,7 +108,7 @@ def _stated(
             if place[0] == kind:
                 yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
     else:
-        table = inner_section(type(scenario).model_fields[kind].annotation)
+        table = table_of(scenario.__class__, kind)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
 
 
@@ -130,7 +130,7 @@ def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:
 def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     placed = list(points)
     positions_m = np.array([point.position_m for point in points.values()]).reshape(-1, 3)
-    if np.all(np.diff(np.sort(positions_m[:, 0])) >= SAME_PLACE_M):
+    if (np.diff(np.sort(positions_m, axis=0), axis=0) >= SAME_PLACE_M).all(axis=0).any():
         return
     kinds = np.array([place[0] for place in placed])
     # Who jams may listen as well: a jammer and an eavesdropper may be at one place.

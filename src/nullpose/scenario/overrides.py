@@ -10,16 +10,19 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
+from pydantic_core import to_jsonable_python
+
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import path_of, refusal
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.section import Section, inner_section
+from nullpose.scenario.section import Section, table_of
 from nullpose.scenario.units import GEODETIC_KEYS
 from nullpose.scenario.wording import listed, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
+_FROZEN = Section, tuple
 _PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
@@ -74,7 +77,8 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     Raises:
         ScenarioError: with every path that does not exist and every fault of the result.
     """
-    data = scenario.to_dict()
+    # tables are frozen: those that no path leads into are taken as they are
+    data = {key: value for key in Scenario.model_fields if (value := getattr(scenario, key)) is not None}
     faults: list[Fault] = []
     given = list(overrides)
     for override in given:
@@ -97,7 +101,11 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     if not _PATH.fullmatch(path):
         raise refusal(path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
-    steps = [int(index) if index else double or single or bare for double, single, bare, index in found]
+    steps: list[Any] = [
+        int(index) if index else double or single or bare for double, single, bare, index in found
+    ]
+    touched = (*POINT_LISTS, "origin") if steps[0] == "origin" else steps[:1]
+    data |= {key: to_jsonable_python(data[key]) for key in touched if isinstance(data.get(key), _FROZEN)}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
@@ -139,7 +147,7 @@ def _assign(
         raise refusal(path, f"got {path_of((step,))}, {_instead(step, members, path)}")
     here = members[step]
     table = kind if isinstance(holder, dict) else None
-    inner = kind if table is None else inner_section(table.model_fields[str(here)].annotation)
+    inner = kind if table is None else table_of(table, str(here))
     if rest:
         is_table = inner is not None and inner.letter is None
         below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]

@@ -81,11 +81,11 @@ def _reach_faults(
     error: the distance may then be zero, at which the model has no limit.
     """
     for place, point in points.items():
-        matrix_m = point.uncertainty_matrix_m if isinstance(point, Uncertain) else np.zeros((3, 3))
         reach_m = point.uncertainty_reach_m if isinstance(point, Uncertain) else 0.0
         total_m = reach_m + error_m
         if total_m == 0.0 or total_m < airspace.keep_out_m:
             continue
+        matrix_m = point.uncertainty_matrix_m if isinstance(point, Uncertain) else np.zeros((3, 3))
         half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
         centre_m = np.asarray(point.position_m)
 

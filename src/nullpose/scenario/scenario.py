@@ -169,6 +169,16 @@ class Scenario(Section):
         """Transmit powers of the jammers [W], (n_jammers,), read-only."""
         return read_only([jammer.transmit_power_w for jammer in self.jammers], (-1,))
 
+    @cached_property
+    def source_positions_m(self) -> NDArray[np.float64]:
+        """Positions of the nodes, then of the jammers [m], (n_nodes + n_jammers, 3), read-only."""
+        return read_only([point.position_m for point in (*self.nodes, *self.jammers)], (-1, 3))
+
+    @cached_property
+    def source_powers_w(self) -> NDArray[np.float64]:
+        """Transmit powers of the nodes, then of the jammers [W], (n_nodes + n_jammers,), read-only."""
+        return read_only([point.transmit_power_w for point in (*self.nodes, *self.jammers)], (-1,))
+
     @property
     def eavesdropper_names(self) -> tuple[str, ...]:
         """Names of the eavesdroppers, in order."""
@@ -197,7 +207,7 @@ class Scenario(Section):
         """What each node's SINR is divided by to give its margin, linear, (n_nodes,), read-only."""
         return read_only([node.required_sinr for node in self.nodes], (-1,))
 
-    @property
+    @cached_property
     def has_margins(self) -> bool:
         """Whether any node states a weight or a required SINR."""
         return any(node.weight is not None or node.min_sinr_db is not None for node in self.nodes)
@@ -221,6 +231,11 @@ class Scenario(Section):
     def jammer_antennas(self) -> GroundAntennas | None:
         """The jammers' antennas; None where all are isotropic."""
         return _antennas_of(self.jammers)
+
+    @cached_property
+    def source_antennas(self) -> GroundAntennas | None:
+        """The nodes' antennas, then the jammers'; None where all are isotropic."""
+        return _antennas_of((*self.nodes, *self.jammers))
 
     @cached_property
     def eavesdropper_antennas(self) -> GroundAntennas | None:

@@ -146,7 +146,7 @@ class Section(BaseModel):
             return data if isinstance(data, cls) else None
         sound: dict[str, Any] = {}
         for key, field in cls.model_fields.items():
-            value, inner = data.get(key), _table_of(cls, key)
+            value, inner = data.get(key), table_of(cls, key)
             sound[key] = None if key in data or field.is_required() else field.get_default()
             if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
                 sound[key] = tuple(inner._sound_part(member) for member in value)
@@ -194,8 +194,13 @@ def inner_section(annotation: object) -> type[Section] | None:
 
 
 @cache
-def _table_of(kind: type[Section], key: str) -> type[Section] | None:
-    """Returns the kind of table that one key of a table holds."""
+def table_of(kind: type[Section], key: str) -> type[Section] | None:
+    """Returns the kind of table that one key of a table holds, or a list of; None if it holds no table.
+
+    Args:
+        kind: the table.
+        key: one of its keys.
+    """
     return inner_section(kind.model_fields[key].annotation)
 
 

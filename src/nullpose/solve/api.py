@@ -53,18 +53,18 @@ def solve(
     """
     scheme = as_scheme(scheme)
     scheme.require_applicable(scenario)
-    if null_jammer is not None and not scheme.record.nulls_a_jammer:
+    record = scheme.record
+    if null_jammer is not None and not record.nulls_a_jammer:
         nulling = ", ".join(each.value for each in Scheme if each.record.nulls_a_jammer)
         raise UsageError(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
     asked = SolveOptions(**options, on_progress=on_progress).of(scenario)
     began = time.perf_counter()
-    outcome = solve_scheme(scenario, scheme.record, asked, null_jammer)
+    outcome, fields = solve_scheme(scenario, record, asked, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
-    has_certificate = bool(outcome.proofs) and scheme.record.fields(scenario, null_jammer) is not None
-    rigour = Rigour.VERIFIABLE if has_certificate else Rigour.FLOATING_POINT
+    rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
     status = Status.of(outcome.upper_bound, outcome.reason)
     return Result(
         scenario=scenario,
@@ -81,7 +81,7 @@ def solve(
             boxes=outcome.nodes,
         ),
         provenance=provenance(asked.seed) | asked.settings,
-        note=outcome.incumbent.note,
+        note=record.note(scenario, tuple(fields or ()), outcome.chosen),
         null_jammer=null_jammer,
         proofs=outcome.proofs,
     )

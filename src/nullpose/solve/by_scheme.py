@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -21,8 +20,8 @@ from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 def solve_scheme(
     scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None
-) -> Outcome:
-    """Return the best pose under a scheme, with a proof if one is asked for.
+) -> tuple[Outcome, Mapping[str, AxisField] | None]:
+    """Return the best pose under a scheme, with a proof if one is asked for, and the fields it is over.
 
     Args:
         scenario: what to solve; one in which the scheme has a meaning.
@@ -40,15 +39,11 @@ def solve_scheme(
     if isinstance(scenario.antenna_record, PatternAntenna):
         from nullpose.solve.pattern import solve_pattern  # and SciPy's optimisers with it
 
-        return solve_pattern(scenario, options)
+        return solve_pattern(scenario, options), None
     family, fields = build_family(scenario), record.fields(scenario, null_jammer)
-    outcome = (
-        _by_values(scenario, record, family, options)
-        if fields is None
-        else solve_and_prove(family, list(fields.values()), options)
-    )
-    note = record.note(scenario, tuple(fields or ()), outcome.chosen)
-    return replace(outcome, incumbent=replace(outcome.incumbent, note=note))
+    if fields is None:
+        return _by_values(scenario, record, family, options), None
+    return solve_and_prove(family, list(fields.values()), options), fields
 
 
 def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, options: SolveOptions) -> Outcome:

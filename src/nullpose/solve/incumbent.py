@@ -19,7 +19,6 @@ class Incumbent:
         multipliers: (r,) multipliers of the ratios at the optimum, summing to one; equal where not known.
         starts: local searches run.
         evaluations: poses evaluated.
-        note: a sentence for the solution; may be empty.
     """
 
     position_m: NDArray[np.float64]
@@ -28,4 +27,3 @@ class Incumbent:
     multipliers: NDArray[np.float64]
     starts: int
     evaluations: int
-    note: str = ""

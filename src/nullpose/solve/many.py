@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -176,12 +176,12 @@ def _solve_band(
         return None
     if outcome.reason == INTERRUPT:
         raise KeyboardInterrupt
-    return outcome
+    return replace(outcome, proofs=(), cells=outcome.nodes)  # the next takes the memory of the leaves
 
 
 def _upright(axis: FloatArray) -> float:
     """Return ``u_z^2`` of an axis of any length."""
-    return float(axis[2] ** 2 / np.sum(axis**2))
+    return float(axis[2] ** 2 / (axis @ axis))
 
 
 def _fill(

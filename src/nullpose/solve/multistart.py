@@ -78,20 +78,20 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
         family: the ratios and their domain.
         most: points of a kind that are taken at most.
     """
-    nodes = family.points_m[family.numerator_point]
-    interferers = family.points_m[np.unique(family.denominator_point)][:most]
-    clear_m = 1.02 * family.keep_out_m
-    over = np.vstack([nodes.mean(axis=0)[None], interferers, nodes[:most]])
-    over[1:, 2] += clear_m
-    over[:, 2] = np.maximum(family.low_m[2], over[:, 2])
-    over[0, 2] = family.low_m[2]
+    ratios, floor_m, clear_m = family.arrays, family.domain.low_m[2], 1.02 * family.domain.keep_out_m
+    nodes = ratios.points_m[ratios.numerator_point]
+    interferers = ratios.points_m[sorted(set(ratios.denominator_point.tolist()))[:most]]
+    centre = nodes.sum(axis=0, keepdims=True) / len(nodes)
+    over = np.concatenate([centre, interferers, nodes[:most]])
+    over[:, 2] = np.maximum(floor_m, over[:, 2] + clear_m)
+    over[0, 2] = floor_m
     beside = []
     for first, second in permutations(interferers[:_PAIRED], 2):
         apart_m = np.linalg.norm(second - first)
         if apart_m > 0.0:  # one point may stand for several that see different axes
             way = (second - first) / apart_m
             beside += [first + clear_m * way, first - clear_m * way]
-    return np.vstack([over, *beside])
+    return np.vstack([over, *beside]) if beside else over
 
 
 def _corners(family: Family, most: int = 1000) -> FloatArray:
@@ -168,9 +168,10 @@ def _run(
     from nullpose.solve.kernels.multistart import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
-    multipliers = np.empty(len(family.numerator_point))
-    log_value, starts, evaluations = entry_of(search_and_climb, family.arrays)(
-        family.arrays,
+    ratios = family.arrays
+    multipliers = np.empty(len(ratios.numerator_point))
+    log_value, starts, evaluations = entry_of(search_and_climb, ratios)(
+        ratios,
         family.domain,
         axis_field.arrays,
         places,

@@ -21,7 +21,7 @@ from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import NO_POSITION
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.pattern_search import PatternSearch
-from nullpose.solve.proof import INTERRUPT, Proof, reach_by_distance
+from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.solve_and_prove import Outcome
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
@@ -131,9 +131,11 @@ class PatternRun:
 
     def _proved(self, began: float) -> str:
         """Close the gap asked for, or else wider ones; return why it was not closed."""
+        from nullpose.solve.kernels.root import reach_by_distance
+
         limits = self.options
         whole = began + limits.time_limit_s
-        self.proved = reach_by_distance(self.search.loudest)[0]
+        self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         target = _INSIDE * limits.ratio_gap(self.value)
         try:
             if self.proved <= self.value * (1.0 + target):

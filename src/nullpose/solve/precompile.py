@@ -106,18 +106,18 @@ def compile_search(dipoles: bool) -> None:
     from nullpose.solve.kernels.links import min_log_ratio
     from nullpose.solve.kernels.multistart import search_and_climb
     from nullpose.solve.kernels.node import COLUMNS, keep_largest
-    from nullpose.solve.kernels.search import cut_box
+    from nullpose.solve.kernels.root import fill_root
     from nullpose.solve.multistart import climb
 
     if _is_compiled(search_and_climb, dipoles):
         return
-    family, none, one = _smallest_family(dipoles), np.empty(3), np.ones(1)
-    up, high_m = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0])
+    family, one = _smallest_family(dipoles), np.ones(1)
+    up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
     with _collecting_no_garbage():
         climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
-        cut_box(family.arrays, family.low_m, family.high_m, 0.0, none, none)
+        fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, one, row)
         min_log_ratio(family.arrays, high_m, up, one, one)
-        keep_largest(one, 1, np.zeros(COLUMNS))
+        keep_largest(one, 1, row)
 
 
 @contextmanager

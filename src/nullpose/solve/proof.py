@@ -12,7 +12,6 @@ from functools import partial
 import numpy as np
 
 from nullpose.family import AxisField, Family
-from nullpose.family.build import distances_m
 from nullpose.objectives import FloatArray
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import climb
@@ -76,61 +75,49 @@ class _Run:
         nodes: int,
         bound: float,
     ) -> None:
-        from nullpose.solve.kernels import branch, node
+        from nullpose.solve.kernels import branch, node, root
         from nullpose.solve.kernels.linked import entry_of
 
+        ratios = family.arrays
         self.family, self.axis_field = family, axis_field
-        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch, family.arrays)
+        self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch, ratios)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
         self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
-        self.nodes, self.threads = 0, limits.threads or processors()
+        self.nodes = 0
         # the same on every machine: where improvements are noticed decides which pose is found
-        self.chunk = _CHUNK // (1 + (len(family.numerator_point) + len(family.denominator_point)) // 4)
-        self.proved, self.farthest = reach_by_distance(family)
-        self.proved = min(self.proved, bound)
+        self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
         self.doubt, self.axes_above = 0.0, self.kernel.EARLY
         self.target = _INSIDE * limits.ratio_gap(self.value)
-        self.favourite = self._favourite()
+        self.favourite = np.zeros(node.COLUMNS)
+        self.proved, self.farthest = entry_of(root.fill_root, ratios)(
+            ratios,
+            family.domain,
+            incumbent.log_value,
+            self.target,
+            bound,
+            incumbent.multipliers.copy(),
+            self.favourite,
+        )
+        self.root = self.favourite[None]
+        self.leaves = self.root.copy()  # one, which shows the bound from distances alone
+        self.leaves[0, [node.LEVEL, node.KIND, node.ANCHOR]] = self.proved, node.FAR, self.farthest
 
     @property
     def value(self) -> float:
         return math.exp(self.incumbent.log_value)
 
-    def _favourite(self) -> FloatArray:
-        row = np.zeros(self.node.COLUMNS)
-        weights = self.incumbent.multipliers.copy()
-        self.node.keep_largest(weights, len(weights), row)
-        return row
+    @property
+    def threads(self) -> int:
+        return self.limits.threads or processors()
 
-    def root(self) -> FloatArray:
-        """Return the box outside which no pose reaches the incumbent, as a first stack."""
-        from nullpose.solve.kernels.linked import entry_of
-        from nullpose.solve.kernels.search import cut_box
-
-        low, high = np.empty(3), np.empty(3)
-        level = self.incumbent.log_value
-        if np.any(self.family.numerator_isotropic):  # ratios tend to one far away, however little that is
-            level = min(level + math.log1p(self.target), math.log(self.proved))  # the bound that is stated
-        # a hair wider than the cut, which is rounded
-        level -= 1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
-        entry_of(cut_box, self.family.arrays)(
-            self.family.arrays, self.family.low_m, self.family.high_m, level, low, high
-        )
-        high = np.maximum(low, high)  # empty where two ratios are out of reach of each other: any place does
-        row = self.favourite.copy()
-        row[self.node.CENTRE : self.node.HALF] = 0.5 * (low + high)
-        row[self.node.HALF : self.node.LEVEL] = 0.5 * (high - low) * (1.0 + 1e-12)
-        row[self.node.FACE] = -1.0
-        return row[None]
-
-    def directly(self, root: FloatArray) -> tuple[FloatArray, str]:
+    def directly(self) -> tuple[FloatArray, str]:
         """Try the target from the root; return the leaves and why it stopped short, if it did.
 
         Splitting axes late takes some hundred nodes where splitting them early takes many thousands, and the
         other way round, and nothing cheap was found that tells which beforehand.
         """
-        ratios = len(self.family.numerator_point)
+        ratios = len(self.family.arrays.numerator_point)
         now = time.perf_counter()
         until = now + _DIRECT_SHARE * (self.deadline - now)
         tries = [(self.kernel.EARLY, _ALONE_NODES, _DIRECT_NODES, 1.0)]
@@ -139,9 +126,9 @@ class _Run:
             tries.insert(0, (self.kernel.LATE, _LATE_SEEN, late, _LATE_LEFT))
         for self.axes_above, alone, nodes, left in tries:
             most = min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
-            workers = WorkerPool(root, 1)
+            workers = WorkerPool(self.root, 1)
             done, reason = self.work_off(workers, self.target, min(alone, most), until)
-            hopeless = reason and self._volume(workers.nodes()) > left * self._volume(root)
+            hopeless = reason and self._volume(workers.nodes()) > left * self._volume(self.root)
             if reason and most > alone and not hopeless and time.perf_counter() < until:
                 done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
             if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
@@ -151,14 +138,13 @@ class _Run:
     def _volume(self, nodes: FloatArray) -> float:
         return float(np.sum(np.prod(nodes[:, self.node.HALF : self.node.LEVEL], axis=1)))
 
-    def stage(self, gap: float, start: FloatArray, most: int) -> tuple[FloatArray, str]:
-        """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did."""
-        return self.work_off(WorkerPool(start, self.threads), gap, most, self.deadline, self.threads)
-
     def work_off(
         self, workers: WorkerPool, gap: float, most: int, deadline: float, threads: int = 1
     ) -> tuple[FloatArray, str]:
-        """Do a stage's work on nodes that are already with the workers."""
+        """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did.
+
+        The nodes are with the workers already.
+        """
         none = np.empty((0, self.node.COLUMNS))
         until = self.nodes + most
         workers.grow(threads)
@@ -169,8 +155,10 @@ class _Run:
                 for position_m, axis in workers.better():
                     self._improve(position_m, axis)
                 if workers.done:
-                    self.proved = min(self.proved, self.value * (1.0 + gap))
-                    return workers.leaves(), ""
+                    self.proved, done = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
+                    if done[:, self.node.LEVEL].max() <= self.proved:  # or the bound was better before
+                        self.leaves = done
+                    return done, ""
                 if self.on_progress is not None:
                     self.on_progress(self.proved / self.value - 1.0, self.nodes)
                 if time.perf_counter() > deadline:
@@ -191,8 +179,9 @@ class _Run:
     def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
         from nullpose.solve.kernels.links import min_log_ratio
 
-        ratios, groups = len(self.family.numerator_point), len(self.family.denominator_isotropic)
-        start = float(min_log_ratio(self.family.arrays, position_m, axis, np.empty(groups), np.empty(ratios)))
+        family = self.family.arrays
+        room = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
+        start = float(min_log_ratio(family, position_m, axis, *room))
         found = climb(self.family, self.axis_field, position_m, axis, mu=0.01, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
@@ -202,33 +191,22 @@ class _Run:
                 starts=self.incumbent.starts + 1,
                 evaluations=self.incumbent.evaluations + found.evaluations,
             )
-            self.favourite = self._favourite()
+            self.favourite, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
+            self.node.keep_largest(weights, len(weights), self.favourite)
         else:  # the two evaluations differ in their rounding: do not ask again
             self.doubt = max(1e-9, 10.0 * self.doubt)
 
-    def result(self, root: FloatArray, leaves: FloatArray, reason: str) -> Proof:
+    def result(self, reason: str) -> Proof:
         """Return what the run has come to."""
-        middle = root[0, self.node.CENTRE : self.node.CENTRE + 3]
-        side = root[0, self.node.HALF : self.node.HALF + 3]
+        middle, side = self.root[0, : self.node.LEVEL].reshape(2, 3)
         return Proof(
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
-            leaves=leaves,
+            leaves=self.leaves,
             reason=reason,
             nodes=self.nodes,
         )
-
-    def shown(self, done: FloatArray, leaves: FloatArray) -> FloatArray:
-        """Return the leaves that show the bound: a stage's, unless the bound was better before."""
-        return done if np.max(done[:, self.node.LEVEL]) <= self.proved else leaves
-
-    def by_distance(self, root: FloatArray) -> FloatArray:
-        """Return the leaf that shows the bound from distances alone, by which a run begins."""
-        leaf = root.copy()
-        leaf[0, self.node.KIND], leaf[0, self.node.ANCHOR] = self.node.FAR, self.farthest
-        leaf[0, self.node.LEVEL] = self.proved
-        return leaf
 
 
 def prove(
@@ -258,41 +236,23 @@ def prove(
     """
     began = time.perf_counter() if began is None else began
     run = _Run(family, axis_field, incumbent, limits, began, nodes, bound)
-    root = run.root()
-    leaves = run.by_distance(root)
-    target = run.target
-    reason = ""
+    target, reason = run.target, ""
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
-            return run.result(root, leaves, "")
-        done, reason = run.directly(root)
-        if not reason:
-            leaves = run.shown(done, leaves)
-        elif run.nodes < run.node_limit and time.perf_counter() < run.deadline:
-            start, gap = root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
+            return run.result("")
+        done, reason = run.directly()
+        if reason and run.nodes < run.node_limit and time.perf_counter() < run.deadline:
+            start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
                 if len(start) > _MOST_REFINED:
                     reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
                     break
-                done, reason = run.stage(gap, start, run.node_limit - run.nodes)
+                most, threads = run.node_limit - run.nodes, run.threads
+                done, reason = run.work_off(WorkerPool(start, threads), gap, most, run.deadline, threads)
                 if reason:
                     break
-                leaves, start = run.shown(done, leaves), done
+                start = done
     except KeyboardInterrupt:
         reason = INTERRUPT
-    return run.result(root, leaves, reason)
-
-
-def reach_by_distance(family: Family) -> tuple[float, int]:
-    """Return a bound from distances alone, and the ratio that it is from: the most distant node's.
-
-    Args:
-        family: ratios and domain; no gain is above 1.
-    """
-    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.numerator_point]
-    distance_m = np.maximum(distance_m, family.keep_out_m)
-    isotropic = family.denominator_isotropic[family.denominator_of]
-    ratios = (family.numerator_isotropic + family.numerator_weight / distance_m**2) / isotropic
-    farthest = int(ratios.argmin())
-    return float(ratios[farthest]) * (1.0 + 1e-9), farthest
+    return run.result(reason)

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from nullpose.objectives import Quantity
-from nullpose.physics import Link, Pose, pose_frames, to_db
+from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve.proof import INTERRUPT, Proof
@@ -131,7 +131,7 @@ def objective_of(
     return Objective(
         name=quantity.name,
         value=value,
-        value_db=math.nan if quantity.is_rate else float(to_db(value)),
+        value_db=math.nan if quantity.is_rate else quantity.in_unit(value),
         upper_bound=bound,
         relative_gap=gap,
         rigour=Rigour.NONE if bound is None else rigour,

@@ -46,7 +46,7 @@ def bound_above(value: ArrayLike, bound: ArrayLike) -> NDArray[np.float64]:
     """
     value, bound = np.asarray(value, dtype=float), np.asarray(bound, dtype=float)
     wrong = bound < value * (1.0 - _ROUNDING)
-    if np.any(wrong):
+    if wrong.any():
         raise SolveError(
             f"the bound {float(bound[wrong][0])!r} is below the value {float(value[wrong][0])!r} of a pose; "
             "this is a fault of nullpose: please report it with the scenario"

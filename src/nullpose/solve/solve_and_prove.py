@@ -66,7 +66,10 @@ def solve_and_prove(
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)(family.ground_axes is not None)
     began = time.perf_counter()
-    each = [known or _searched(family, field, options) for field in fields]
+    each = [
+        known or multistart(family, one, seed=options.seed, settings=search_settings(options.certify, one))
+        for one in fields
+    ]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
@@ -76,26 +79,21 @@ def solve_and_prove(
             break
         # the level to exclude is that of the best of all; where to look for better poses is this field's
         least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
-        start = replace(each[i], log_value=max(best.log_value, least))
+        level, start = max(best.log_value, least), each[i]
+        start = start if start.log_value == level else replace(start, log_value=level)
         nodes = sum(p.nodes for p in proofs)
         proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound)
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:
             best, chosen = proof.incumbent, i
+    if best is not each[0] or len(each) > 1:
+        starts, evaluations = sum(found.starts for found in each), sum(found.evaluations for found in each)
+        best = replace(best, starts=starts, evaluations=evaluations)
     return Outcome(
-        incumbent=replace(
-            best,
-            starts=sum(found.starts for found in each),
-            evaluations=sum(found.evaluations for found in each),
-        ),
+        incumbent=best,
         chosen=chosen,
         proofs=tuple(proofs),
         upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
         reason=reason,
     )
-
-
-def _searched(family: Family, field: AxisField, options: SolveOptions) -> Incumbent:
-    settings = search_settings(options.certify, field)
-    return multistart(family, field, seed=options.seed, settings=settings)

@@ -37,7 +37,8 @@ class _Worker:
     """
 
     def __init__(self, nodes: FloatArray, orientation: tuple[int, ...]) -> None:
-        self.stack, self.leaves = np.empty((0, nodes.shape[1])), np.empty((_FIRST, nodes.shape[1]))
+        rows, columns = nodes.shape
+        self.stack, self.leaves = np.empty((rows + _DEPTH, columns)), np.empty((_FIRST, columns))
         self.top = self.filled = 0
         self.position_m, self.orientation = np.empty(3), np.empty(orientation)
         self.better = False
