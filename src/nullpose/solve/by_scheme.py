@@ -39,7 +39,7 @@ def solve_scheme(
     if isinstance(scenario.antenna_record, PatternAntenna):
         from nullpose.solve.pattern import solve_pattern  # and SciPy's optimisers with it
 
-        return solve_pattern(scenario, options), None
+        return solve_pattern(scenario, options), {}
     family, fields = build_family(scenario), record.fields(scenario, null_jammer)
     if fields is None:
         return _by_values(scenario, record, family, options), None
