@@ -8,6 +8,7 @@ import pytest
 from typer.testing import Result
 
 from nullpose import __version__
+from nullpose.schemes import Scheme
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
@@ -48,6 +49,7 @@ VERBS = {
     "reproduce": {"--out", "--seed", "--json"},
     "check": {"--set", "--allow-outside", "--json"},
     "schema": set(),
+    "cite": set(),
 }
 
 
@@ -98,3 +100,18 @@ def test_version(process: Process) -> None:
 def test_no_arguments_shows_help(run: Run) -> None:
     """Called with nothing, the program explains itself."""
     assert "Usage: nullpose" in run().output
+
+
+@pytest.mark.parametrize("width", ["60", "80", "200"])
+def test_help_keeps_words_whole(run: Run, width: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The names of schemes stand whole on a line, and what is in brackets is shown."""
+    monkeypatch.setenv("COLUMNS", width)
+    lines = run("solve", "--help").stdout.splitlines()
+    for name in Scheme:
+        assert any(line.split()[:1] == [name.value] for line in lines)
+    assert "With an [array]" in " ".join(" ".join(lines).split())
+
+
+def test_the_shell_completes(process: Process) -> None:
+    """The shell is told how to complete verbs and options."""
+    assert "--install-completion" in process("--help").stdout

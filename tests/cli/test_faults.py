@@ -109,7 +109,7 @@ def test_all_faults_at_once(run: Run, tmp_path: Path) -> None:
     text = GOOD.replace("[8.0, 30.0]", "[30.0, 8.0]").replace("noise_w = 1e-3", "noise_w = -1.0")
     path.write_text(text.replace('"S2"', '"S1"'), encoding="utf-8")
     words = ("3 faults", "airspace.altitude_m", "receiver.noise_w", "nodes[1].name")
-    assert_refused(run("compare", path, "--json"), *words)
+    assert_refused(run("compare", path), *words)
 
 
 def test_missing_file(process: Process, tmp_path: Path) -> None:

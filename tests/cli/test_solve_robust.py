@@ -56,7 +56,6 @@ def test_tables_say_what_is_guaranteed(run: Run) -> None:
         ("--scheme", "vertical"),
         ("--null-jammer", "M"),
         ("--certificate", "c.json"),
-        ("--geojson", "m.geojson"),
     ],
     ids=lambda option: option[0],
 )
@@ -89,3 +88,25 @@ def test_a_scenario_without_errors_is_refused(run: Run, paper: str) -> None:
     result = run("solve", paper, "--robust")
     assert result.exit_code == 2
     assert "receiver.attitude_error_deg" in result.stderr
+
+
+def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
+    """With an origin both poses are told on the Earth and in NED, in tables, in JSON and as GeoJSON."""
+    earthly = tmp_path / "scene.toml"
+    origin = "\n[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\nalt_msl_m = 185.0\n"
+    earthly.write_text(Path(ROBUST).read_text(encoding="utf-8") + origin, encoding="utf-8")
+    path = tmp_path / "poses.geojson"
+    result = run("solve", earthly, "--robust", "--fast", "--geojson", path)
+    assert (result.exit_code, result.stderr) == (0, "")
+    for words in ("Robust pose", "Best pose as stated", "m over the WGS-84 ellipsoid", "m over the sea"):
+        assert words in result.stdout
+    assert result.stdout.count("on the Earth") == 2
+    robust, nominal, *_ = json.loads(path.read_text(encoding="utf-8"))["features"]
+    assert [robust["properties"]["kind"], nominal["properties"]["kind"]] == ["pose", "pose-as-stated"]
+    answer = json.loads(run("solve", earthly, "--robust", "--fast", "--json").stdout)
+    for one, feature in ((answer["robust"], robust), (answer["nominal"], nominal)):
+        place = one["frames"]["geodetic"]
+        assert place["alt_m"] - place["alt_msl_m"] == pytest.approx(45.0)
+        assert feature["geometry"]["coordinates"][:2] == pytest.approx([place["lon_deg"], place["lat_deg"]])
+        north_m, east_m, _ = one["frames"]["ned"]["position_m"]
+        assert [east_m, north_m] == one["position_m"][:2]

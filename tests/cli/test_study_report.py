@@ -73,5 +73,5 @@ def test_no_study_and_no_extra(run: Run, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(extra, "find_spec", lambda name: None)
     result = run("study", "report", tmp_path)
     assert result.exit_code == 2
-    assert "try: pip install 'nullpose[study]'" in result.stderr
+    assert "-m pip install 'nullpose[study]'" in result.stderr
     assert result.stderr.count("\n") == 1

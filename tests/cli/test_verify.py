@@ -148,7 +148,7 @@ def test_a_toml_file_is_no_certificate(run: Run, paper: str) -> None:
     """The scenario file given by mistake is refused in words."""
     result = run("verify", paper)
     assert result.exit_code == 2
-    assert "is no certificate: its first 4096 bytes do not name the format" in result.stderr
+    assert "is a scenario, not a certificate" in result.stderr
 
 
 def test_a_process_of_its_own_needs_no_solver(process: Process, proof: Path) -> None:

@@ -46,7 +46,8 @@ def test_every_option_is_on_the_page(verb: str) -> None:
 
 def test_nothing_else_is_on_the_page() -> None:
     """Every option that the page names belongs to a verb or to the program."""
-    known = {"--help", "--version"}.union(*(_options(verb) for verb in COMMANDS))
+    program = {name for parameter in typer.main.get_command(app).params for name in parameter.opts}
+    known = ({"--help"} | program).union(*(_options(verb) for verb in COMMANDS))
     assert set(re.findall(r"(?<![-\w])--[a-z][a-z-]*", PAGE)) <= known
 
 

@@ -72,17 +72,37 @@ def test_the_python_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
 
 def test_the_toml_loads() -> None:
     """The origin and the node of the page make a scenario when the rest is added."""
-    (text,) = _blocks("toml")
+    text = _blocks("toml")[0]
     rest = "[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\nfrequency_hz = 1e9\n"
     scenario = nullpose.Scenario.from_dict(tomllib.loads(text + rest))
     assert scenario.node_positions_m[0] == pytest.approx([86.037, 66.741, 0.499], abs=1e-3)
+
+
+def test_the_fence_and_the_zones_load(tmp_path: Path) -> None:
+    """The page's areas in degrees, and its files of areas, make a scenario with its origin and node."""
+    scene, inline, files = _blocks("toml")
+    receiver = "[receiver]\nnoise_w = 1e-3\nfrequency_hz = 1e9\n"
+    scenario = nullpose.Scenario.from_dict(tomllib.loads(scene + inline + receiver))
+    assert [zone.shape for zone in scenario.airspace.no_fly] == ["polygon", "cylinder"]
+    assert scenario.airspace.geofence_m is not None
+    ring = [[14.4989, 49.9993], [14.5053, 49.9993], [14.5053, 50.0025], [14.4989, 49.9993]]
+    place = " ".join(f"{lon},{lat}" for lon, lat in ring)
+    shape = f"<Polygon><LinearRing><coordinates>{place}</coordinates></LinearRing></Polygon>"
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": {}, "geometry": geometry}
+    text = json.dumps({"type": "FeatureCollection", "features": [feature]})
+    (tmp_path / "fence.geojson").write_text(text, encoding="utf-8")
+    (tmp_path / "zones.kml").write_text(f"<kml><Placemark>{shape}</Placemark></kml>", encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(scene + files + receiver, encoding="utf-8")
+    airspace = nullpose.load(tmp_path / "scene.toml").airspace
+    assert airspace.geofence_m == airspace.no_fly[0].polygon_m
 
 
 def test_the_files_of_nodes_load(tmp_path: Path) -> None:
     """The page's GeoJSON and CSV hold the node that its TOML holds."""
     (geojson,) = _blocks("json")
     csv = next(block for block in _blocks("text") if block.startswith("name,"))
-    (toml,) = _blocks("toml")
+    toml = _blocks("toml")[0]
     rest = toml.split("[[nodes]]")[0] + "[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\n"
     scenarios = []
     for file, text in (("nodes.geojson", geojson), ("nodes.csv", csv)):
@@ -102,7 +122,7 @@ def test_the_faults_are_told_like_that(tmp_path: Path) -> None:
     rows[7] = rows[7][:-2]
     text = "\n".join(["name,lat_deg,lon_deg,alt_m,power_dbm", *rows])
     (tmp_path / "nodes.csv").write_text(text, encoding="utf-8")
-    (toml,) = _blocks("toml")
+    toml = _blocks("toml")[0]
     rest = toml.split("[[nodes]]")[0] + "[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\n"
     scene = tmp_path / "mine.toml"
     scene.write_text(f'nodes_from = "nodes.csv"\n{rest}frequency_hz = 1e9\n', encoding="utf-8")

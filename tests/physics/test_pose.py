@@ -73,5 +73,5 @@ def test_equal_poses_are_equal_and_hash_alike() -> None:
 )
 def test_bad_numbers_are_refused(position_m: list, angles: tuple[float, float, float]) -> None:
     """A position not of three components, or a number that is not finite, is refused with what was given."""
-    with pytest.raises(ValueError, match=r"three finite coordinates and finite angles; given"):
+    with pytest.raises(ValueError, match=r"three finite numbers|finite angles"):
         Pose(position_m, *angles)

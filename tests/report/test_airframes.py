@@ -11,7 +11,7 @@ from rich.console import Console
 from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
 from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
 from nullpose.report.figures.airframes import draw_airframes
-from nullpose.report.numbers import share_text
+from nullpose.report.numbers import share_of, share_text
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -154,11 +154,24 @@ def test_tables_fit_a_terminal(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("share", "words"),
-    [(0.5, "50 %"), (0.9926, "99.3 %"), (0.9994, "99.9 %"), (0.99999, "100 %"), (2.128, "213 %")],
+    [
+        (0.5, "50 %"),
+        (0.9926, "99.3 %"),
+        (0.9994, "99.9 %"),
+        (0.99999, "100 %"),
+        (2.128, "213 %"),
+        (34015.84, "45.3 dB more"),
+    ],
 )
 def test_shares(share: float, words: str) -> None:
-    """Three digits below a hundred, whole per cent above."""
+    """Three digits below a hundred, whole per cent above, and decibels from a hundredfold on."""
     assert share_text(share) == words
+
+
+def test_shares_of_something() -> None:
+    """A sentence reads on after per cent and after decibels."""
+    assert share_of(0.5, "that") == "50 % of that"
+    assert share_of(34015.84, "that") == "45.3 dB more than that"
 
 
 def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:

@@ -127,7 +127,8 @@ def test_tables_are_closed() -> None:
 def test_required_keys() -> None:
     """Keys without which there is no scenario are required."""
     assert json_schema()["required"] == ["airspace", "receiver"]
-    assert schema_of("Airspace")["required"] == ["altitude_m"]
+    altitudes = ("altitude_m", "altitude_msl_m", "altitude_ellipsoid_m")
+    assert schema_of("Airspace")["anyOf"] == [{"required": [key]} for key in altitudes]
     assert schema_of("Array")["required"] == ["elements", "layout", "spacing_wavelengths"]
     assert json_schema()["properties"]["nodes"]["minItems"] == 1
 

@@ -261,10 +261,10 @@ def test_faults_of_csv(text: str, path: str, words: str, tmp_path: Path) -> None
     ("file", "content", "path", "words"),
     [
         ("nodse.csv", None, "nodes_from", "there is no such file; check the path"),
-        (".", None, ".", "the name must end in one of .geojson, .json, .csv"),
-        ("x.csv/..", None, "x.csv/..", "the name must end in one of .geojson, .json, .csv"),
-        ("nodes.txt", "x", "nodes.txt", "the name must end in one of .geojson, .json, .csv"),
-        ("", None, "nodes_from", "got an empty text, must be the name of a GeoJSON or CSV file"),
+        (".", None, ".", "the name must end in one of .geojson, .json, .kml, .csv"),
+        ("x.csv/..", None, "x.csv/..", "the name must end in one of .geojson, .json, .kml, .csv"),
+        ("nodes.txt", "x", "nodes.txt", "the name must end in one of .geojson, .json, .kml, .csv"),
+        ("", None, "nodes_from", "got an empty text, must be the name of a file of nodes"),
         ("no/where.csv", None, "nodes_from", "nor a folder"),
     ],
 )
@@ -295,7 +295,7 @@ def test_the_name_is_a_text(value: str, tmp_path: Path) -> None:
     """Anything but a text is refused by what it is."""
     (fault,) = faults_of(tmp_path, "", None, SCENARIO.replace('"FILE"', value))
     assert fault.path == "nodes_from"
-    assert "must be the name of a GeoJSON or CSV file" in fault.message
+    assert "must be the name of a file of nodes" in fault.message
 
 
 def test_nodes_in_both_places(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 def test_without_the_extra_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where viser is missing, the message is one line with the command that installs it."""
     monkeypatch.setitem(sys.modules, "viser", None)
-    with pytest.raises(UsageError, match=r'pip install "nullpose\[studio\]"') as raised:
+    with pytest.raises(UsageError, match=r"-m pip install 'nullpose\[studio\]'") as raised:
         require_viser()
     assert "\n" not in str(raised.value)
 

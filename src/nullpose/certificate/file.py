@@ -76,6 +76,10 @@ def _unpacked(data: bytes) -> bytes:
     packed, stream = data.startswith(_GZIP_MAGIC), zlib.decompressobj(_GZIP)
     start = stream.decompress(data, _START) if packed else data[:_START]
     if FORMAT.encode() not in start:  # most of what grows a thousandfold ends here
+        if b"[airspace]" in start or b"[receiver]" in start:
+            raise CertificateError(
+                "is a scenario, not a certificate; nullpose solve with --certificate FILE writes one"
+            )
         raise CertificateError(
             f"is no certificate: its first {_START} bytes do not name the format {FORMAT!r}"
         )

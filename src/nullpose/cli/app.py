@@ -10,6 +10,7 @@ import typer
 
 from nullpose.cli.antenna import antenna
 from nullpose.cli.check import check
+from nullpose.cli.cite import cite
 from nullpose.cli.compare import compare
 from nullpose.cli.faults import FaultReportingGroup
 from nullpose.cli.reproduce import reproduce
@@ -24,7 +25,6 @@ from nullpose.cli.verify import verify
 app = typer.Typer(
     name="nullpose",
     cls=FaultReportingGroup,
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -56,7 +56,7 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema):
+for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema, cite):
     app.command()(_verb)
 study.command()(report)
 app.add_typer(study)

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from types import FrameType
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
-from nullpose.errors import NullposeError, SolveError
+from nullpose.errors import Fault, NullposeError, ScenarioError, SolveError, UsageError
 
 INTERNAL = 1
 BAD_INPUT = 2
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 PIPE_CLOSED = 141  # 128 + SIGPIPE
+
+_WRONG_USAGE: Any = typer.BadParameter.__mro__[1]  # what the parser raises of any option
 
 
 class FaultReportingGroup(TyperGroup):
@@ -31,6 +36,7 @@ class FaultReportingGroup(TyperGroup):
         Args:
             ctx: the parsed command line.
         """
+        as_json = "--json" in [*ctx._protected_args, *ctx.args]
         # the compiler of the kernels calls back from native code, where an interrupt becomes another error
         pressed = threading.Event()
 
@@ -43,8 +49,15 @@ class FaultReportingGroup(TyperGroup):
                 result = super().invoke(ctx)
                 sys.stdout.flush()
             except NullposeError as error:
-                typer.echo(f"error: {error}", err=True)
-                raise typer.Exit(INTERNAL if isinstance(error, SolveError) else BAD_INPUT) from error
+                code = INTERNAL if isinstance(error, SolveError) else BAD_INPUT
+                typer.echo(_as_json(error, code) if as_json else f"error: {error}", err=True)
+                raise typer.Exit(code) from error
+            except _WRONG_USAGE as error:
+                error.message = _plain_choice(error.message)
+                if not as_json:
+                    raise
+                typer.echo(_as_json(UsageError(error.format_message()), BAD_INPUT), err=True)
+                raise typer.Exit(BAD_INPUT) from error
             except BrokenPipeError as closed:
                 # Whoever read our output has gone; the interpreter must not complain when it flushes at exit.
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -57,6 +70,26 @@ class FaultReportingGroup(TyperGroup):
                     error.add_note("This is a fault of nullpose, not of your input: please report it.")
                 raise
         return result
+
+
+def _as_json(error: NullposeError, code: int) -> str:
+    """Return an error as one line of JSON."""
+    faults = error.faults if isinstance(error, ScenarioError) else (Fault("", str(error)),)
+    told = {
+        "error": type(error).__name__,
+        "source": getattr(error, "source", ""),
+        "faults": [{"path": fault.path, "message": fault.message} for fault in faults],
+        "exit_code": code,
+    }
+    return json.dumps(told)
+
+
+def _plain_choice(message: str) -> str:
+    """Return what is said of a word that is no choice, with the one that may be meant."""
+    message = message.removeprefix("Value error, ")
+    given, *choices = re.findall(r"'([^']*)'", message) if "is not one of" in message else [""]
+    guess = get_close_matches(given, choices, 1)
+    return f"{message.removesuffix('.')}; did you mean '{guess[0]}'?" if guess else message
 
 
 @contextmanager

@@ -38,7 +38,7 @@ Overrides = Annotated[
     ),
 ]
 
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the random starts.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random starts.")]
 
 Gap = Annotated[
     float | None,
@@ -148,7 +148,7 @@ def solve_options(
 
 
 def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) -> Scenario:
-    """Return the scenario of a file with some of its values changed.
+    """Return the scenario of a file with some of its values changed; warn of what looks like a mistake.
 
     Args:
         file: TOML.
@@ -158,9 +158,12 @@ def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) 
     Raises:
         ScenarioError: with every fault of the file or of the changes.
     """
-    from nullpose.scenario import apply_overrides, load
+    from nullpose.scenario import apply_overrides, doubts, load
 
-    return apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    for doubt in doubts(scenario):
+        typer.echo(f"warning: {doubt}", err=True)
+    return scenario
 
 
 def refuse(where: str, **given: object) -> None:

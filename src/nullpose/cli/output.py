@@ -66,7 +66,7 @@ def show(view: View) -> None:
         def on_broken_pipe(self) -> None:
             raise BrokenPipeError
 
-    PlainConsole(highlight=False, emoji=False).print(view)
+    PlainConsole(highlight=False, emoji=False).print(view, crop=False)
 
 
 def show_json(value: object) -> None:

@@ -42,7 +42,9 @@ _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario
 
 def solve(
     file: ScenarioFile,
-    scheme: Annotated[Scheme, typer.Option("--scheme", help="How the pose is chosen.")] = Scheme.OPTIMUM,
+    scheme: Annotated[
+        Scheme, typer.Option("--scheme", metavar="NAME", help="How the pose is chosen: one of those above.")
+    ] = Scheme.OPTIMUM,
     overrides: Overrides = None,
     allow_outside: AllowOutside = False,
     gap: Gap = None,
@@ -62,7 +64,15 @@ def solve(
     """Find the best pose, and prove how good it is.
 
     The proof bounds how far from the best of all it can be.
-    """
+
+    \b
+    Schemes:
+      optimum               the best pose of all
+      zero-interference     the null on a jammer
+      maximum-gain          the antenna broadside to the nodes
+      vertical              the antenna upright
+      maximum-gain-printed  as the paper prints maximum gain, for comparison
+    """  # noqa: D301  the mark that keeps the lines as they are
     from nullpose.report.results import result_view
 
     scenario = read_scenario(file, overrides, allow_outside)
@@ -74,18 +84,21 @@ def solve(
         "null_jammer": null_jammer,
         "certificate": certificate,
         "verify": verify,
-        "geojson": geojson,
     }
+    if geojson is not None:
+        from nullpose.report.geojson import require_origin
+
+        require_origin(scenario)
     if robust:
         refuse("with --robust", combining=combining, **of_one_dipole)
         found = _solve_robustly(scenario, options)
     elif scenario.array is not None:
-        refuse("for a scenario with an [array]", **of_one_dipole)
+        refuse("for a scenario with an [array]", geojson=geojson, **of_one_dipole)
         found = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
     else:
         refuse("for a scenario without an [array]", combining=combining)
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
-        found = _solve_dipole(scenario, scheme, null_jammer, options, checked, geojson is not None)
+        found = _solve_dipole(scenario, scheme, null_jammer, options, checked)
     rejected = checked and found.rigour.value != "verified"
     _write(found, None if rejected else certificate, geojson, figure)
     tell(found, result_view, json_output, fault=_REJECTED.format(found.reason) if rejected else "")
@@ -124,12 +137,11 @@ def _solve_dipole(
     null_jammer: str | None,
     options: dict[str, Any],
     checked: bool,
-    on_map: bool,
 ) -> Result:
     """Return where a scenario's dipole hears most, its proof checked if that is wanted.
 
     Raises:
-        UsageError: before any work, there is no proof that could be checked, or no place on the map.
+        UsageError: before any work, there is no proof that could be checked.
     """
     from nullpose.solve import solve as solve_scenario
     from nullpose.solve.options import SolveOptions
@@ -138,10 +150,6 @@ def _solve_dipole(
         from nullpose.solve.certificate_from_proof import require_certificate, verified
 
         require_certificate(scenario, scheme.value, null_jammer)
-    if on_map:
-        from nullpose.report.geojson import require_origin
-
-        require_origin(scenario)
     target = SolveOptions(**options).of(scenario).target
     with compiling_announced(), GapBar(target) as bar:
         solution = solve_scenario(scenario, scheme.value, null_jammer=null_jammer, on_progress=bar, **options)

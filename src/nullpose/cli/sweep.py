@@ -44,7 +44,12 @@ def sweep(
     ] = False,
     scheme: Annotated[
         list[Scheme] | None,
-        typer.Option("--scheme", help="Only this scheme. Can be repeated.", show_default="all four"),
+        typer.Option(
+            "--scheme",
+            metavar="NAME",
+            help="Only this scheme, a name as for solve. Can be repeated.",
+            show_default="all four",
+        ),
     ] = None,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from nullpose.physics.pose import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
-from nullpose.scenario.geodesy import geodetic_from_enu, ned_from_enu
+from nullpose.scenario.geodesy import ned_from_enu
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,16 +58,18 @@ class Geodetic:
     Args:
         lat_deg: latitude [degrees], north positive.
         lon_deg: longitude [degrees], east positive.
-        alt_m: altitude over the ellipsoid [m].
+        alt_m: altitude over the ellipsoid [m]; None if the scenario's origin does not tell it.
+        alt_msl_m: altitude over the sea [m]; None likewise.
     """
 
     lat_deg: float
     lon_deg: float
-    alt_m: float
+    alt_m: float | None = None
+    alt_msl_m: float | None = None
 
     def to_dict(self) -> dict[str, object]:
-        """Return the place as plain data."""
-        return {"lat_deg": self.lat_deg, "lon_deg": self.lon_deg, "alt_m": self.alt_m}
+        """Return the place as plain data, without an altitude that is not told."""
+        return {key: value for key, value in asdict(self).items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,12 +108,8 @@ def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
     north_east_down = _frame_pose(ned_from_enu(pose.position_m), pose.roll_rad, -pose.pitch_rad, heading_rad)
     if scenario.origin is None:
         return PoseFrames(enu=east_north_up, ned=north_east_down)
-    lat_deg, lon_deg, alt_m = geodetic_from_enu(pose.position_m, scenario.origin.geodetic).tolist()
-    return PoseFrames(
-        enu=east_north_up,
-        ned=north_east_down,
-        geodetic=Geodetic(lat_deg=lat_deg, lon_deg=lon_deg, alt_m=alt_m),
-    )
+    place = Geodetic(**scenario.origin.place(pose.position_m))
+    return PoseFrames(enu=east_north_up, ned=north_east_down, geodetic=place)
 
 
 def frd_from_flu(vector: ArrayLike) -> FloatArray:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.errors import UsageError
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -19,6 +20,30 @@ from nullpose.physics.rotation import (
 )
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
+
+
+def as_position(position_m: ArrayLike) -> FloatArray:
+    """Return one position as an array of its own, shape ``(3,)``, metres.
+
+    Args:
+        position_m: shape ``(3,)``, metres.
+
+    Raises:
+        UsageError: it has another shape, or a number is not finite.
+
+    Example:
+        >>> as_position([0, 0, 8])
+        array([0., 0., 8.])
+    """
+    position = np.array(position_m, dtype=float)
+    if position.shape != (3,):
+        raise UsageError(
+            f"position_m: given an array of shape {position.shape}; allowed: three finite numbers, metres, "
+            "an array of shape (3,); of several positions give one at a time, as in positions_m[0]"
+        )
+    if not all(map(math.isfinite, position.tolist())):
+        raise UsageError(f"position_m: given {position.tolist()}; allowed: three finite numbers, metres")
+    return position
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +58,7 @@ class Pose:
         mount_rad: angle of the dipole from the body's vertical, towards the body's x axis, radians.
 
     Raises:
-        ValueError: a number is not finite, or the position has not three components.
+        UsageError: a number is not finite, or the position has another shape.
     """
 
     position_m: FloatArray
@@ -43,14 +68,11 @@ class Pose:
     mount_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        position_m = np.array(self.position_m, dtype=float)
+        position_m = as_position(self.position_m)
         names = ("roll_rad", "pitch_rad", "yaw_rad", "mount_rad")
         angles = tuple(float(getattr(self, name)) for name in names)
-        if position_m.shape != (3,) or not all(map(math.isfinite, (*position_m.tolist(), *angles))):
-            raise ValueError(
-                "a pose takes three finite coordinates and finite angles; "
-                f"given {self.position_m!r}, {angles}"
-            )
+        if not all(map(math.isfinite, angles)):
+            raise UsageError(f"{', '.join(names)}: given {angles}; allowed: finite angles, radians")
         position_m.flags.writeable = False
         object.__setattr__(self, "position_m", position_m)
         for name, angle in zip(names, angles, strict=True):

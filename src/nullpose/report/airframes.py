@@ -11,7 +11,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, document, grouped, head, rows, table
-from nullpose.report.numbers import begun, bound_text, fixed, share_text, short
+from nullpose.report.numbers import begun, bound_text, fixed, share_of, share_text, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
 
@@ -61,8 +61,8 @@ def airframes_view(comparison: AirframeComparison) -> View:
     return document(
         head(comparison.scenario.name),
         "",
-        table(title, values, bold=bold, left=["status"], no_wrap=True),
-        table(kept, guaranteed, bold=bold, no_wrap=True) if comparison.scenario.is_uncertain else None,
+        table(title, values, bold=bold, left=["status"]),
+        table(kept, guaranteed, bold=bold) if comparison.scenario.is_uncertain else None,
         "\n".join(proof_lines(comparison)),
         "",
         head("\n".join(answer_lines(comparison))),
@@ -145,15 +145,18 @@ def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
         best, verdict = least, "the least of its kind that gives"
+    share = _share(comparison, best, "what an omnidirectional vehicle gives")
     return (
-        f"{begun(best.case.phrase)} gives {_share(comparison, best)} of what an omnidirectional vehicle "
-        f"gives here: {verdict} {share_text(1.0 - comparison.tolerance)} or more."
+        f"{begun(best.case.phrase)} gives {share} here: {verdict} "
+        f"{share_text(1.0 - comparison.tolerance)} or more."
     )
 
 
-def _share(comparison: AirframeComparison, result: AirframeResult) -> str:
+def _share(comparison: AirframeComparison, result: AirframeResult, whole: str = "") -> str:
     share = comparison.share(result)
-    return "nothing" if share is None else share_text(share)
+    if share is None:
+        return f"nothing of {whole}" if whole else "nothing"
+    return share_of(share, whole) if whole else share_text(share)
 
 
 def _errors_line(comparison: AirframeComparison) -> str:
@@ -170,6 +173,6 @@ def _errors_line(comparison: AirframeComparison) -> str:
     kept = whole.robust_pose / comparison.omnidirectional.value
     return (
         f"Under the file's errors an omnidirectional vehicle guarantees {share_text(kept)} of its value, at "
-        f"its robust pose; {least.case.phrase} guarantees {share_text(share)} of that: the least of its kind "
+        f"its robust pose; {least.case.phrase} guarantees {share_of(share, 'that')}: the least of its kind "
         f"that guarantees {share_text(1.0 - comparison.tolerance)} or more."
     )

@@ -5,11 +5,12 @@ Every text is shown as it is given: what looks like markup is none.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 
 Row = Mapping[str, str]
 View: TypeAlias = "RenderableType"
@@ -54,31 +55,84 @@ def table(
     *,
     bold: Collection[str] = (),
     left: Collection[str] = (),
-    no_wrap: bool = False,
 ) -> View | None:
-    """Return rows as a table in the house's look; None if there are none.
+    """Return rows as a table in the house's look, whose numbers are whole at any width; None without rows.
 
     Args:
         title: stands above it; may be empty.
         rows: cells by heading, the first of which names the row; an empty one is a rule.
         bold: names of the rows that stand out.
         left: headings of columns of words; those of numbers are to the right.
-        no_wrap: whether columns after the first keep their width.
+    """
+    if not any(rows):
+        return None
+    words = {heading for place, heading in enumerate(rows[0]) if place == 0 or heading in left}
+    return _Fitted(lambda broken, most: _table(title, rows, bold, words, broken=broken, most=most))
+
+
+_ANY_WIDTH = 10_000
+_LEAST_WORDS = 8  # characters of a column of words, before a table is made wider than there is room
+
+
+class _Fitted:
+    """A table that is made for the width there is: headings and words are broken for it, digits never are."""
+
+    def __init__(self, make: Callable[[bool, int | None], RenderableType]) -> None:
+        self._make = make
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the first of ever narrower tables that fits, or the last, with the width that it needs."""
+        room = options.update(max_width=_ANY_WIDTH)
+        widest, narrow, least = (
+            self._make(False, None),
+            self._make(True, None),
+            self._make(True, _LEAST_WORDS),
+        )
+        if console.measure(widest, options=room).maximum <= options.max_width:
+            yield widest
+        elif console.measure(narrow, options=room).minimum <= options.max_width:
+            yield narrow
+        else:
+            least = self._make(True, _LEAST_WORDS)
+            needed = max(options.max_width, console.measure(least, options=room).minimum)
+            yield from console.render(least, options.update(max_width=needed))
+
+
+def _table(
+    title: str,
+    rows: Sequence[Row],
+    bold: Collection[str],
+    words: Collection[str],
+    *,
+    broken: bool,
+    most: int | None,
+) -> RenderableType:
+    """Return a table of rows.
+
+    Args:
+        title: stands above it.
+        rows: cells by heading.
+        bold: names of the rows that stand out.
+        words: headings of the columns of words.
+        broken: whether headings of numbers are broken, so that their columns are as narrow as the numbers.
+        most: characters of a column of words; None for no limit.
     """
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    if not any(rows):
-        return None
     view = Table(title=title or None, box=box.SIMPLE_HEAD, **_LOOK)
-    for place, heading in enumerate(rows[0]):
-        words = place == 0 or heading in left
+    for heading in rows[0]:
+        is_words, longest = heading in words, max((len(row[heading]) for row in rows if row), default=1)
+        lines = [heading]
+        if broken and not is_words:
+            lines = wrap(heading, max(longest, *map(len, heading.split() or [""])), break_on_hyphens=False)
         view.add_column(
-            Text(heading),
-            justify="left" if words else "right",
-            no_wrap=no_wrap and place > 0,
+            Text("\n".join(lines)),
+            justify="left" if is_words else "right",
+            no_wrap=not is_words,
             overflow="fold",
+            max_width=most if is_words else None,
         )
     for row in rows:
         if row:

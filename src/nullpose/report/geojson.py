@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
 from nullpose.files import write_text
-from nullpose.physics import pose_frames
+from nullpose.physics import Pose, pose_frames
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
 from nullpose.report.plain import json_text
@@ -21,6 +21,7 @@ from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solve import Result
+from nullpose.solve.robust import RobustDetails
 
 _Feature = dict[str, object]
 
@@ -37,7 +38,8 @@ def require_origin(scenario: Scenario) -> Origin:
     if scenario.origin is None:
         raise UsageError(
             "GeoJSON: the scenario has no origin, so where on the Earth it lies is not known; add a table "
-            "headed [origin] with lat_deg, lon_deg and alt_m of the place where position_m is [0, 0, 0]"
+            "headed [origin] with lat_deg, lon_deg and alt_m (or alt_msl_m) of the place where position_m is "
+            "[0, 0, 0]"
         )
     return scenario.origin
 
@@ -45,7 +47,8 @@ def require_origin(scenario: Scenario) -> Origin:
 def solution_geojson(solution: Result) -> dict[str, Any]:
     """Return a solution as a GeoJSON FeatureCollection, ready for JSON.
 
-    Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid;
+    Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid (or,
+    where the origin tells only that, over the sea, as property ``alt_msl_m``);
     polygons for the airspace, if it is bounded on all sides, the geofence and the no-fly zones. Property
     ``kind`` tells them apart. Angles are in degrees; ``altitude_m`` of a polygon is z in the local frame.
 
@@ -80,6 +83,10 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
     """Yield the pose, the nodes, the jammers and the eavesdroppers: position in metres, and properties."""
     scenario, binding = solution.scenario, binding_nodes(solution)
     yield solution.pose.position_m, _pose_properties(solution)
+    if isinstance(solution.details, RobustDetails):
+        nominal = solution.details.nominal
+        named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
+        yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
     for node, link in zip(scenario.nodes, solution.links, strict=True):
         own = {key: value for key, value in asdict(link).items() if value is not None and key != "node"}
         yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **own}
@@ -92,13 +99,7 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
 
 
 def _pose_properties(solution: Result) -> dict[str, object]:
-    objective, pose = solution.objective, solution.pose
-    frames = pose_frames(solution.scenario, pose)
-    angles = {
-        f"{name}_{angle}_deg": math.degrees(getattr(frame, f"{angle}_rad"))
-        for name, frame in (("enu", frames.enu), ("ned", frames.ned))
-        for angle in ("roll", "pitch", "yaw")
-    }
+    objective = solution.objective
     return {
         "kind": "pose",
         "name": solution.label,
@@ -108,7 +109,19 @@ def _pose_properties(solution: Result) -> dict[str, object]:
         "value": objective.value,
         "value_db": objective.value_db,
         "upper_bound": objective.upper_bound,
-        **angles,
+        **_angles(solution.scenario, solution.pose),
+    }
+
+
+def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
+    """Return how the drone is turned, in the frames of other programs, and how the antenna's axis lies."""
+    frames = pose_frames(scenario, pose)
+    return {
+        **{
+            f"{name}_{angle}_deg": math.degrees(getattr(frame, f"{angle}_rad"))
+            for name, frame in (("enu", frames.enu), ("ned", frames.ned))
+            for angle in ("roll", "pitch", "yaw")
+        },
         "enu_quaternion_wxyz": list(frames.enu.quaternion_wxyz),
         "ned_quaternion_wxyz": list(frames.ned.quaternion_wxyz),
         "antenna_tilt_deg": math.degrees(tilt_rad(pose)),
@@ -133,9 +146,12 @@ def _outlines(scenario: Scenario) -> Iterator[tuple[FloatArray, float, _Feature]
 
 
 def _point(origin: Origin, place: FloatArray, properties: _Feature) -> _Feature:
-    lat_deg, lon_deg, alt_m = geodetic_from_enu(place, origin.geodetic).tolist()
-    coordinates = [round(lon_deg, 9), round(lat_deg, 9), round(alt_m, 4)]
-    return _feature("Point", coordinates, properties | {"position_m": place.tolist()})
+    where = origin.place(place)
+    coordinates = [round(where["lon_deg"], 9), round(where["lat_deg"], 9)]
+    if "alt_m" in where:  # the third coordinate is over the ellipsoid, and over nothing else
+        coordinates.append(round(where["alt_m"], 4))
+    sea = {"alt_msl_m": round(where["alt_msl_m"], 4)} if "alt_msl_m" in where else {}
+    return _feature("Point", coordinates, properties | sea | {"position_m": place.tolist()})
 
 
 def _polygon(origin: Origin, corners_m: FloatArray, height_m: float, properties: _Feature) -> _Feature:

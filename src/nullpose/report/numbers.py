@@ -167,16 +167,32 @@ def listed(parts: list[str]) -> str:
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
+_MOST_IN_PERCENT = 100.0
+
+
 def share_text(share: float) -> str:
     """Return a share in per cent: three digits, whole numbers from 100 on, as in ``99.3 %``.
 
-    Never rounded up to 100 by more than a twentieth of a per cent.
+    Never rounded up to 100 by more than a twentieth of a per cent. A ratio above a hundred is in decibels, as
+    in ``45.3 dB more``.
 
     Args:
         share: at least 0.
     """
+    if share > _MOST_IN_PERCENT:
+        return f"{10.0 * math.log10(share):.1f} dB more"
     per_cent = 100.0 * share
     return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
+
+
+def share_of(share: float, whole: str) -> str:
+    """Return a share of something in words, as in ``99.3 % of that`` or ``45.3 dB more than that``.
+
+    Args:
+        share: at least 0.
+        whole: what it is a share of.
+    """
+    return f"{share_text(share)} {'than' if share > _MOST_IN_PERCENT else 'of'} {whole}"
 
 
 def count_of(count: int, noun: str, nouns: str = "") -> str:

@@ -166,6 +166,11 @@ def robust_view(solution: Result) -> View:
             bold=[f"guaranteed ({quantity.unit})"],
         ),
         *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
+        *(
+            pairs(begun(name), frame_rows(solution.scenario, one.pose))
+            for name, one in cells.items()
+            if solution.scenario.origin is not None
+        ),
         f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best as stated.",
     )
 

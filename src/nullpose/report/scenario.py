@@ -12,12 +12,19 @@ from nullpose.antenna import GROUND_ANTENNAS
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
-from nullpose.report.document import View, document, head, pairs, rows, table
+from nullpose.report.document import Row, View, document, head, pairs, rows, table
+from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import stated
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
-from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
+from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
 
 _Point = Node | Jammer | Eavesdropper
+_EARTHLY = {
+    "latitude (deg)": ("lat_deg", 6),
+    "longitude (deg)": ("lon_deg", 6),
+    "over the ellipsoid (m)": ("alt_m", 2),
+    "over the sea (m)": ("alt_msl_m", 2),
+}
 
 
 def summarise(scenario: Scenario) -> dict[str, Any]:
@@ -41,7 +48,26 @@ def summarise(scenario: Scenario) -> dict[str, Any]:
         "noise_w": receiver.noise_power_w,
         "noise_dbm": _dbm(receiver.noise_power_w),
         "reference_gain_db": float(to_db(receiver.reference_gain)),
+        **({} if scenario.origin is None else {"on_earth": _on_earth(scenario, scenario.origin)}),
     }
+
+
+def _on_earth(scenario: Scenario, origin: Origin) -> list[dict[str, Any]]:
+    """Return the latitudes, longitudes and absolute altitudes of the points and of the areas' extents."""
+    airspace, points = scenario.airspace, (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
+    box_m = np.transpose([airspace.x_m, airspace.y_m]) if airspace.x_m and airspace.y_m else np.empty((0, 2))
+    areas = [
+        ("airspace", box_m, airspace.altitude_m),
+        *[("geofence", airspace.geofence_outline_m, airspace.altitude_m)] * (airspace.geofence_m is not None),
+        *((zone.name, outline_m(zone), zone.altitude_m) for zone in airspace.no_fly),
+    ]
+    told: list[dict[str, Any]] = [{"name": one.name} | origin.place(one.position_m) for one in points]
+    for name, outline, altitude_m in areas:
+        corners = outline if len(outline) else [(0.0, 0.0)]  # of an airspace without sides
+        places = [origin.place([*corner, end]) for corner in corners for end in altitude_m or (0.0,)]
+        keys = [key for key in places[0] if (altitude_m if key.startswith("alt") else len(outline))]
+        told.append({"name": name} | {key: [f(at[key] for at in places) for f in (min, max)] for key in keys})
+    return told
 
 
 def _dbm(power_w: float) -> float:
@@ -109,6 +135,7 @@ def scenario_view(scenario: Scenario) -> View:
         pairs("Airspace", _airspace_rows(scenario).items()),
         table("No-fly zones", zones, left=("shape", "where (m)", "altitude (m)")),
         pairs("Vehicle and receiver", _vehicle_rows(scenario).items()),
+        table("On the Earth", _place_rows(numbers.get("on_earth", ()))),
         _points_table("node", scenario.nodes, numbers["nodes"], "SNR at best (dB)"),
         _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "JNR at best (dB)"),
         _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "SNR at best (dB)"),
@@ -170,6 +197,20 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
 
 def _power_words(power_w: float) -> str:
     return f"{_dbm(power_w):.2f} dBm ({power_w:.4g} W)"
+
+
+def _place_rows(places: Sequence[Mapping[str, Any]]) -> list[Row]:
+    """Return a row for each point on the Earth, and two for the ends of an area."""
+    single: list[dict[str, Any]] = []
+    for place in places:
+        spans = {key: value for key, value in place.items() if isinstance(value, list)}
+        for end, word in enumerate(("from", "to") if spans else ("",)):
+            name = f"{place['name']}, {word}" if word else place["name"]
+            single.append({**place, "name": name} | {key: ends[end] for key, ends in spans.items()})
+    columns: dict[str, list[str | None]] = {"": [one["name"] for one in single]}
+    for heading, (key, digits) in _EARTHLY.items():
+        columns[heading] = [stated(one.get(key), f"z.{digits}f") for one in single]
+    return rows(columns)
 
 
 def _points_table(

@@ -52,10 +52,11 @@ def place_words(place: Geodetic | Origin) -> str:
     """Return a place on the Earth in words, to about a millimetre.
 
     Args:
-        place: latitude, longitude and altitude over the ellipsoid.
+        place: latitude, longitude and altitude over the ellipsoid, the sea or both.
     """
-    lat, lon = f"{place.lat_deg:z.8f}", f"{place.lon_deg:z.8f}"
-    return f"lat {lat} deg, lon {lon} deg, alt {place.alt_m:z.3f} m over the WGS-84 ellipsoid"
+    over = {"the WGS-84 ellipsoid": place.alt_m, "the sea": place.alt_msl_m}
+    told = [f"{alt_m:z.3f} m over {what}" for what, alt_m in over.items() if alt_m is not None]
+    return f"lat {place.lat_deg:z.8f} deg, lon {place.lon_deg:z.8f} deg, alt {', '.join(told)}"
 
 
 def error_words(scenario: Scenario) -> str:

@@ -10,6 +10,7 @@ from nullpose.scenario.loading import load
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
+from nullpose.scenario.plausibility import doubts
 from nullpose.scenario.receiver import Receiver
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.transmitter import Transmitter
@@ -30,6 +31,7 @@ __all__ = [
     "Scenario",
     "Transmitter",
     "apply_overrides",
+    "doubts",
     "json_schema",
     "load",
     "parse_override",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Annotated, ClassVar
 
@@ -11,11 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.no_fly import NoFlyZone
-from nullpose.scenario.polygon import Polygon, counter_clockwise_m, depth_m
+from nullpose.scenario.faults import Place
+from nullpose.scenario.names import Label
+from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
+from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import KeepOutMetres, Range
+from nullpose.scenario.ways import Ways
 
 BORDER_M = 1e-9
 """Positions no further than this beyond a border count as on it [m]."""
@@ -28,21 +32,43 @@ class Airspace(Section):
     unbounded, as in the paper, which bounds the altitude only (eq. 2.2).
 
     Args:
-        altitude_m: lowest and highest altitude [m]; equal ends fix the altitude.
+        altitude_m: lowest and highest altitude above the origin [m]; equal ends fix the altitude.
+        altitude_msl_m, altitude_ellipsoid_m: the same over the sea or over the ellipsoid, from which a
+            scenario with an origin fills in altitude_m; None if it was not stated so.
         x_m: westmost and eastmost position [m], or None for no bound.
         y_m: southmost and northmost position [m], or None for no bound.
         keep_out_m: smallest distance from any node, jammer or eavesdropper [m], since the model has no limit
             there.
         geofence_m: vertices [east, north] of a polygon [m] that the vehicle stays in, in order around it, the
             last being joined to the first; or None for no fence.
+        geofence_lat_lon_deg: the same vertices on the Earth, from which a scenario with an origin fills in
+            geofence_m; None if the fence was not stated so.
+        geofence_from, no_fly_from: only in files: the files that hold the fence and the zones; None once
+            they have been read.
         no_fly: zones that the vehicle stays out of.
     """
 
     unstated: ClassVar[frozenset[str]] = frozenset({"no_fly"})
+    ways: ClassVar[tuple[Ways, ...]] = (
+        ALTITUDES,
+        Ways((("geofence_m",), ("geofence_lat_lon_deg",), ("geofence_from",)), fewest=0, most=3),
+    )
 
     altitude_m: Range = Field(
         description="Lowest and highest altitude of the vehicle above the origin, in metres: [low, high].",
         examples=[[8.0, 30.0]],
+    )
+    altitude_msl_m: Range | None = Field(
+        default=None,
+        description="The same over the sea (the geoid), in metres, in place of altitude_m; where [origin] "
+        "states its own.",
+        examples=[[215.0, 265.0]],
+    )
+    altitude_ellipsoid_m: Range | None = Field(
+        default=None,
+        description="The same over the WGS-84 ellipsoid, in metres, in place of altitude_m; where [origin] "
+        "states its own.",
+        examples=[[260.0, 310.0]],
     )
     x_m: Range | None = Field(
         default=None,
@@ -67,11 +93,36 @@ class Airspace(Section):
         "[[east, north], ...]. Left out: no fence.",
         examples=[[[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]]],
     )
+    geofence_lat_lon_deg: EarthlyPolygon | None = Field(
+        default=None,
+        description="The same vertices in degrees, in place of geofence_m, in a scenario with an [origin]: "
+        "[[latitude, longitude], ...].",
+        examples=[[[49.9998, 14.4996], [49.9998, 14.5004], [50.0006, 14.5004], [50.0006, 14.4996]]],
+    )
+    geofence_from: Label | None = Field(
+        default=None,
+        description="Name of a GeoJSON or KML file with the fence as one polygon, relative to this file's "
+        "folder. In place of geofence_m.",
+        examples=["fence.geojson"],
+    )
+    no_fly_from: Label | None = Field(
+        default=None,
+        description="Name of a GeoJSON or KML file with no-fly zones, relative to this file's folder. They "
+        "are added to those in tables headed [[airspace.no_fly]].",
+        examples=["zones.kml"],
+    )
     no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly")] = Field(
         default=(),
         description="Tables headed [[airspace.no_fly]], one for each zone that the vehicle stays out of; "
         "none if left out.",
     )
+
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the faults that no scenario has placed what is on the Earth, or that a file is named."""
+        yield from unplaced(self, stated)
+        for key in ("geofence_from", "no_fly_from"):
+            if stated.get(key) is not None:
+                yield (key,), "only a scenario file may name another, in place of its own areas; remove one"
 
     @cached_property
     def lower_m(self) -> NDArray[np.float64]:

@@ -11,7 +11,9 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.objectives import RECORDS
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
-from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
+from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin_faults import is_placed, origin_faults
+from nullpose.scenario.plausibility import in_degrees
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
 
@@ -40,7 +42,14 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
             ("nodes_from",),
             "only a scenario file may name another, in place of its own nodes; remove it or them",
         )
-    misplaced = list(origin_faults(scenario.origin, points, stated))
+    airspace = scenario.airspace
+    listed = getattr(airspace, "no_fly", None) or ()
+    zones: dict[Place, Any] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
+    tables = points | ({} if airspace is None else {("airspace",): airspace}) | zones
+    misplaced = [
+        *origin_faults(scenario.origin, tables, stated),
+        *in_degrees(tables, [point.position_m for point in points.values() if is_placed(point)]),
+    ]
     yield from misplaced
     yield from _objective_faults(scenario, points)
     yield from shared_names(points)
@@ -65,12 +74,8 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
                 f"a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
                 f'of antenna.kind = "{kind}" is not; write "circular" or "isotropic"',
             )
-    airspace = scenario.airspace
-    if airspace is not None:
-        zones: dict[Place, Any] = {
-            ("airspace", "no_fly", index): zone for index, zone in enumerate(airspace.no_fly)
-        }
-        yield from shared_names(zones)
+    yield from shared_names(zones)
+    if airspace is not None and not misplaced:
         error_m = 0.0 if scenario.receiver is None else scenario.receiver.position_error_m
         yield from airspace_faults(airspace, placed, error_m)
 

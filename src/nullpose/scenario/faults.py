@@ -16,6 +16,8 @@ from nullpose.scenario.wording import described, printable
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
 
+EXCHANGED = "are latitude and longitude exchanged?"
+"""What is asked of places that would be right the other way round."""
 _KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -83,7 +85,12 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
         source: the file or object at fault, as the user would name it.
     """
     found = sorted(error.errors(include_url=False), key=lambda entry: _ranks(entry["loc"], data))
-    return ScenarioError([Fault(path_of(entry["loc"]), entry["msg"]) for entry in found], source)
+    alike = [entry for entry in found if EXCHANGED in entry["msg"]]  # likely of all places: told once
+    told = [entry for entry in found if entry not in alike[1:]]
+    more = f" (and so in {len(alike) - 1} more)" if alike[1:] else ""
+    return ScenarioError(
+        [Fault(path_of(one["loc"]), one["msg"] + (more if one in alike else "")) for one in told], source
+    )
 
 
 def _ranks(place: Place, data: Any) -> list[int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
@@ -15,14 +15,17 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.transmitter import POWER, Powered
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
+    ALTITUDE_KEYS,
     GEODETIC_KEYS,
     Altitude,
     AxisDirection,
     DecibelMilliwatts,
+    GroundHeight,
     Latitude,
     Longitude,
     Position,
     RatioDecibels,
+    SeaAltitude,
     Watts,
     Weight,
     ratio_from_db,
@@ -30,7 +33,15 @@ from nullpose.scenario.units import (
 from nullpose.scenario.ways import Ways, at_most_one
 
 _Antenna = Annotated[str, Choice("an antenna on the ground", tuple(GROUND_ANTENNAS))]
-_PLACE = Ways((("position_m",), GEODETIC_KEYS), fewest=0, most=2)
+PLACE = Ways(
+    (("position_m",), GEODETIC_KEYS),
+    fewest=0,
+    most=2,
+    twins=tuple((key, "alt_m") for key in ALTITUDE_KEYS[1:]),
+)
+"""The ways to state a place."""
+ALTITUDE = at_most_one(*ALTITUDE_KEYS)
+"""The ways to state the altitude of a place on the Earth."""
 
 
 class GroundPoint(Section):
@@ -41,11 +52,12 @@ class GroundPoint(Section):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (_PLACE,)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE)
     unstated: ClassVar[frozenset[str]] = frozenset({"antenna"})
 
     name: Label = Field(
@@ -55,7 +67,7 @@ class GroundPoint(Section):
     )
     position_m: Position = Field(
         description="Position in metres from the origin: [east, north, up]. Either this, or lat_deg, lon_deg "
-        "and alt_m in a scenario with an [origin].",
+        "and an altitude in a scenario with an [origin].",
         examples=[[17.0, 15.0, 4.0]],
     )
     lat_deg: Latitude | None = Field(
@@ -73,6 +85,18 @@ class GroundPoint(Section):
         default=None,
         description="Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.",
         examples=[252.0],
+    )
+    alt_msl_m: SeaAltitude | None = Field(
+        default=None,
+        description="Altitude in metres over the sea (the geoid), in place of alt_m; where [origin] states "
+        "its own.",
+        examples=[207.0],
+    )
+    alt_agl_m: GroundHeight | None = Field(
+        default=None,
+        description="Height in metres above the ground at the origin, which counts as level, in place of "
+        "alt_m.",
+        examples=[2.0],
     )
     antenna: _Antenna = Field(
         default="isotropic",
@@ -103,19 +127,6 @@ class GroundPoint(Section):
             return self
         return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None})
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Returns a copy with some values replaced; a new position takes the place of a latitude too.
-
-        Args:
-            update: new values by key.
-            deep: without meaning here, since everything inside is frozen.
-
-        Raises:
-            ScenarioError: when the copy would be faulty.
-        """
-        stale = dict.fromkeys(GEODETIC_KEYS if update and "position_m" in update else ())
-        return super().model_copy(update=stale | dict(update or {}), deep=deep)
-
 
 class Emitter(Powered, GroundPoint):
     """A transmitter on the ground.
@@ -125,13 +136,14 @@ class Emitter(Powered, GroundPoint):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (_PLACE, POWER)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
 
 
 class Node(Emitter):
@@ -142,6 +154,7 @@ class Node(Emitter):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
@@ -158,7 +171,8 @@ class Node(Emitter):
     letter: ClassVar[str] = "S"
     # A node need not transmit where the drone does; a scenario judges whether it has to.
     ways: ClassVar[tuple[Ways, ...]] = (
-        _PLACE,
+        PLACE,
+        ALTITUDE,
         at_most_one("power_w", "power_dbm"),
         at_most_one("weight", "min_sinr_db"),
         at_most_one("noise_w", "noise_dbm"),
@@ -218,6 +232,7 @@ class Jammer(Uncertain, Emitter):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         power_w: transmit power [W]; or else
@@ -238,6 +253,7 @@ class Eavesdropper(Uncertain, GroundPoint):
         position_m: east, north and up from the origin [m], (3,).
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
+        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         noise_w: its receiver's noise [W]; or else
@@ -248,7 +264,7 @@ class Eavesdropper(Uncertain, GroundPoint):
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
     letter: ClassVar[str] = "E"
-    ways: ClassVar[tuple[Ways, ...]] = (_PLACE, at_most_one("noise_w", "noise_dbm"))
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, at_most_one("noise_w", "noise_dbm"))
 
     noise_w: Watts | None = Field(
         default=None,

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.antenna import with_harmonics
+from nullpose.scenario.areas import areas_from_features
 from nullpose.scenario.faults import refusal
+from nullpose.scenario.features import ENDINGS
 from nullpose.scenario.listed_nodes import ListedNode, retold
 from nullpose.scenario.nodes_csv import nodes_from_csv
-from nullpose.scenario.nodes_geojson import nodes_from_geojson
+from nullpose.scenario.nodes_geojson import nodes_from_features
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
 from nullpose.scenario.wording import described
 
 _KEY = "nodes_from"
-_READERS = {".geojson": nodes_from_geojson, ".json": nodes_from_geojson, ".csv": nodes_from_csv}
-_NODES_FILE = FileKind("a file of nodes", "nodes.geojson", tuple(_READERS))
+_NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
+_AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
+_FENCES = {"geofence_m", "geofence_lat_lon_deg"}
+_AREA_KEYS = {"geofence_from", "no_fly_from"}
 
 
 def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
@@ -32,14 +37,16 @@ def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenar
         ScenarioError: when the file cannot be read or is faulty; with every fault it has.
     """
     source = os.fspath(path)
+    origins: dict[str, str] = {}
     try:
         tables = tables_of(file_text(Path(source)))
         tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
+        tables, origins = _with_areas_from(tables, Path(source).parent, allow_outside)
         if _KEY in tables and "nodes" not in tables:
             return _with_nodes_from(tables, Path(source).parent, allow_outside)
         return Scenario.from_dict(tables)
     except ScenarioError as error:
-        raise ScenarioError(error.faults, source) from None
+        raise ScenarioError([_from_file(fault, origins) for fault in error.faults], source) from None
 
 
 def scenario_from_text(content: bytes, name: str) -> Scenario:
@@ -71,6 +78,7 @@ def files_of(path: Path) -> dict[str, Path]:
     """
     tables = tables_of(file_text(path))
     named = {_KEY: tables.get(_KEY), "antenna.file": tables.get("antenna", {}).get("file")}
+    named |= {f"airspace.{key}": tables["airspace"].get(key) for key in _AREA_KEYS}
     return {"the scenario": path} | {key: path.parent / file for key, file in named.items() if file}
 
 
@@ -135,14 +143,59 @@ def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) 
 
 
 def _listed_nodes(file: object, folder: Path, allow_outside: bool) -> list[ListedNode]:
+    text, ending = _listed_text(file, _NODES_FILE, folder, allow_outside, _KEY)
+    return nodes_from_csv(text) if ending == ".csv" else nodes_from_features(text, ending)
+
+
+def _listed_text(
+    file: object, kind: FileKind, folder: Path, allow_outside: bool, key: str
+) -> tuple[str, str]:
+    """Returns the text of a file that a key names, and how its name ends."""
     if not isinstance(file, str) or not file.strip():
         raise refusal(
-            _KEY, f'got {described(file)}, must be the name of a GeoJSON or CSV file, as in "nodes.geojson"'
+            key, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
         )
-    read = _READERS.get(PurePath(file).suffix.lower())
-    if read is None:
-        raise refusal("", f"the name must end in one of {', '.join(_READERS)}, which tells the kind")
-    return read(file_text(inside(folder, file, allow_outside, _KEY), _NODES_FILE, folder, _KEY))
+    ending = PurePath(file).suffix.lower()
+    if ending not in kind.endings:
+        raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
+    return file_text(inside(folder, file, allow_outside, key), kind, folder, key), ending
+
+
+def _with_areas_from(
+    tables: dict[str, Any], folder: Path, allow_outside: bool
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Returns the tables with the fence and the zones of other files, and which file each is from."""
+    stated = tables.get("airspace")
+    airspace: dict[str, Any] = dict(stated) if isinstance(stated, dict) else {}
+    origins: dict[str, str] = {}
+    for key in _AREA_KEYS & airspace.keys():
+        own = airspace.get("no_fly", []) if key == "no_fly_from" else [*_FENCES & airspace.keys()]
+        if not isinstance(own, list) or (key == "geofence_from" and own):
+            continue  # which is refused
+        file = airspace.pop(key)
+        label = f"airspace.{key}: {file}"
+        try:
+            areas = areas_from_features(*_listed_text(file, _AREA_FILE, folder, allow_outside, ""))
+        except ScenarioError as error:
+            raise ScenarioError([_at(label, fault.path, fault) for fault in error.faults]) from None
+        if key == "no_fly_from":
+            airspace["no_fly"] = [*own, *areas]
+            places = (f"airspace.no_fly[{len(own) + index}]" for index in range(len(areas)))
+            origins |= {place: f"{label}: features[{index}]" for index, place in enumerate(places)}
+        elif len(areas) == 1 and "polygon_lat_lon_deg" in areas[0]:
+            airspace["geofence_lat_lon_deg"] = areas[0]["polygon_lat_lon_deg"]
+            origins["airspace.geofence_lat_lon_deg"] = f"{label}: coordinates"
+        else:
+            raise refusal(label, f"got {len(areas)} features, must be one Polygon, the fence")
+    return (tables | {"airspace": airspace} if origins else tables), origins
+
+
+def _from_file(fault: Fault, origins: Mapping[str, str]) -> Fault:
+    """Returns a fault of an area with its place in the file that it is from."""
+    for place, origin in origins.items():
+        if f"{fault.path}.".startswith((f"{place}[", f"{place}.")):
+            return Fault(f"{origin}{fault.path.removeprefix(place)}", fault.message)
+    return fault
 
 
 def _at(file: str, place: str, fault: Fault) -> Fault:

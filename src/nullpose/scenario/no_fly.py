@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -11,17 +12,33 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
+from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
-from nullpose.scenario.polygon import Polygon, counter_clockwise_m, depth_m
+from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import PlanePoint, RadiusMetres, Range
+from nullpose.scenario.units import EARTHLY_CORNERS, EARTHLY_RANGES, LatLon, PlanePoint, RadiusMetres, Range
 from nullpose.scenario.ways import Ways
+
+ALTITUDES = Ways((("altitude_m",), ("altitude_msl_m",), ("altitude_ellipsoid_m",)), fewest=0, most=3)
+"""The ways to state a range of altitudes."""
+
+
+def unplaced(table: Section, stated: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
+    """Yields the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
+    for key, metric in (EARTHLY_CORNERS | dict.fromkeys(EARTHLY_RANGES, "altitude_m")).items():
+        if getattr(table, key, None) is not None and stated.get(metric) is None:
+            yield (
+                (key,),
+                f"needs the [origin] of a scenario; state {metric} here, or give the scenario as a "
+                "file or as plain data (Scenario.from_dict)",
+            )
 
 
 class NoFlyZone(Section):
     """An upright solid that the vehicle may not enter; its border is allowed.
 
-    Exactly one shape is given: ``x_m`` and ``y_m``, or ``centre_m`` and ``radius_m``, or ``polygon_m``.
+    Exactly one shape is given: ``x_m`` and ``y_m``, or ``centre_m`` and ``radius_m``, or ``polygon_m``. A
+    scenario with an origin fills in the metres of what is stated on the Earth.
 
     Args:
         name: how results and overrides refer to it; an airspace names it by its place when left out.
@@ -31,12 +48,23 @@ class NoFlyZone(Section):
         radius_m: radius of the cylinder [m].
         polygon_m: vertices [east, north] of a polygon [m], in order around it; the last is joined to the
             first.
-        altitude_m: lowest and highest altitude of the zone [m]; None for all altitudes.
+        centre_lat_lon_deg: latitude and longitude of the cylinder's axis [degrees], (2,).
+        polygon_lat_lon_deg: latitudes and longitudes of the polygon's vertices [degrees].
+        altitude_m: lowest and highest altitude of the zone above the origin [m]; None for all altitudes.
+        altitude_msl_m, altitude_ellipsoid_m: the same over the sea or over the ellipsoid.
     """
 
     header: ClassVar[str] = "a no-fly zone, in a table of its own headed [[airspace.no_fly]]"
     letter: ClassVar[str] = "Z"
-    ways: ClassVar[tuple[Ways, ...]] = (Ways((("x_m", "y_m"), ("centre_m", "radius_m"), ("polygon_m",))),)
+    ways: ClassVar[tuple[Ways, ...]] = (
+        Ways(
+            (("x_m", "y_m"), ("centre_m", "radius_m"), ("polygon_m",)),
+            twins=(("centre_lat_lon_deg", "centre_m"), ("polygon_lat_lon_deg", "polygon_m")),
+        ),
+        Ways((("centre_m",), ("centre_lat_lon_deg",)), fewest=0, most=2),
+        Ways((("polygon_m",), ("polygon_lat_lon_deg",)), fewest=0, most=2),
+        ALTITUDES,
+    )
 
     name: Label = Field(
         default="",
@@ -67,12 +95,38 @@ class NoFlyZone(Section):
         description="Vertices of a polygon, in metres, in order around it: [[east, north], ...].",
         examples=[[[0.0, 0.0], [20.0, 0.0], [10.0, 15.0]]],
     )
+    centre_lat_lon_deg: LatLon | None = Field(
+        default=None,
+        description="Centre of a cylinder in degrees: [latitude, longitude]. In place of centre_m, in a "
+        "scenario with an [origin].",
+        examples=[[50.0005, 14.5028]],
+    )
+    polygon_lat_lon_deg: EarthlyPolygon | None = Field(
+        default=None,
+        description="Vertices of a polygon in degrees, in order around it: [[latitude, longitude], ...]. In "
+        "place of polygon_m, in a scenario with an [origin].",
+        examples=[[[50.0, 14.5], [50.0, 14.5003], [50.0002, 14.5001]]],
+    )
     altitude_m: Range | None = Field(
         default=None,
-        description="Lowest and highest altitude of the zone, in metres: [low, high]. Left out: "
-        "all altitudes.",
+        description="Lowest and highest altitude of the zone above the origin, in metres: [low, high]. Left "
+        "out: all altitudes.",
         examples=[[0.0, 20.0]],
     )
+    altitude_msl_m: Range | None = Field(
+        default=None,
+        description="The same over the sea (the geoid), in metres, in place of altitude_m.",
+        examples=[[185.0, 205.0]],
+    )
+    altitude_ellipsoid_m: Range | None = Field(
+        default=None,
+        description="The same over the WGS-84 ellipsoid, in metres, in place of altitude_m.",
+        examples=[[230.0, 250.0]],
+    )
+
+    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the fault of a zone on the Earth that no scenario has placed."""
+        return unplaced(self, stated)
 
     @property
     def shape(self) -> Literal["box", "cylinder", "polygon"]:

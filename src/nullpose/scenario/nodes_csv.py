@@ -9,7 +9,7 @@ from itertools import islice
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import refusal
-from nullpose.scenario.ground_points import Node
+from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.units import GEODETIC_KEYS
@@ -17,7 +17,7 @@ from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import listed, printable, unknown
 
 _LOCAL = ("x_m", "y_m", "z_m")
-_PLACE = Ways((_LOCAL, GEODETIC_KEYS))
+_PLACE = Ways((_LOCAL, GEODETIC_KEYS), twins=PLACE.twins)
 _COLUMNS = ("name", *_LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))
 _PLACES = {"position_m": ""} | {f"position_m[{axis}]": f", column {key}" for axis, key in enumerate(_LOCAL)}
 
@@ -26,8 +26,8 @@ def nodes_from_csv(text: str) -> list[ListedNode]:
     """Returns the nodes of a CSV file.
 
     Args:
-        text: the file's content: columns ``x_m``, ``y_m``, ``z_m`` or ``lat_deg``, ``lon_deg``, ``alt_m``, a
-            power, and any other key of a node; an empty cell is a key left out.
+        text: the file's content: columns ``x_m``, ``y_m``, ``z_m`` or ``lat_deg``, ``lon_deg`` and an
+            altitude, a power, and any other key of a node; an empty cell is a key left out.
 
     Raises:
         ScenarioError: no CSV, a header that cannot be used, or no line below it.

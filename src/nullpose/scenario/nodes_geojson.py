@@ -1,54 +1,35 @@
-"""Nodes as GeoJSON (RFC 7946): a FeatureCollection of Points, the nodes' other keys as properties."""
+"""Nodes as features of GeoJSON or KML: Points, the nodes' other keys being properties."""
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from nullpose.errors import ScenarioError
-from nullpose.files import parse_json
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.features import features_of, require, type_of
 from nullpose.scenario.listed_nodes import ListedNode
 from nullpose.scenario.rules import MOST_MEMBERS
-from nullpose.scenario.wording import described
+from nullpose.scenario.units import ALTITUDE_KEYS
 
 _NO_PLACE = "left out, for the place of a feature is its geometry's coordinates; remove this property"
 _COORDINATES = "[longitude, latitude, altitude] in degrees and in m over the WGS-84 ellipsoid"
-_ADD_HEIGHT = "add the altitude, or a property alt_m"
-_WGS84 = ("CRS84", "CRS84h", "EPSG::4326", "EPSG:4326", "EPSG::4979", "EPSG:4979")
+_ADD_HEIGHT = "add the altitude, or a property alt_m, alt_msl_m (sea) or alt_agl_m (above the ground)"
 
 
-def nodes_from_geojson(text: str) -> list[ListedNode]:
-    """Returns the nodes of a GeoJSON file.
+def nodes_from_features(text: str, ending: str) -> list[ListedNode]:
+    """Returns the nodes of a GeoJSON or KML file.
 
     Args:
         text: the file's content. Each feature is a node: a Point with longitude, latitude, altitude, and the
-            node's other keys as properties. The altitude may be a property ``alt_m`` instead.
+            node's other keys as properties. The altitude may be a property ``alt_m``, ``alt_msl_m`` or
+            ``alt_agl_m`` instead.
+        ending: of the file's name, which tells the kind.
 
     Raises:
-        ScenarioError: no JSON, or no FeatureCollection with features.
+        ScenarioError: it cannot be read, or is no FeatureCollection with features.
     """
-    data = parse_json(text)
-    _require(isinstance(data, dict), "", data, "a FeatureCollection of Points")
-    is_collection = data.get("type") == "FeatureCollection"
-    _require(is_collection, "type", data.get("type"), '"FeatureCollection", of Points with properties')
-    features, system = data.get("features"), json.dumps(data.get("crs"))
-    _require(isinstance(features, list) and features, "features", features, "a list of one feature or more")
-    is_wgs84 = "crs" not in data or system.rstrip('}"]').endswith(_WGS84)
-    _require(is_wgs84, "crs", system, "WGS-84 (RFC 7946 has no other); convert the file")
     # One more than are allowed, so that it is refused as a node.
-    return [
-        _node(f"features[{index}]", feature) for index, feature in enumerate(features[: MOST_MEMBERS + 1])
-    ]
-
-
-def _require(fits: object, place: str, given: object, allowed: str) -> None:
-    if not fits:
-        raise refusal(place, f"got {described(given)}, must be {allowed}")
-
-
-def _type(value: Any) -> object:
-    return value.get("type") if isinstance(value, dict) else value
+    listed = features_of(text, ending)[: MOST_MEMBERS + 1]
+    return [_node(f"features[{index}]", feature) for index, feature in enumerate(listed)]
 
 
 def _node(where: str, feature: Any) -> ListedNode:
@@ -65,18 +46,19 @@ def _node(where: str, feature: Any) -> ListedNode:
 def _values(feature: Any) -> tuple[dict[str, object], bool]:
     """Returns the raw node, and whether its altitude is the third of the coordinates."""
     is_feature = isinstance(feature, dict) and feature.get("type") == "Feature"
-    _require(is_feature, "", _type(feature), 'an object with "type": "Feature"')
+    require(is_feature, "", type_of(feature), 'an object with "type": "Feature"')
     properties, geometry = feature.get("properties"), feature.get("geometry")
-    _require(properties is None or isinstance(properties, dict), ".properties", properties, "an object")
+    require(properties is None or isinstance(properties, dict), ".properties", properties, "an object")
     is_point = isinstance(geometry, dict) and geometry.get("type") == "Point"
-    _require(is_point, ".geometry", _type(geometry), 'a geometry of type "Point"')
+    require(is_point, ".geometry", type_of(geometry), 'a geometry of type "Point"')
     here, coordinates = ".geometry.coordinates", geometry.get("coordinates")
     is_place = isinstance(coordinates, list) and len(coordinates) in (2, 3) and None not in coordinates
-    _require(is_place, here, coordinates, _COORDINATES)
+    require(is_place, here, coordinates, _COORDINATES)
     values = {key: value for key, value in (properties or {}).items() if value is not None}
     lon_deg, lat_deg, *height_m = coordinates
-    _require(height_m or "alt_m" in values, here, coordinates, f"{_COORDINATES}; {_ADD_HEIGHT}")
-    for key in ("position_m", "lat_deg", "lon_deg", *(["alt_m"] if height_m else [])):
-        _require(key not in values, f".properties.{key}", values.get(key), _NO_PLACE)
-    alt_m = height_m[0] if height_m else values["alt_m"]
-    return values | {"lat_deg": lat_deg, "lon_deg": lon_deg, "alt_m": alt_m}, bool(height_m)
+    stated = any(key in values for key in ALTITUDE_KEYS)
+    require(height_m or stated, here, coordinates, f"{_COORDINATES}; {_ADD_HEIGHT}")
+    for key in ("position_m", "lat_deg", "lon_deg", *(ALTITUDE_KEYS if height_m else ())):
+        require(key not in values, f".properties.{key}", values.get(key), _NO_PLACE)
+    place = {"lat_deg": lat_deg, "lon_deg": lon_deg} | ({"alt_m": height_m[0]} if height_m else {})
+    return values | place, bool(height_m)

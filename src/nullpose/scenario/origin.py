@@ -1,29 +1,45 @@
-"""Where on the Earth the local frame stands, and points that are stated by latitude and longitude."""
+"""Where on the Earth the local frame stands, and the metres of what is stated by latitude or altitude."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import suppress
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, ValidationError
 
-from nullpose.scenario.arrays import read_only
-from nullpose.scenario.faults import Place, path_of
-from nullpose.scenario.geodesy import enu_from_geodetic
+from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.arrays import Floats, read_only
+from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
+from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import GEODETIC_KEYS, Altitude, Latitude, Longitude
+from nullpose.scenario.units import (
+    ALTITUDE_KEYS,
+    EARTHLY_CORNERS,
+    EARTHLY_RANGES,
+    Altitude,
+    Latitude,
+    Longitude,
+    SeaAltitude,
+)
+from nullpose.scenario.ways import Ways
 
 FARTHEST_M = 1e5
-"""A point farther from the origin than this is taken for a mistake [m]."""
+"""What is farther from the origin than this is taken for a mistake [m]."""
 
-_SAME_M = 1e-3  # position_m and the geodetic keys may be given together if they agree within this
 POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
 """The keys of a scenario's points."""
-_WORDS = "lat_deg, lon_deg and alt_m"
+EARTHLY_KEYS = ("lat_deg", "lon_deg", *ALTITUDE_KEYS, *EARTHLY_CORNERS, *EARTHLY_RANGES)
+"""The keys whose meaning in metres follows from the origin."""
+_PLACEHOLDERS: dict[str, Any] = {  # of what cannot be told; such a scenario is refused for that
+    "position_m": [0.0, 0.0, 0.0],
+    "centre_m": [0.0, 0.0],
+    "altitude_m": [1.0, 2.0],
+    "geofence_m": [[0.0, 0.0], [1e4, 0.0], [0.0, 1e4]],
+    "polygon_m": [[0.0, 0.0], [1e4, 0.0], [0.0, 1e4]],
+}
 
 
 class Origin(Section):
@@ -32,8 +48,11 @@ class Origin(Section):
     Args:
         lat_deg: geodetic latitude [degrees], north positive.
         lon_deg: longitude [degrees], east positive.
-        alt_m: altitude over the ellipsoid [m], not over the sea or the ground.
+        alt_m: altitude over the ellipsoid [m], not over the sea or the ground; or else
+        alt_msl_m: altitude over the sea [m]; both where altitudes of both kinds are stated or wanted.
     """
+
+    ways: ClassVar[tuple[Ways, ...]] = (Ways((("alt_m",), ("alt_msl_m",)), most=2),)
 
     lat_deg: Latitude = Field(
         description="Latitude of the origin in degrees (WGS-84), north positive.", examples=[50.0]
@@ -41,111 +60,132 @@ class Origin(Section):
     lon_deg: Longitude = Field(
         description="Longitude of the origin in degrees (WGS-84), east positive.", examples=[14.5]
     )
-    alt_m: Altitude = Field(
-        description="Altitude of the origin in metres over the WGS-84 ellipsoid.", examples=[250.0]
+    alt_m: Altitude | None = Field(
+        default=None,
+        description="Altitude of the origin in metres over the WGS-84 ellipsoid. This, alt_msl_m or both.",
+        examples=[250.0],
+    )
+    alt_msl_m: SeaAltitude | None = Field(
+        default=None,
+        description="Altitude of the origin in metres over the sea (the geoid). This, alt_m or both, which "
+        "says how far sea and ellipsoid are apart.",
+        examples=[205.0],
     )
 
     @property
     def geodetic(self) -> NDArray[np.float64]:
-        """Latitude, longitude [degrees] and altitude [m], (3,), read-only."""
-        return read_only([self.lat_deg, self.lon_deg, self.alt_m], (3,))
+        """Latitude, longitude [degrees] and altitude [m], (3,), read-only.
+
+        The altitude is over the ellipsoid, or over the sea if only that is known: in the local frame the two
+        differ by less than a hundred-thousandth of a distance.
+        """
+        height_m = self.alt_msl_m if self.alt_m is None else self.alt_m
+        return read_only([self.lat_deg, self.lon_deg, height_m or 0.0], (3,))
+
+    def place(self, position_m: ArrayLike) -> dict[str, float]:
+        """Returns where on the Earth a position is.
+
+        Args:
+            position_m: east, north and up from the origin [m], (3,).
+
+        Returns:
+            ``lat_deg``, ``lon_deg`` and, as far as the origin tells its own, ``alt_m`` over the ellipsoid and
+            ``alt_msl_m`` over the sea [m].
+
+        Example:
+            >>> Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0, alt_msl_m=185.0).place([0.0, 0.0, 20.0])
+            {'lat_deg': 50.0, 'lon_deg': 14.5, 'alt_m': 250.0, 'alt_msl_m': 205.0}
+        """
+        lat_deg, lon_deg, height_m = geodetic_from_enu(position_m, self.geodetic).tolist()
+        own = {"alt_m": self.alt_m, "alt_msl_m": self.alt_msl_m}
+        base_m = float(self.geodetic[2])
+        altitudes = {key: height_m + (here_m - base_m) for key, here_m in own.items() if here_m is not None}
+        return {"lat_deg": lat_deg, "lon_deg": lon_deg} | altitudes
 
 
 def located(data: Mapping[str, object]) -> Mapping[str, object]:
-    """Returns a raw scenario in which points stated by latitude and longitude have their position_m too.
+    """Returns a raw scenario in which what is stated on the Earth is there in metres too.
 
-    Where it cannot be told, for want of an origin or because it is too far from it, position_m is zero: such
-    a scenario is refused for that.
+    Where that cannot be told, for want of an origin or because it is too far from it, there are placeholders:
+    such a scenario is refused for that.
 
     Args:
         data: the raw scenario.
     """
-    origin = _place(data.get("origin"))
-    members = {key: value for key in POINT_LISTS if isinstance(value := data.get(key), list | tuple)}
-    return {**data} | {key: [_located(point, origin) for point in points] for key, points in members.items()}
+    try:
+        origin = Origin.model_validate(data.get("origin"))
+    except ValidationError:
+        origin = None
+    whole = dict(data)
+    for key in POINT_LISTS:
+        if isinstance(members := data.get(key), list | tuple):
+            whole[key] = [_located(GroundPoint, each, origin) for each in members]
+    airspace = data.get("airspace")
+    if isinstance(airspace, Mapping):
+        whole["airspace"] = found = dict(_located(Airspace, airspace, origin))
+        if isinstance(zones := airspace.get("no_fly"), list | tuple):
+            found["no_fly"] = [_located(NoFlyZone, each, origin) for each in zones]
+    return whole
 
 
-def _located(point: object, origin: Origin | None) -> object:
-    """Returns a raw point with its position_m, if it is stated by latitude and longitude."""
-    if not isinstance(point, Mapping):
-        return point
-    stated = {key for key in ("position_m", *GEODETIC_KEYS) if point.get(key) is not None}
-    if not stated or "position_m" in stated:
-        return point
-    place, position_m = _place(point), np.zeros(3)
-    if place is not None and origin is not None:
-        position_m = enu_from_geodetic(place.geodetic, origin.geodetic)
-    is_near = np.linalg.norm(position_m) <= FARTHEST_M
-    return {**point, "position_m": position_m.tolist() if is_near else [0.0, 0.0, 0.0]}
+def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
+    """Returns a raw table with the metres that follow from what it states on the Earth."""
+    if not isinstance(raw, Mapping):
+        return raw
+    stated = {key: raw[key] for key in EARTHLY_KEYS if raw.get(key) is not None}
+    wanted = [key for key in map(metric_key, stated) if raw.get(key) is None]
+    if not wanted:
+        return raw
+    found = {} if origin is None else in_metres(kind._sound_part(stated), origin)
+    near = {
+        key: value.tolist()
+        for key, value in found.items()
+        if key == "altitude_m" or size_m(value) <= FARTHEST_M
+    }
+    return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 
-def _place(stated: object) -> Origin | None:
-    """Returns the place that a raw table states by latitude and longitude, or None."""
-    if isinstance(stated, Mapping):
-        stated = {key: stated.get(key) for key in GEODETIC_KEYS}
-    with suppress(ValidationError):
-        return Origin.model_validate(stated)
-    return None
+def metric_key(key: str) -> str:
+    """Returns the key in metres that follows from one of ``EARTHLY_KEYS``."""
+    return EARTHLY_CORNERS.get(key, "altitude_m" if key in EARTHLY_RANGES else "position_m")
 
 
-def origin_faults(
-    origin: Origin | None, points: Mapping[Place, GroundPoint], stated: Mapping[str, Any]
-) -> Iterator[tuple[Place, str]]:
-    """Yields what is wrong between the origin and the points of a scenario, each with its place.
+def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Floats]:
+    """Returns the metres that follow from what a table states on the Earth, by key.
 
     Args:
-        origin: the origin, if there is one.
-        points: the points by their place.
-        stated: the raw scenario, which says in which way each is stated.
+        table: a point, an airspace or a zone, in which None stands for what is not stated or at fault.
+        origin: where the metres count from.
+        swapped: whether latitudes and longitudes are to be exchanged.
     """
-    earthly = {place: point for place, point in points.items() if None not in _geodetic(point)}
-    if origin is None:
-        for place in [place for place, point in points.items() if _geodetic(point) != (None,) * 3][:1]:
-            yield (
-                ("origin",),
-                f"missing, but {path_of(place)} is stated by {_WORDS}; add a table headed [origin] with "
-                f"{_WORDS} of the place where position_m is to be [0, 0, 0]",
-            )
-    yield from _mixed(earthly, points, stated)
-    if not earthly or origin is None:
-        return
-    enu_m = enu_from_geodetic([_geodetic(point) for point in earthly.values()], origin.geodetic)
-    for (place, point), place_m in zip(earthly.items(), enu_m, strict=True):
-        if (away_m := np.linalg.norm(place_m)) > FARTHEST_M:
-            yield (
-                place,
-                f"{_WORDS} are {away_m / 1e3:.0f} km from the origin, must be within "
-                f"{FARTHEST_M / 1e3:.0f} km; are latitude and longitude exchanged, or a sign lost?",
-            )
-        elif (apart_m := np.linalg.norm(np.subtract(point.position_m or place_m, place_m))) > _SAME_M:
-            yield (
-                place,
-                f"position_m and {_WORDS} are {apart_m:.3g} m apart, must be one place; remove either",
-            )
+    *_, base_m = origin.geodetic
+    found: dict[str, Any] = {}
+
+    def enu_m(places: Any, height_m: float) -> Floats:
+        flat = np.asarray(places, dtype=np.float64)
+        flat = np.clip(flat[..., ::-1], [-90.0, -180.0], [90.0, 180.0]) if swapped else flat
+        heights_m = np.full((*flat.shape[:-1], 1), height_m)
+        return enu_from_geodetic(np.concatenate([flat, heights_m], axis=-1), origin.geodetic)
+
+    heights_m = [
+        value + (base_m - own_m)
+        for key in ALTITUDE_KEYS
+        if (value := getattr(table, key, None)) is not None
+        and (own_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
+    ]
+    place = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
+    if heights_m and None not in place:
+        found["position_m"] = enu_m(place, heights_m[0])
+    for key, metric in EARTHLY_CORNERS.items():
+        if (corners := getattr(table, key, None)) is not None:
+            found[metric] = enu_m(corners, base_m)[..., :2]
+    for key, own in EARTHLY_RANGES.items():
+        ends_m, own_m = getattr(table, key, None), getattr(origin, own)
+        if ends_m is not None and own_m is not None:
+            found["altitude_m"] = np.subtract(ends_m, own_m)
+    return found
 
 
-def _mixed(
-    earthly: Collection[Place], points: Mapping[Place, GroundPoint], stated: Mapping[str, Any]
-) -> Iterator[tuple[Place, str]]:
-    """Yields the first point that is stated in another way than the first of all.
-
-    A point that has both, as in files that are written from scenarios, goes with either.
-    """
-    ways: dict[str, Place] = {}
-    for place in points:
-        raw = stated[str(place[0])][place[1]]
-        in_metres = not isinstance(raw, Mapping) or raw.get("position_m") is not None
-        if in_metres != (place in earthly):
-            ways.setdefault("position_m" if in_metres else _WORDS, place)
-    if len(ways) == 2:
-        (first_way, first), (way, place) = ways.items()
-        yield place, f"stated by {way}, but {path_of(first)} by {first_way}; state all in one way"
-
-
-def is_placed(point: GroundPoint) -> bool:
-    """Returns whether a point of a scenario that may be at fault has a position, and no half of another."""
-    return point.position_m is not None and _geodetic(point).count(None) in (0, 3)
-
-
-def _geodetic(point: GroundPoint) -> tuple[Any, Any, Any]:
-    return (point.lat_deg, point.lon_deg, point.alt_m)
+def size_m(values: Floats) -> float:
+    """Returns the greatest length of some vectors, or of one [m]."""
+    return float(np.linalg.norm(np.atleast_2d(values), axis=-1).max())

@@ -14,11 +14,10 @@ from pydantic_core import to_jsonable_python
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import path_of, refusal
-from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin import EARTHLY_KEYS, POINT_LISTS, metric_key
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
-from nullpose.scenario.units import GEODETIC_KEYS
-from nullpose.scenario.wording import listed, nearest, plain
+from nullpose.scenario.wording import described, listed, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
@@ -56,8 +55,11 @@ def parse_override(text: str) -> Override:
     parts = _ASSIGNMENT.fullmatch(text)
     path, value = (part.strip() for part in parts.groups()) if parts else ("", "")
     if not path or not value:
+        blank = "" if text.strip() else f"got {described(text)}, "
         raise refusal(
-            text, "must be a path, an equals sign and a value, as in jammers.M.power_w=10", "override"
+            text.strip(),
+            f"{blank}must be a path, an equals sign and a value, as in jammers.M.power_w=10",
+            "override",
         )
     return Override(path, _value(path, value))
 
@@ -91,7 +93,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     except ScenarioError as error:
         faults += error.faults
     if faults:
-        raise ScenarioError(faults, f"override {listed([str(override) for override in given])}")
+        raise ScenarioError(faults, f"override {listed([str(one).strip() or '(blank)' for one in given])}")
     return changed
 
 
@@ -104,16 +106,18 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     steps: list[Any] = [
         int(index) if index else double or single or bare for double, single, bare, index in found
     ]
-    touched = (*POINT_LISTS, "origin") if steps[0] == "origin" else steps[:1]
+    touched = (*POINT_LISTS, "airspace", "origin") if steps[0] == "origin" else steps[:1]
     data |= {key: to_jsonable_python(data[key]) for key in touched if isinstance(data.get(key), _FROZEN)}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
-    if steps[0] == "origin":  # the points stay where they are on the Earth
-        for points in map(data.get, POINT_LISTS):
-            for point in points if isinstance(points, list) else ():
-                if isinstance(point, dict) and not point.keys().isdisjoint(GEODETIC_KEYS):
-                    point.pop("position_m", None)
+    if steps[0] == "origin":  # points and areas stay where they are on the Earth
+        airspace = data["airspace"]
+        points = (point for kind in POINT_LISTS for point in data.get(kind, ()))
+        for table in (*points, airspace, *airspace.get("no_fly", ())):
+            for key in EARTHLY_KEYS if isinstance(table, dict) else ():
+                if key in table:
+                    table.pop(metric_key(key), None)
 
 
 def _value(path: str, text: str) -> object:

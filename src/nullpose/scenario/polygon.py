@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.rules import ListOf
-from nullpose.scenario.units import PlanePoint
+from nullpose.scenario.units import LatLon, PlanePoint
 
 MOST_CORNERS = 5000
 """Vertices of a polygon, and of all that an airspace has: more take too long to check and to cut."""
@@ -136,3 +136,12 @@ Polygon = Annotated[
     _Outline(f"a list of at least three and at most {MOST_CORNERS} vertices [x, y] in m", 3, MOST_CORNERS),
 ]
 """The vertices [x, y] of a polygon in order, in m; the last is joined to the first."""
+EarthlyPolygon = Annotated[
+    tuple[LatLon, ...],
+    _Outline(
+        f"a list of at least three and at most {MOST_CORNERS} vertices [latitude, longitude] in degrees",
+        3,
+        MOST_CORNERS,
+    ),
+]
+"""The vertices [latitude, longitude] of a polygon in order, in degrees; the last is joined to the first."""

@@ -145,7 +145,11 @@ class ListOf(Rule):
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
         """Returns the JSON Schema of the list."""
         # One "items" for all members, not "prefixItems": editors that know only older drafts read it too.
-        items = inner["items"] if "items" in inner else inner["prefixItems"][0]
+        members = inner["prefixItems"] if "prefixItems" in inner else [inner["items"]]
+        items = dict(members[0])
+        for limit, widest in (("minimum", min), ("maximum", max)):
+            if limit in items:
+                items[limit] = widest(member[limit] for member in members)
         return {"type": "array", "items": items, "minItems": self.fewest, "maxItems": self.most}
 
 

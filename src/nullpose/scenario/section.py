@@ -158,6 +158,8 @@ class Section(BaseModel):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Returns a copy with some values replaced, validated like any other.
 
+        A new value in metres takes the place of what was stated on the Earth too.
+
         Args:
             update: new values by key.
             deep: without meaning here, since everything inside is frozen.
@@ -166,6 +168,9 @@ class Section(BaseModel):
             ScenarioError: when the copy would be faulty.
         """
         values = {key: getattr(self, key) for key in type(self).model_fields}
+        for ways in self.ways:
+            for key in ways.groups[0] if ways.most > 1 else ():
+                values |= dict.fromkeys(ways.others(key) if key in (update or {}) else ())
         return type(self)(**values | dict(update or {}))
 
     def __getstate__(self) -> dict[Any, Any]:

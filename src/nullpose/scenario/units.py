@@ -4,10 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from nullpose.scenario.faults import EXCHANGED
 from nullpose.scenario.rules import Ascending, Direction, ListOf, Quantity
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 """The keys that state a place on the Earth: all three, or none."""
+
+ALTITUDE_KEYS = ("alt_m", "alt_msl_m", "alt_agl_m")
+"""The keys that may state an altitude: over the ellipsoid, over the sea, above the ground at the origin."""
+
+EARTHLY_CORNERS = {
+    "geofence_lat_lon_deg": "geofence_m",
+    "polygon_lat_lon_deg": "polygon_m",
+    "centre_lat_lon_deg": "centre_m",
+}
+"""The keys that state outlines in degrees, and those in metres that follow from them."""
+
+EARTHLY_RANGES = {"altitude_msl_m": "alt_msl_m", "altitude_ellipsoid_m": "alt_m"}
+"""The keys that state a range of absolute altitudes, and the origin's altitude over the same."""
 
 SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
@@ -66,7 +80,13 @@ Coefficient = Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are l
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 Latitude = Annotated[
-    float, Quantity("a latitude in degrees", -90.0, 90.0, "north of the equator is positive")
+    float,
+    Quantity(
+        "a latitude in degrees",
+        -90.0,
+        90.0,
+        f"north of the equator is positive; {EXCHANGED}",
+    ),
 ]
 Longitude = Annotated[
     float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
@@ -74,6 +94,12 @@ Longitude = Annotated[
 Altitude = Annotated[
     float,
     Quantity("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
+]
+SeaAltitude = Annotated[
+    float, Quantity("an altitude in m over the sea", -1e4, 1e5, "not the height above the ground")
+]
+GroundHeight = Annotated[
+    float, Quantity("a height in m above the ground at the origin", -1e4, 1e5, "not over the sea")
 ]
 
 
@@ -87,6 +113,10 @@ Range = Annotated[
 ]
 PlanePoint = Annotated[
     tuple[Metres, Metres], ListOf("a list of two numbers [x, y]: metres east and north", 2, 2)
+]
+LatLon = Annotated[
+    tuple[Latitude, Longitude],
+    ListOf("a list of two numbers [latitude, longitude]: degrees north and east", 2, 2),
 ]
 AxisDirection = Annotated[
     tuple[Component, Component, Component],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from typing import Unpack
 
@@ -13,10 +12,12 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
+from nullpose.physics.pose import as_position
 from nullpose.scenario import Scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
-from nullpose.solve.options import SolveKeywords, SolveOptions
+from nullpose.solve.compiling import working_clock
+from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
@@ -48,9 +49,11 @@ def solve(
             ``certify`` and ``seed``.
 
     Raises:
+        TypeError: what was given is no scenario, but its path, say.
         UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
+    require_scenario(scenario)
     scheme = as_scheme(scheme)
     scheme.require_applicable(scenario)
     record = scheme.record
@@ -60,7 +63,7 @@ def solve(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
     asked = SolveOptions(**options, on_progress=on_progress).of(scenario)
-    began = time.perf_counter()
+    began = working_clock()
     outcome, fields = solve_scheme(scenario, record, asked, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
@@ -75,7 +78,7 @@ def solve(
         pose=pose,
         links=links,
         stats=Stats(
-            wall_s=time.perf_counter() - began,
+            wall_s=working_clock() - began,
             starts=outcome.incumbent.starts,
             evaluations=outcome.incumbent.evaluations,
             boxes=outcome.nodes,
@@ -105,9 +108,11 @@ def compare(
         options: as for :func:`solve`.
 
     Raises:
+        TypeError: what was given is no scenario, but its path, say.
         UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
+    require_scenario(scenario)
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
@@ -132,13 +137,12 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         position_m: (3,) metres, at least the keep-out radius from every ground point.
 
     Raises:
+        TypeError: what was given is no scenario, but its path, say.
         UsageError: the position is not three finite numbers, or is too close to a ground point.
     """
     from nullpose.solve.kernels.axis import best_axis as kernel
 
-    position = np.array(position_m, dtype=float)
-    if position.shape != (3,) or not np.all(np.isfinite(position)):
-        raise UsageError(f"position_m: given {position_m!r}; allowed: three finite numbers, metres")
+    position = as_position(position_m)
     family = build_family(scenario)
     nearest_m = float(np.min(np.linalg.norm(family.points_m - position, axis=1)))
     if nearest_m < family.keep_out_m:

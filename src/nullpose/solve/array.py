@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
@@ -25,7 +24,8 @@ from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
 from nullpose.solve.array_search import ArrayHunt
 from nullpose.solve.array_task import ArrayTask
-from nullpose.solve.options import SolveKeywords, SolveOptions
+from nullpose.solve.compiling import working_clock
+from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, Status, objective_of
 
@@ -113,10 +113,12 @@ def solve_array(
         options: as for :func:`nullpose.solve`; limits of time and boxes are not consulted.
 
     Raises:
+        TypeError: what was given is no scenario, but its path, say.
         UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.
     """
+    require_scenario(scenario)
     if combining not in COMBININGS:
         raise UsageError(f"combining: given {combining!r}; allowed: {', '.join(COMBININGS)}")
     array = _array(scenario, elements, layout, spacing_wavelengths)
@@ -126,7 +128,7 @@ def solve_array(
             "under which the drone receives; arrays are not there for others"
         )
     asked = SolveOptions(**options).of(scenario)
-    began = time.perf_counter()
+    began = working_clock()
     task = ArrayTask.of(scenario, array, shared=combining == "analogue")
     hunt, bound = _solved(task, asked)
     pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
@@ -147,7 +149,7 @@ def solve_array(
         pose=pose,
         links=links,
         stats=Stats(
-            wall_s=time.perf_counter() - began,
+            wall_s=working_clock() - began,
             starts=hunt.starts,
             evaluations=hunt.evaluations,
             boxes=0 if bound is None else bound.boxes,

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+PREPARING = "nullpose:prepare"
+"""The event that kernels are made ready, by compiling them or by waiting for another process to do so."""
 
 
 @contextmanager
@@ -28,3 +34,28 @@ def announce_compiling(announce: Callable[[], None]) -> Iterator[None]:
 
     with event.install_listener("numba:compile", FirstCompilation()):
         yield
+
+
+def working_clock() -> float:
+    """Return the seconds of a clock that stands still while kernels are compiled.
+
+    Only differences between two calls mean something.
+
+    Example:
+        >>> began = working_clock()
+        >>> working_clock() - began < 1.0
+        True
+    """
+    compiling = _compiling()
+    return time.perf_counter() - (float(compiling.duration) if compiling.done else 0.0)
+
+
+@cache
+def _compiling() -> Any:
+    """Return what adds up, from the first call on, the time in which kernels are compiled in this process."""
+    from numba.core import event
+
+    total = event.TimingListener()  # type: ignore[no-untyped-call]
+    for kind in ("numba:compile", PREPARING):
+        event.register(kind, total)  # type: ignore[no-untyped-call]
+    return total

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from nullpose.family import AxisField, Family
+from nullpose.solve.compiling import PREPARING
 
 _WAIT_S = 300.0  # the other process is ended then, and what it compiled is compiled again
 _ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
@@ -29,13 +30,16 @@ def precompile(dipoles: bool) -> None:
     Args:
         dipoles: whether for ratios of points with dipoles, whose kernels are others.
     """
+    from numba.core import event
+
     from nullpose.solve.kernels.branch import branch
 
     if _is_compiled(branch, dipoles):
         return
     with _ONE_AT_A_TIME:
         if not _is_compiled(branch, dipoles):
-            _compile_both(branch, dipoles)
+            with event.trigger_event(PREPARING):
+                _compile_both(branch, dipoles)
 
 
 def _compile_both(branch: Any, dipoles: bool) -> None:

@@ -55,7 +55,7 @@ class Stats:
     """What the solve cost.
 
     Args:
-        wall_s: wall-clock time, seconds.
+        wall_s: wall-clock time, seconds, without that in which kernels were compiled.
         starts: local searches run.
         evaluations: poses evaluated.
         boxes: boxes of positions examined by the proof; 0 without one.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 from contextlib import redirect_stdout
 from io import StringIO
 from typing import TYPE_CHECKING
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
 
-_INSTALL = 'the studio needs viser, which is not installed; run: pip install "nullpose[studio]"'
+_PIP = f"{sys.executable} -m pip install"
+_INSTALL = f"the studio needs viser, which is not installed; run: {_PIP} 'nullpose[studio]'"
 
 
 def require_viser() -> None:
@@ -50,7 +52,7 @@ def open_server(host: str, port: int) -> tuple[ViserServer, str]:
         server.stop()
         raise UsageError(
             f"viser {viser.__version__} opens its server in a way that nullpose cannot guard; any web page "
-            'could use the studio; run: pip install "viser>=1.1,<2"'
+            f"could use the studio; run: {_PIP} 'viser>=1.1,<2'"
         )
     if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
         server.stop()

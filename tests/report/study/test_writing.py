@@ -222,5 +222,7 @@ def test_faults(make: Make, ladder: Ladder, tmp_path: Path, monkeypatch: pytest.
         report_study(folder)
     assert not list((folder / "report").glob("*.csv"))
     monkeypatch.setattr(extra, "find_spec", lambda name: None if name == "pyarrow" else sys)
-    with pytest.raises(UsageError, match=r"^a study needs pyarrow, not installed here; try: pip install"):
+    with pytest.raises(
+        UsageError, match=r"^a study needs pyarrow, not installed here; run: .*python.* -m pip install"
+    ):
         report_study(folder)

@@ -11,6 +11,7 @@ from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
 from nullpose.physics.polarisation import worst_polarised
+from nullpose.physics.pose import as_position
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.inner import Inner, RatioGuarantee
 
@@ -100,9 +101,7 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
     Raises:
         UsageError: a pose or an accuracy that is none.
     """
-    p, u = np.array(position_m, dtype=float), np.array(axis, dtype=float)
-    if p.shape != (3,) or not np.all(np.isfinite(p)):
-        raise UsageError(f"position_m: given {position_m!r}; allowed: three finite numbers, metres")
+    p, u = as_position(position_m), np.array(axis, dtype=float)
     if u.shape != (3,) or not np.all(np.isfinite(u)) or not np.any(u):
         raise UsageError(f"axis: given {axis!r}; allowed: three finite numbers, not all zero")
     if not _FINEST <= accuracy <= 0.5:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose
+from nullpose.physics import Pose, pose_frames
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.guarantee import Guarantee
@@ -59,6 +59,7 @@ class GuardedPose:
         """Return the pose and its values as plain data for JSON."""
         return {
             **self.pose.to_dict(),
+            "frames": pose_frames(self.scenario, self.pose).to_dict(),
             "nominal": self.nominal,
             "guaranteed": self.guaranteed,
             "worst_found": self.worst,

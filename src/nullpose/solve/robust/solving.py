@@ -12,7 +12,8 @@ from nullpose.physics import Pose, evaluate
 from nullpose.physics.polarisation import worst_polarised
 from nullpose.scenario import Scenario
 from nullpose.solve.api import solve
-from nullpose.solve.options import SolveKeywords, SolveOptions
+from nullpose.solve.compiling import working_clock
+from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
 from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
@@ -50,13 +51,15 @@ def solve_robust(
         options: as for :func:`nullpose.solve`; the gap is ``ROBUST_GAP`` unless another is asked for.
 
     Raises:
+        TypeError: what was given is no scenario, but its path, say.
         UsageError: an array in place of the dipole, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
+    require_scenario(scenario)
     limits = SolveOptions(**options, on_progress=on_progress).of(scenario, ROBUST_GAP)
     stated, scenario = scenario, worst_polarised(require_dipole(scenario))
     inner = Inner(scenario)
-    began = time.perf_counter()
+    began = working_clock()
     nominal = solve(scenario, certify=False, seed=limits.seed).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
@@ -84,7 +87,7 @@ def solve_robust(
         links=evaluate(stated, robust.pose),
         reason=reason,
         stats=Stats(
-            wall_s=time.perf_counter() - began,
+            wall_s=working_clock() - began,
             starts=exchange.starts,
             evaluations=exchange.evaluations,
             boxes=exchange.boxes,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.util import find_spec
 
 from nullpose.errors import UsageError
@@ -18,5 +19,6 @@ def require_extra() -> None:
     missing = [name for name in _PACKAGES if find_spec(name) is None]
     if missing:
         raise UsageError(
-            f"a study needs {', '.join(missing)}, not installed here; try: pip install 'nullpose[study]'"
+            f"a study needs {', '.join(missing)}, not installed here; run: {sys.executable} -m pip install "
+            "'nullpose[study]'"
         )

@@ -1,0 +1,184 @@
+"""Ten traps of a first hour: each ends with a message that says what is wrong and what to do about it."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nullpose
+from nullpose.errors import UsageError
+
+Run = Callable[..., Result]
+
+HEAD = """\
+[origin]
+lat_deg = 50.0
+lon_deg = 14.5
+{origin}
+[airspace]
+altitude_m = [20.0, 80.0]
+{fence}
+[receiver]
+noise_dbm = -95.0
+frequency_hz = 2.4e9
+"""
+NODE = """
+[[nodes]]
+lat_deg = {lat}
+lon_deg = {lon}
+{altitude}
+power_dbm = 20.0
+"""
+NODES = [(50.0, 14.5), (50.001, 14.502), (50.0018, 14.5008)]
+
+
+def scene(
+    folder: Path,
+    *,
+    origin: str = "alt_m = 230.0",
+    fence: str = "",
+    altitude: str = "alt_m = 231.0",
+    swap: bool = False,
+) -> Path:
+    """Return the path of a scene of three nodes on the Earth."""
+    places = [place[::-1] if swap else place for place in NODES]
+    nodes = "".join(NODE.format(lat=lat, lon=lon, altitude=altitude) for lat, lon in places)
+    path = folder / "mine.toml"
+    path.write_text(HEAD.format(origin=origin, fence=fence) + nodes, encoding="utf-8")
+    return path
+
+
+def refused(result: Result, *words: str) -> str:
+    """Return the message of a refusal, which has the words, exit code 2 and nothing on standard output."""
+    assert (result.exit_code, result.stdout) == (2, "")
+    for word in words:
+        assert word in result.stderr
+    return result.stderr
+
+
+def test_a_sound_scene_has_no_fault(run: Run, tmp_path: Path) -> None:
+    """The scene that the traps are set in is sound and earns no warning."""
+    result = run("check", scene(tmp_path))
+    assert (result.exit_code, result.stderr) == (0, "")
+
+
+def test_a_fence_in_degrees(run: Run, tmp_path: Path) -> None:
+    """Degrees where metres are asked for give a fence of millimetres: one fault, with the key for degrees."""
+    fence = "geofence_m = [[14.499, 49.999], [14.504, 49.999], [14.504, 50.003], [14.499, 50.003]]"
+    told = refused(
+        run("check", scene(tmp_path, fence=fence)),
+        "1 fault",
+        "airspace.geofence_m: it is 0.005 m by 0.004 m, but the ground points are",
+        "this looks like degrees; write geofence_lat_lon_deg = [[latitude, longitude], ...]",
+    )
+    assert len(told.splitlines()) == 2
+
+
+def test_heights_over_the_ellipsoid_and_over_the_sea(run: Run, tmp_path: Path) -> None:
+    """An altitude over what the origin does not tell is refused once; told as the same it earns a warning."""
+    path = scene(tmp_path, origin="alt_msl_m = 185.0")
+    told = refused(
+        run("check", path),
+        "nodes[0].alt_m: an altitude over the ellipsoid, but [origin] states only alt_msl_m, over the sea "
+        "(and so in 2 more)",
+        "add alt_m to [origin]",
+    )
+    assert len(told.splitlines()) == 2
+    result = run("check", scene(tmp_path, origin="alt_m = 185.0"))
+    assert result.exit_code == 0
+    assert "warning: nodes[0]: this and all other points lie 46 m or more above the origin" in result.stderr
+    assert "alt_msl_m for altitudes over the sea, alt_agl_m for those above the ground" in result.stderr
+
+
+def test_latitude_and_longitude_exchanged(run: Run, tmp_path: Path) -> None:
+    """Exchanged in every point, it is said once."""
+    told = refused(
+        run("check", scene(tmp_path, swap=True)),
+        "1 fault",
+        "nodes[0]: lat_deg and lon_deg are",
+        "km from the origin, must be within 100 km (and so in 2 more); are latitude and longitude exchanged? "
+        "The other way round it is 0.21 km",
+    )
+    assert len(told.splitlines()) == 2
+
+
+@pytest.mark.parametrize("verb", ["solve", "compare", "solve_robust", "solve_array"])
+def test_a_path_given_to_a_function(paper: str, verb: str) -> None:
+    """A function that takes a scenario says how to read one from a path."""
+    with pytest.raises(
+        TypeError, match=r"must be a nullpose\.Scenario; .*nullpose\.solve\(nullpose\.load\('"
+    ):
+        getattr(nullpose, verb)(paper)
+
+
+def test_a_misspelt_scheme(run: Run, paper: str) -> None:
+    """The schemes are listed, and the one that is meant is named; on the command line and in Python."""
+    told = refused(run("solve", paper, "--scheme", "zero-interferance"), "did you mean 'zero-interference'?")
+    assert "Value error" not in told
+    with pytest.raises(UsageError, match=r"given 'optimun'; allowed: optimum, .*; did you mean 'optimum'\?"):
+        nullpose.solve(nullpose.load(paper), "optimun")
+
+
+def test_a_scenario_given_to_verify(run: Run, paper: str) -> None:
+    """It is told what it is, and how to get a certificate."""
+    refused(run("verify", paper), "is a scenario, not a certificate; nullpose solve with --certificate FILE")
+
+
+@pytest.mark.parametrize("given", ["jammers.M.power_w", "", "  ", "jammers.M.power_w="])
+def test_an_override_without_a_value(run: Run, paper: str, given: str) -> None:
+    """What is given is named, blank or not, with an example."""
+    told = refused(
+        run("check", paper, "--set", given),
+        f"override {given.strip() or '(blank)'}: 1 fault",
+        "must be a path, an equals sign and a value, as in jammers.M.power_w=10",
+    )
+    assert "override :" not in told
+
+
+def test_dbm_given_as_watts(run: Run, paper: str, tmp_path: Path) -> None:
+    """33 W among powers in dBm earns a warning that names power_dbm; 33 W among watts earns none."""
+    mixed = scene(tmp_path)
+    mixed.write_text(
+        mixed.read_text(encoding="utf-8").replace("power_dbm = 20.0", "power_w = 33", 1), encoding="utf-8"
+    )
+    result = run("check", mixed)
+    assert result.exit_code == 0
+    assert (
+        "warning: nodes[0].power_w: 33 W is 45.2 dBm, and others are stated in dBm; if 33 dBm (2 W) is "
+        "meant, write power_dbm = 33" in result.stderr
+    )
+    assert run("check", paper, "--set", "jammers.M.power_w=33").stderr == ""
+
+
+def test_a_study_without_its_extra(
+    run: Run, paper: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The message has the command that installs it for the interpreter that runs."""
+    monkeypatch.setattr("nullpose.study.monte_carlo.extra.find_spec", lambda name: None)
+    refused(
+        run("study", "run", paper, "--out", tmp_path / "out"),
+        "a study needs pyarrow",
+        f"{sys.executable} -m pip install 'nullpose[study]'",
+    )
+
+
+def test_positions_where_one_is_asked_for(paper: str) -> None:
+    """Four positions in place of one are told by their shape, whichever function takes them."""
+    four_m = np.tile([0.0, 25.0, 8.0], (4, 1))
+    words = r"position_m: given an array of shape \(4, 3\); .*shape \(3,\)"
+    with pytest.raises(UsageError, match=words):
+        nullpose.Pose(four_m, 0.0, 0.0)
+    with pytest.raises(UsageError, match=words):
+        nullpose.guarantee(nullpose.load(paper), four_m, [0.0, 0.0, 1.0])
+
+
+def test_the_program_runs_as_a_module() -> None:
+    """``python -m nullpose`` is the command."""
+    done = subprocess.run(
+        [sys.executable, "-m", "nullpose", "cite"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith("@inproceedings{")

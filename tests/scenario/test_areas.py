@@ -1,0 +1,266 @@
+"""Fences and no-fly zones on the Earth: inline, from GeoJSON and from KML, all of them the same metres."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides, load
+from nullpose.scenario.geodesy import enu_from_geodetic
+
+ORIGIN = [50.0, 14.5, 230.0]
+FENCE = [[49.999, 14.498], [49.999, 14.506], [50.003, 14.506], [50.003, 14.498]]
+ZONE = [[50.0005, 14.502], [50.0005, 14.503], [50.001, 14.5025]]
+MAST = [50.0015, 14.501]
+HEAD = """\
+{top}
+[origin]
+lat_deg = 50.0
+lon_deg = 14.5
+alt_m = 230.0
+{origin}
+[receiver]
+noise_w = 1e-3
+reference_gain_db = 0.0
+[airspace]
+{airspace}
+"""
+NODES = """
+[[nodes]]
+lat_deg = 50.0
+lon_deg = 14.5
+alt_agl_m = 1.5
+power_w = 1.0
+[[nodes]]
+lat_deg = 50.002
+lon_deg = 14.504
+alt_agl_m = 2.0
+power_w = 1.0
+"""
+
+
+def scene(
+    folder: Path, airspace: str, origin: str = "", zones: str = "", top: str = "", nodes: str = NODES
+) -> Path:
+    """Return the path of a scenario file."""
+    path = folder / "scene.toml"
+    text = HEAD.format(airspace=airspace, origin=origin, top=top) + zones + nodes
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def faults_of(path: Path) -> list[Fault]:
+    """Return the faults of a file."""
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    return list(caught.value.faults)
+
+
+def metres(corners: list[list[float]]) -> np.ndarray:
+    """Return corners in degrees as east and north of the origin."""
+    return enu_from_geodetic([[*corner, 230.0] for corner in corners], ORIGIN)[:, :2]
+
+
+def polygon(corners: list[list[float]], **properties: Any) -> dict[str, Any]:
+    """Return a GeoJSON feature, whose ring is closed and has longitudes first."""
+    ring = [corner[::-1] for corner in [*corners, corners[0]]]
+    return {
+        "type": "Feature",
+        "properties": properties,
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+
+
+def geojson(*features: dict[str, Any]) -> str:
+    """Return a GeoJSON text."""
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def kml(*placemarks: str) -> str:
+    """Return a KML text."""
+    return f'<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document><Folder>{"".join(placemarks)}</Folder></Document></kml>'
+
+
+def kml_polygon(corners: list[list[float]], more: str = "") -> str:
+    """Return a placemark with a polygon."""
+    ring = " ".join(f"{lon},{lat},0" for lat, lon in [*corners, corners[0]])
+    inner = f"<outerBoundaryIs><LinearRing><coordinates>{ring}</coordinates></LinearRing></outerBoundaryIs>"
+    return f"<Placemark><name>wood</name>{more}<Polygon>{inner}</Polygon></Placemark>"
+
+
+def kml_point(place: str, more: str = "") -> str:
+    """Return a placemark with a point and a power."""
+    data = '<ExtendedData><Data name="power_dbm"><value>20</value></Data></ExtendedData>'
+    inner = f"<Point>{more}<coordinates>{place}</coordinates></Point>"
+    return f"<Placemark><name>gauge</name>{data}{inner}</Placemark>"
+
+
+def test_inline_fences_and_zones(tmp_path: Path) -> None:
+    """Corners in degrees are the metres that their places are from the origin, and stay stated in degrees."""
+    zones = f"[[airspace.no_fly]]\npolygon_lat_lon_deg = {ZONE}\naltitude_ellipsoid_m = [230.0, 260.0]\n"
+    zones += f"[[airspace.no_fly]]\ncentre_lat_lon_deg = {MAST}\nradius_m = 20.0\n"
+    airspace = f"altitude_ellipsoid_m = [250.0, 310.0]\ngeofence_lat_lon_deg = {FENCE}"
+    scenario = load(scene(tmp_path, airspace, zones=zones))
+    np.testing.assert_allclose(scenario.airspace.geofence_m, metres(FENCE), rtol=0, atol=1e-9)
+    assert scenario.airspace.altitude_m == (20.0, 80.0)
+    wood, mast = scenario.airspace.no_fly
+    np.testing.assert_allclose(wood.polygon_m, metres(ZONE), rtol=0, atol=1e-9)
+    np.testing.assert_allclose([mast.centre_m], metres([MAST]), rtol=0, atol=1e-9)
+    assert (wood.altitude_m, mast.altitude_m, mast.shape) == ((0.0, 30.0), None, "cylinder")
+    assert scenario.nodes[0].position_m == pytest.approx((0.0, 0.0, 1.5), abs=1e-6)
+    assert Scenario.from_dict(json.loads(json.dumps(scenario.to_dict()))) == scenario
+
+
+def test_files_give_the_same_scene(tmp_path: Path) -> None:
+    """Inline, GeoJSON and KML state one scene."""
+    zones = f'[[airspace.no_fly]]\nname = "wood"\npolygon_lat_lon_deg = {ZONE}\n'
+    inline = load(scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_lat_lon_deg = {FENCE}", zones=zones))
+    (tmp_path / "fence.geojson").write_text(geojson(polygon(FENCE, stroke="#ff0000")), encoding="utf-8")
+    (tmp_path / "fence.kml").write_text(kml(kml_polygon(FENCE)), encoding="utf-8")
+    (tmp_path / "zones.geojson").write_text(geojson(polygon(ZONE, name="wood")), encoding="utf-8")
+    (tmp_path / "zones.kml").write_text(kml(kml_polygon(ZONE)), encoding="utf-8")
+    for ending in ("geojson", "kml"):
+        airspace = f'altitude_m = [20, 80]\ngeofence_from = "fence.{ending}"\nno_fly_from = "zones.{ending}"'
+        assert load(scene(tmp_path, airspace)) == inline
+
+
+def test_zones_of_a_file_are_added(tmp_path: Path) -> None:
+    """They come after those of the scenario file; a point with a radius is a cylinder."""
+    mast = {"type": "Point", "coordinates": MAST[::-1]}
+    feature = {"type": "Feature", "properties": {"radius_m": 20.0, "altitude_m": [0, 30]}, "geometry": mast}
+    (tmp_path / "zones.geojson").write_text(geojson(feature), encoding="utf-8")
+    zones = "[[airspace.no_fly]]\nx_m = [0.0, 9.0]\ny_m = [0.0, 9.0]\n"
+    scenario = load(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "zones.geojson"', zones=zones))
+    assert [zone.shape for zone in scenario.airspace.no_fly] == ["box", "cylinder"]
+    assert scenario.airspace.no_fly[1].altitude_m == (0.0, 30.0)
+
+
+@pytest.mark.parametrize(
+    ("mode", "key", "value"),
+    [("absolute", "alt_msl_m", 187.0), ("relativeToGround", "alt_agl_m", 2.0)],
+)
+def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> None:
+    """KML states what its altitudes are over: the sea or the ground."""
+    point = kml_point(f"14.5012,50.0006,{value}", f"<altitudeMode>{mode}</altitudeMode>")
+    (tmp_path / "nodes.kml").write_text(kml(point), encoding="utf-8")
+    path = scene(
+        tmp_path, "altitude_m = [20, 80]", "alt_msl_m = 185.0", top='nodes_from = "nodes.kml"', nodes=""
+    )
+    (node,) = load(path).nodes
+    assert (node.name, node.power_dbm, getattr(node, key)) == ("gauge", 20.0, value)
+    expected = enu_from_geodetic([50.0006, 14.5012, 232.0], ORIGIN)
+    np.testing.assert_allclose(node.position_m, expected, rtol=0, atol=1e-9)
+
+
+def test_an_altitude_is_never_guessed(tmp_path: Path) -> None:
+    """A KML point that is clamped to the ground states no altitude, and is refused with what would do."""
+    (tmp_path / "nodes.kml").write_text(kml(kml_point("14.5012,50.0006,0")), encoding="utf-8")
+    path = scene(tmp_path, "altitude_m = [20, 80]", top='nodes_from = "nodes.kml"', nodes="")
+    (fault,) = faults_of(path)
+    assert fault.path == "nodes.kml: features[0].geometry.coordinates"
+    assert "alt_m, alt_msl_m (sea) or alt_agl_m (above the ground)" in fault.message
+
+
+def test_the_sea_is_below_the_ellipsoid_by_what_the_origin_says(tmp_path: Path) -> None:
+    """Altitudes over the sea and over the ellipsoid go together where the origin states both."""
+    nodes = NODES.replace("alt_agl_m = 1.5", "alt_msl_m = 186.5").replace("alt_agl_m = 2.0", "alt_m = 232.0")
+    scenario = load(scene(tmp_path, "altitude_msl_m = [205, 265]", "alt_msl_m = 185.0", nodes=nodes))
+    assert scenario.airspace.altitude_m == (20.0, 80.0)
+    assert scenario.node_positions_m[:, 2] == pytest.approx([1.5, 2.0], abs=0.02)  # the Earth is round
+    place = scenario.origin.place([0.0, 0.0, 20.0])
+    assert (place["alt_m"], place["alt_msl_m"]) == pytest.approx((250.0, 205.0))
+
+
+def test_what_is_drawn_moves_with_the_earth(tmp_path: Path) -> None:
+    """When the origin moves, a fence in degrees stays where it is on the Earth, as points do."""
+    scenario = load(scene(tmp_path, f"altitude_ellipsoid_m = [250, 310]\ngeofence_lat_lon_deg = {FENCE}"))
+    moved = apply_overrides(scenario, ["origin.lat_deg=50.001", "origin.alt_m=240"])
+    expected = enu_from_geodetic([[*corner, 240.0] for corner in FENCE], [50.001, 14.5, 240.0])[:, :2]
+    np.testing.assert_allclose(moved.airspace.geofence_m, expected, rtol=0, atol=1e-9)
+    assert moved.airspace.altitude_m == (10.0, 70.0)
+
+
+def test_metres_take_the_place_of_degrees(tmp_path: Path) -> None:
+    """A fence or an altitude that is set in metres drops what was stated on the Earth."""
+    scenario = load(scene(tmp_path, f"altitude_ellipsoid_m = [250, 310]\ngeofence_lat_lon_deg = {FENCE}"))
+    fence = "[[-50, -50], [400, -50], [400, 300]]"
+    changed = apply_overrides(scenario, [f"airspace.geofence_m={fence}", "airspace.altitude_m=[30, 40]"])
+    assert changed.airspace.geofence_lat_lon_deg is None
+    assert changed.airspace.altitude_ellipsoid_m is None
+    copied = scenario.airspace.model_copy(update={"geofence_m": ((0, 0), (9, 0), (9, 9))})
+    assert copied.geofence_lat_lon_deg is None
+
+
+@pytest.mark.parametrize(
+    ("content", "path", "words"),
+    [
+        ("{}", "type", 'must be "FeatureCollection"'),
+        (geojson(), "features", "must be a list of one feature or more"),
+        (geojson(polygon(FENCE), polygon(ZONE)), "", "must be one Polygon, the fence"),
+        (geojson({"type": "Feature", "geometry": None}), "features[0].geometry", 'of type "Polygon"'),
+        (geojson(polygon([c[::-1] for c in FENCE])), "coordinates", "are latitude and longitude exchanged?"),
+        (geojson(polygon([[lat, 191.0] for lat, _ in FENCE])), "coordinates[0][1]", "must be a longitude"),
+        (geojson(polygon([FENCE[0], FENCE[2], FENCE[1], FENCE[3]])), "coordinates", "crosses or touches"),
+    ],
+)
+def test_faults_of_a_fence_name_its_file(content: str, path: str, words: str, tmp_path: Path) -> None:
+    """What is wrong with a file of areas is told at its place in it, or at the fence as a whole."""
+    (tmp_path / "fence.geojson").write_text(content, encoding="utf-8")
+    faults = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.geojson"'))
+    assert any(words in fault.message for fault in faults)
+    assert path in faults[0].path
+    assert all(fault.path.startswith("airspace.geofence_from: fence.geojson") for fault in faults)
+
+
+def test_latitudes_beyond_90_are_told_once(tmp_path: Path) -> None:
+    """Where longitudes exceed 90 degrees an exchange shows at once, and is told once for all corners."""
+    corners = [[121.0, 25.0], [121.1, 25.0], [121.1, 25.1]]
+    (fault,) = faults_of(scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_lat_lon_deg = {corners}"))
+    assert "got 121.0, must be a latitude" in fault.message
+    assert fault.message.endswith("are latitude and longitude exchanged?) (and so in 2 more)")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["<kml", "<!DOCTYPE kml [<!ENTITY a 'b'>]><kml>&a;</kml>", "\ud800".encode("utf-8", "ignore").decode()],
+)
+def test_what_is_no_kml(text: str, tmp_path: Path) -> None:
+    """Broken XML, and XML that declares entities, is refused."""
+    (tmp_path / "fence.kml").write_text(text, encoding="utf-8")
+    (fault,) = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.kml"'))
+    assert fault.path.startswith("airspace.geofence_from: fence.kml")
+
+
+def test_a_file_outside_the_folder_is_refused(tmp_path: Path) -> None:
+    """As files of nodes are."""
+    (fault,) = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "../zones.kml"'))
+    assert fault.path == "airspace.no_fly_from: ../zones.kml"
+    assert "outside the folder" in fault.message
+
+
+def test_degrees_need_an_origin() -> None:
+    """Without a scenario, or without its origin, degrees and absolute altitudes are refused, not left out."""
+    with pytest.raises(ScenarioError, match=r"geofence_lat_lon_deg: needs the \[origin\] of a scenario"):
+        Airspace(altitude_m=(8, 30), geofence_lat_lon_deg=FENCE)
+    with pytest.raises(ScenarioError, match=r"centre_lat_lon_deg: needs the \[origin\]"):
+        NoFlyZone(centre_lat_lon_deg=MAST, radius_m=5.0)
+    data = {
+        "airspace": {"altitude_msl_m": [200, 300]},
+        "receiver": {"noise_w": 1.0, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}],
+    }
+    with pytest.raises(ScenarioError, match=r"origin: missing, but airspace is stated by altitude_msl_m"):
+        Scenario.from_dict(data)
+
+
+def test_disagreeing_metres_are_refused(tmp_path: Path) -> None:
+    """Degrees and metres of one fence may both be given if they agree."""
+    square = [[0, 0], [100, 0], [100, 100], [0, 100]]
+    (fault,) = faults_of(
+        scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_m = {square}\ngeofence_lat_lon_deg = {FENCE}")
+    )
+    assert fault.path == "airspace"
+    assert "geofence_m and geofence_lat_lon_deg are" in fault.message
