@@ -25,7 +25,16 @@ if TYPE_CHECKING:
         SolveError,
         UsageError,
     )
-    from nullpose.physics import Link, Pose, evaluate, min_margin, min_secrecy_rate, min_sinr, pose_frames
+    from nullpose.physics import (
+        Link,
+        Pose,
+        Poses,
+        evaluate,
+        min_margin,
+        min_secrecy_rate,
+        min_sinr,
+        pose_frames,
+    )
     from nullpose.scenario import (
         Airframe,
         Airspace,
@@ -75,6 +84,7 @@ __all__ = [
     "Origin",
     "OutputError",
     "Pose",
+    "Poses",
     "Receiver",
     "RobustSolution",
     "Scenario",
@@ -117,6 +127,7 @@ _ROOMS = {
     "nullpose.physics": (
         "Link",
         "Pose",
+        "Poses",
         "evaluate",
         "min_margin",
         "min_secrecy_rate",
