@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         ScenarioError,
         SolveError,
         UsageError,
+        WrongTypeError,
     )
     from nullpose.physics import (
         Link,
@@ -96,6 +97,7 @@ __all__ = [
     "SweepTable",
     "Transmitter",
     "UsageError",
+    "WrongTypeError",
     "__version__",
     "apply_overrides",
     "compare",
@@ -123,6 +125,7 @@ _ROOMS = {
         "ScenarioError",
         "SolveError",
         "UsageError",
+        "WrongTypeError",
     ),
     "nullpose.physics": (
         "Link",

@@ -16,7 +16,7 @@ from nullpose.physics.poses import Poses
 from nullpose.physics.secrecy import node_snr, secrecy_rate
 from nullpose.physics.sinr import sinr
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, require_scenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +66,7 @@ def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
         pose: where the drone is and how it is turned; or many such.
     """
+    require_scenario(scenario)
     if isinstance(pose, Poses):
         blocks = [_columns(scenario, *_ratios(scenario, some)) for some in pose.blocks()]
         return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
@@ -167,6 +168,7 @@ def _least(
     quantity: Callable[[Scenario, FloatArray, FloatArray], FloatArray], scenario: Scenario, pose: Pose | Poses
 ) -> float | FloatArray:
     """Return the smallest of a quantity over the nodes, at a pose or at each of many."""
+    require_scenario(scenario)
     if isinstance(pose, Pose):
         return float(np.min(quantity(scenario, pose.position_m, pose.orientation(scenario.antenna_record))))
     antenna = scenario.antenna_record

@@ -11,7 +11,7 @@ from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.receiver import Receiver
-from nullpose.scenario.scenario import Scenario
+from nullpose.scenario.scenario import Scenario, require_scenario
 from nullpose.scenario.transmitter import Transmitter
 
 __all__ = [
@@ -33,4 +33,5 @@ __all__ = [
     "json_schema",
     "load",
     "parse_override",
+    "require_scenario",
 ]

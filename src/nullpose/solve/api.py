@@ -13,7 +13,7 @@ from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, require_scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.options import SolveKeywords, SolveOptions
@@ -48,9 +48,11 @@ def solve(
             ``certify`` and ``seed``.
 
     Raises:
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
+    require_scenario(scenario)
     scheme = as_scheme(scheme)
     scheme.require_applicable(scenario)
     if null_jammer is not None and not scheme.record.nulls_a_jammer:
@@ -108,6 +110,7 @@ def compare(
         UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
+    require_scenario(scenario)
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
