@@ -71,7 +71,7 @@ def test_a_path_is_no_scenario(verb: object) -> None:
     with pytest.raises(TypeError, match=r"Scenario.from_file\('examples/paper\.toml'\)") as caught:
         verb("examples/paper.toml")  # type: ignore[operator]
     assert isinstance(caught.value, NullposeError)
-    with pytest.raises(TypeError, match="got a table; must be a Scenario; try Scenario.from_dict"):
+    with pytest.raises(TypeError, match=r"got a table; must be a Scenario; try Scenario\.from_dict"):
         verb({})  # type: ignore[operator]
 
 

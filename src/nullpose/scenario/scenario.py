@@ -147,8 +147,9 @@ class Scenario(Section):
         reference_gain_db: float = 0.0,
         **more: object,
     ) -> Scenario:
-        """Returns the scenario of nodes and jammers that are given as arrays; the paper's, for instance:
+        """Returns the scenario of nodes and jammers that are given as arrays.
 
+        The paper's:
         ``Scenario.from_arrays([[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30))``
 
         Args:

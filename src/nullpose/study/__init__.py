@@ -11,6 +11,7 @@ from nullpose.study.antenna_comparison import AntennaComparison, compare_antenna
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
 from nullpose.study.table import SweepRow, SweepTable
+from nullpose.study.value_map import Field, value_map
 
 __all__ = [
     "AIRFRAME_CASES",
@@ -18,6 +19,7 @@ __all__ = [
     "AirframeComparison",
     "AirframeResult",
     "AntennaComparison",
+    "Field",
     "Guaranteed",
     "SweepPlan",
     "SweepRow",
@@ -28,4 +30,5 @@ __all__ = [
     "plan_sweep",
     "spaced",
     "sweep",
+    "value_map",
 ]
