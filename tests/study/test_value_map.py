@@ -48,7 +48,9 @@ def test_the_table_has_a_line_for_each_point(paper: Scenario, tmp_path: Path) ->
     """With metres and decibels in the names of its columns; a place that is not allowed has an empty cell."""
     zone = "airspace.no_fly=[{centre_m = [10, 40], radius_m = 8}]"
     field = value_map(solve(apply_overrides(paper, [zone])), cells=12)
-    rows = list(csv.DictReader(field.write_csv(tmp_path / "map.csv").open(encoding="utf-8")))
+    rows = list(
+        csv.DictReader(field.write_csv(tmp_path / "map.csv").read_text(encoding="utf-8").splitlines())
+    )
     assert list(rows[0]) == ["x_m", "y_m", "z_m", "min_sinr_db"]
     assert len(rows) == field.values.size
     numbers = [math.nan if row["min_sinr_db"] == "" else float(row["min_sinr_db"]) for row in rows]

@@ -77,6 +77,9 @@ class Poses:
     def __len__(self) -> int:
         return len(self.position_m)
 
+    def __iter__(self) -> Iterator[Pose]:
+        return (self[index] for index in range(len(self)))
+
     def __getitem__(self, index: int) -> Pose:
         angles = (self.roll_rad, self.pitch_rad, np.asarray(self.yaw_rad))
         roll, pitch, yaw = (float(angle[index]) for angle in angles)

@@ -24,6 +24,7 @@ class Status(StrEnum):
     CERTIFIED = "certified"
     GAP_NOT_REACHED = "gap-not-reached"
     BEST_FOUND = "best-found"
+    GIVEN = "given"
 
     @property
     def message(self) -> str:
@@ -47,6 +48,7 @@ _MESSAGES = {
     Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",
     Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
     Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
+    Status.GIVEN: "the pose was given, not searched for",
 }
 
 

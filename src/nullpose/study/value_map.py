@@ -140,14 +140,8 @@ def value_map(
         ``value_map(nullpose.solve(scenario)).best`` is the value and the position of the best pose.
     """
     scenario, place_m = result.scenario, result.pose.position_m
-    low, high = scenario.airspace.altitude_m
+    require_map(scenario, altitude_m, cells)
     up = float(place_m[2]) if altitude_m is None else altitude_m
-    if altitude_m is not None and not low <= up <= high:
-        raise UsageError(f"altitude: given {up:g} m; allowed here: {low:g} to {high:g} m, as the airspace is")
-    if not 2 <= cells <= _MOST_CELLS:
-        raise UsageError(f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side")
-    if scenario.array is not None:
-        raise UsageError("map: given the result of an array; allowed: of one dipole or another antenna")
     east, north = map_grid_m(scenario, place_m, cells)
     grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), up), -1)
     nearest_m = np.linalg.norm(grid[..., None, :] - _points_m(scenario), axis=-1).min(axis=-1)
@@ -165,6 +159,28 @@ def value_map(
         title=f"{'value in this attitude' if is_pattern else 'best value'} at each place, {up:.1f} m up",
         name=f"{quantity.name}_{'bps_hz' if quantity.is_rate else 'db'}",
     )
+
+
+def require_map(scenario: Scenario, altitude_m: float | None, cells: int) -> None:
+    """Raise a UsageError if a scenario has no such map.
+
+    Args:
+        scenario: any.
+        altitude_m: of the plane, metres, or None.
+        cells: points along the longer side.
+
+    Raises:
+        UsageError: the altitude is outside the airspace, there are too few or too many cells, or the drone
+            has an array.
+    """
+    low, high = scenario.airspace.altitude_m
+    if altitude_m is not None and not low <= altitude_m <= high:
+        told = f"given {altitude_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m"
+        raise UsageError(f"altitude: {told}")
+    if not 2 <= cells <= _MOST_CELLS:
+        raise UsageError(f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side")
+    if scenario.array is not None:
+        raise UsageError("map: given a scenario with an [array]; allowed: one antenna; remove [array]")
 
 
 def map_grid_m(scenario: Scenario, position_m: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:

@@ -53,7 +53,7 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
     """Write names where they cover least: of markers, of each other and of a ball.
 
     Args:
-        axes: of a 3-D picture, with its limits, its view and its place in the figure set.
+        axes: of a picture in 3-D or from above, with its limits, its view and its place in the figure set.
         labels: the names, the most important first.
         centre_m: of the ball to leave free, shape ``(3,)``, metres.
         radius_m: of the ball.
@@ -95,7 +95,9 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
 
 def _on_paper(axes: Any, point_m: FloatArray) -> tuple[tuple[float, float], FloatArray]:
     """Return where a point is in the plane that the axes project on, and on the paper, pixels."""
-    x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
+    x, y = point_m[:2]
+    if axes.name == "3d":
+        x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
     return (float(x), float(y)), np.asarray(axes.transData.transform((x, y)))
 
 

@@ -30,8 +30,8 @@ _COLUMN_INCH = 2.3  # of the legend
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
-_FORBIDDEN = "#b36b00"
-_KINDS = {
+FORBIDDEN = "#b36b00"
+KINDS = {
     "node": ("#0a6f3c", "s", 3.0),
     "jammer": ("#d40000", "X", 6.0),
     "eavesdropper": ("#9a4fb0", "D", 6.0),
@@ -177,7 +177,7 @@ def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
     axes.scatter(*ground, color=GREY, marker="+", s=30, zorder=2)
     labels = []
     for kind, point in stage.points:
-        place, (colour, marker, order) = np.asarray(point.position_m), _KINDS[kind]
+        place, (colour, marker, order) = np.asarray(point.position_m), KINDS[kind]
         axes.scatter(*place, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=kind)
         around_m = 0.0
         if isinstance(point, Node):
@@ -196,12 +196,16 @@ def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
                 draw_set(axes, point, colour, f"where the {kind} may be")
         labels.append(Label(point.name, place, colour, beside=kind != "node", around_m=around_m))
     for zone, corners_m in stage.zones:
-        labels += draw_zone(axes, zone, corners_m, _FORBIDDEN)
+        labels += draw_zone(axes, zone, corners_m, FORBIDDEN)
     return labels
 
 
-def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of the space drawn, metres."""
+def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
+    """Return the low and the high corner of the space drawn, each (3,), metres.
+
+    Args:
+        stage: what is to be seen.
+    """
     extent_m, points = stage.extent_m, stage.places_m
     hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
@@ -216,7 +220,7 @@ def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
 
 
 def _frame(axes: Any, stage: Stage) -> None:
-    low, high = _limits(stage)
+    low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=_ZOOM)  # one metre is as long along every axis
     axes.set_xlabel("x (east)  m", labelpad=-3)

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
-_FORMATS = (".png", ".svg")
+_FORMATS = (".png", ".svg", ".pdf", ".pgf")
+_NAMED = ".png, .svg, .pdf or .pgf"
 
 
 CURVES: Mapping[str, Curve] = MappingProxyType({scheme.value: scheme.record.curve for scheme in Scheme})
@@ -140,7 +141,7 @@ def prepare_figure_file(path: Path) -> None:
         OutputError: its folder cannot be made or written.
     """
     if path.suffix.lower() not in _FORMATS:
-        raise UsageError(f"figure: given {path}; allowed: a name that ends in {' or '.join(_FORMATS)}")
+        raise UsageError(f"figure: given {path}; allowed: a name that ends in {_NAMED}")
     prepare_folder(path.parent)
 
 
