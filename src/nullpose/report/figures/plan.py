@@ -31,12 +31,7 @@ def draw_plan(axes: Any, stage: Stage, pose: Pose, box_m: FloatArray | None = No
     axes.set_aspect("equal")
     labels = []
     for zone, corners_m in stage.zones:
-        look: dict[str, Any] = {
-            "facecolor": "none",
-            "edgecolor": GREY,
-            "linestyle": (0, (6, 2)),
-            "label": "geofence",
-        }
+        look: dict[str, Any] = {"facecolor": "none", "edgecolor": GREY, "label": "geofence"}
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
             labels.append(Label(zone.name, np.append(corners_m.mean(axis=0), 0.0), FORBIDDEN, on=True))
@@ -56,12 +51,7 @@ def draw_plan(axes: Any, stage: Stage, pose: Pose, box_m: FloatArray | None = No
     ends = np.stack([pose.position_m[:2] - reach, pose.position_m[:2] + reach])
     axes.plot(*ends.T, color=DRONE, linewidth=1.8, zorder=6.5)
     axes.scatter(x, y, color=DRONE, s=30, zorder=7, **rim, label="drone")
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
     inner = 0.05 * (high - low)  # the name of a zone is wide
-    labels = [
-        label
-        for label in labels
-        if np.all(
-            (low + inner * label.on <= label.point_m[:2]) & (label.point_m[:2] <= high - inner * label.on)
-        )
-    ]
+    labels = [one for one in labels if np.all(np.abs(one.point_m[:2] - middle) <= half - inner * one.on)]
     place_labels(axes, labels, pose.position_m, 0.3 * radius_m)
