@@ -65,7 +65,15 @@ if TYPE_CHECKING:
         solve_many,
     )
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
-    from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
+    from nullpose.study import (
+        AirframeComparison,
+        SweepTable,
+        compare_airframes,
+        evaluate_against,
+        poses_from_csv,
+        sweep,
+        value_map,
+    )
 
 __all__ = [
     "Airframe",
@@ -103,6 +111,7 @@ __all__ = [
     "compare",
     "compare_airframes",
     "evaluate",
+    "evaluate_against",
     "guarantee",
     "json_schema",
     "load",
@@ -110,11 +119,13 @@ __all__ = [
     "min_secrecy_rate",
     "min_sinr",
     "pose_frames",
+    "poses_from_csv",
     "solve",
     "solve_array",
     "solve_many",
     "solve_robust",
     "sweep",
+    "value_map",
 ]
 
 _ROOMS = {
@@ -166,7 +177,15 @@ _ROOMS = {
         "solve_many",
     ),
     "nullpose.solve.robust": ("RobustSolution", "guarantee", "solve_robust"),
-    "nullpose.study": ("AirframeComparison", "SweepTable", "compare_airframes", "sweep"),
+    "nullpose.study": (
+        "AirframeComparison",
+        "SweepTable",
+        "compare_airframes",
+        "evaluate_against",
+        "poses_from_csv",
+        "sweep",
+        "value_map",
+    ),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
@@ -187,7 +206,9 @@ sys.modules[__name__].__class__ = _Face
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, importing its room at the first use (PEP 562)."""
+    """Return a public name, or the module ``plot``, importing it at the first use (PEP 562)."""
+    if name == "plot":
+        return import_module("nullpose.plot")
     if name not in _ROOM_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(_ROOM_OF[name]), name)
@@ -197,4 +218,4 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     """Return the public names beside what the module holds already."""
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, "plot"})

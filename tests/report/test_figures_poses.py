@@ -21,7 +21,7 @@ def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     """The file is written, is not blank, names every point, and tells the value in its unit."""
     solution = solve(load(EXAMPLES / f"{name}.toml"), certify=False)
     figure = draw_pose(solution)
-    (axes,) = figure.axes
+    axes = figure.axes[0]
     scenario = solution.scenario
     names = {*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names}
     assert names <= {text.get_text() for text in axes.texts}
@@ -43,7 +43,7 @@ def test_zones_and_fence_are_drawn(paper: Scenario) -> None:
 
 def test_one_metre_is_as_long_along_every_axis() -> None:
     """The box is to scale, zones and fence included."""
-    (axes,) = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes
+    axes = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes[0]
     sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
     ratios = sides.ravel() / axes._box_aspect
     assert ratios == pytest.approx([ratios[0]] * 3)

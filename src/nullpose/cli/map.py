@@ -17,6 +17,7 @@ from nullpose.cli.options import (
     ScenarioFile,
     Seed,
     TimeLimit,
+    Width,
     read_scenario,
     solve_options,
 )
@@ -41,6 +42,7 @@ def best_map(
     node_limit: NodeLimit = 10**9,
     fast: Fast = False,
     seed: Seed = 0,
+    width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Map what each place gives with the best axis there.
@@ -62,5 +64,5 @@ def best_map(
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         result = solve(scenario, scheme.value, on_progress=bar, **options)
         field = value_map(result, altitude_m=altitude, cells=cells)
-    files = write_map(result, field, prepare_folder(out))
+    files = write_map(result, field, prepare_folder(out), width)
     tell(result, lambda found: map_view(found, field), json_output, files=files, map=field.to_dict())

@@ -42,9 +42,10 @@ def tell(
         paths = {"files": [str(path) for path in files]} if files else {}
         show_json(found.to_dict() | more | paths)
     else:
-        show(view(found))
+        shown = view(found)
+        show(shown)
         for path in files:
-            typer.echo(f"Wrote {path}")
+            typer.echo(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
     if fault:
         raise SolveError(fault)
     if getattr(found, "interrupted", False):
@@ -100,7 +101,7 @@ def prepare_outputs(file: Path, *, figure: Path | None, **others: Path | None) -
         others: further outputs by the names of their options.
 
     Raises:
-        UsageError: the figure's name ends in neither .png nor .svg.
+        UsageError: the figure's name ends in none of .png, .svg, .pdf and .pgf.
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
     from nullpose.files import check_outputs

@@ -5,26 +5,26 @@ from __future__ import annotations
 from pathlib import Path
 
 from nullpose.report.document import View, head
-from nullpose.report.figures.style import write_figure_file
+from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.value_map import draw_value_map
 from nullpose.report.numbers import bound_words, count_of, fixed, value_words
 from nullpose.solve import Result
 from nullpose.study import Field
 
 
-def write_map(result: Result, field: Field, folder: Path) -> tuple[Path, ...]:
+def write_map(result: Result, field: Field, folder: Path, width: str | None = None) -> tuple[Path, ...]:
     """Return the paths of a map's CSV, PNG and PDF files after writing them.
 
     Args:
         result: that the map is of.
         field: the map.
         folder: an existing folder.
+        width: of the figure in print, a key of ``WIDTHS_MM``; None for a screen.
 
     Raises:
         OutputError: a file cannot be written.
     """
-    figure = draw_value_map(result, field)
-    pictures = (write_figure_file(figure, folder / f"map.{kind}") for kind in ("png", "pdf"))
+    pictures = write_figure(draw_value_map(result, field, width), folder, "map", ("png", "pdf"))
     return (field.write_csv(folder / "map.csv"), *pictures)
 
 

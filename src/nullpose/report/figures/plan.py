@@ -32,6 +32,7 @@ def draw_plan(axes: Any, stage: Stage, pose: Pose, box_m: FloatArray | None = No
     labels = []
     for zone, corners_m in stage.zones:
         look: dict[str, Any] = {"facecolor": "none", "edgecolor": GREY, "label": "geofence"}
+        look["linestyle"] = "--"
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
             labels.append(Label(zone.name, np.append(corners_m.mean(axis=0), 0.0), FORBIDDEN, on=True))

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.scene import ALONE, Stage
-from nullpose.report.figures.style import house_style
+from nullpose.report.figures.style import house_style, inches
 from nullpose.report.numbers import MINUS, begun
 from nullpose.solve import Result
 from nullpose.study import Field
@@ -19,24 +19,26 @@ _MOST_SPAN = 30.0  # of the colours: what is farther below the best is as dark a
 _LEAST_SPAN = 1.0
 _LEVELS = 8
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # room for labels and the colour bar
-_TALLEST = 1.5  # height over width
+_TALLEST_INCH = 8.0
 
 
-def draw_value_map(result: Result, field: Field) -> Figure:
+def draw_value_map(result: Result, field: Field, width: str | None = None) -> Figure:
     """Return the figure of a map.
 
     Args:
         result: that the map is of.
         field: the map.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     rows, columns = field.values.shape
-    wide = 6.0
-    high = min((wide - _BESIDE_INCH) * rows / columns + _BELOW_INCH, _TALLEST * wide)
-    with house_style():
+    wide = inches((6.0, 0.0), width, 0.0)[0]
+    high = min((wide - _BESIDE_INCH) * rows / columns + _BELOW_INCH, _TALLEST_INCH)
+    with house_style(width):
         figure = Figure(figsize=(wide, high), layout="constrained")
         axes = figure.add_subplot()
         draw_field(axes, result, field)
-        axes.set_title(f"{result.scenario.name}\n{result.label}", fontsize=9, parse_math=False)
+        if width is None:
+            axes.set_title(f"{result.scenario.name}\n{result.label}", fontsize=9, parse_math=False)
     return figure
 
 
