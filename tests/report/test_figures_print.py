@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import Scenario, compare_airframes, load, solve, sweep
+from nullpose import Scenario, compare_airframes, load, solve, solve_array, solve_robust, sweep
 from nullpose.errors import UsageError
 from nullpose.report.comparison import compare_all
 from nullpose.report.figures.airframes import draw_airframes
 from nullpose.report.figures.cases import draw_comparison
-from nullpose.report.figures.poses import draw_pose
+from nullpose.report.figures.poses import draw_pose, draw_result
 from nullpose.report.figures.style import WIDTHS_MM, prepare_figure_file, write_figure_file
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.figures.value_map import draw_value_map
@@ -40,16 +40,21 @@ def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
 
 
 @WIDTHS
-@pytest.mark.parametrize("name", ["paper", "no-fly", "field"])
+@pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
 def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
     """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
-    figure = draw_pose(solve(load(EXAMPLES / f"{name}.toml"), certify=False), width)
+    solvers = {"array": solve_array, "robust": solve_robust}
+    solved = solvers.get(name, solve)(load(EXAMPLES / f"{name}.toml"), certify=False)
+    figure = draw_result(solved, width)
     figure.canvas.draw()
     legend = figure.legends[0].get_window_extent()
+    assert legend.x0 >= 0.0
+    assert legend.x1 <= figure.bbox.x1
     for axes in figure.axes:
         whole = axes.get_tightbbox()
-        assert whole.x0 >= 0.0
+        assert min(whole.x0, whole.y0) >= 0.0
         assert whole.x1 <= figure.bbox.x1
+        assert axes.title.get_window_extent().y1 <= figure.bbox.y1
         assert not whole.overlaps(legend)
         names = [text.get_window_extent().shrunk(0.8, 0.6) for text in axes.texts]
         touching = [(i, j) for i, one in enumerate(names) for j in range(i) if one.overlaps(names[j])]

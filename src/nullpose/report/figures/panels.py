@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -19,6 +19,7 @@ from nullpose.report.figures.style import house_style, inches
 
 _PLAN_INCH = 3.4  # width of a plan on a screen
 _PRINT_ZOOM = {"column": 1.03, "page": 0.93}  # letters are larger there against the scene
+_BESIDE_ZOOM = 0.88  # where one scene's names stand beside the next scene
 _PRINT_PAD = 3.0
 _HIGH_INCH = {"column": (2.45, 2.6), "page": (3.3, 3.3)}  # of a panel in 3-D and of a plan, in print
 _LEGEND_COLUMNS = {"column": 2, "page": 4}
@@ -26,7 +27,9 @@ _LEGEND_COLUMN_INCH = 2.3  # on a screen
 _LINE = 1.6  # of the legend, in heights of its letters
 _BESIDE = ((0.0, 0.57), (0.67, 0.31))  # left end and width of a scene in 3-D and of its plan beside it
 _BELOW = (0.17, 0.79)  # of a plan below it
-_MOST_NAMES = 8  # in the legend
+_MOST_LINES = {"column": 5, "page": 2}  # of the legend
+_LEGEND_LETTERS = 28  # in a line of it, in a column
+_TITLE_INCH = 0.25
 _Rect = tuple[float, float, float, float]
 _AXIS_INCH = 0.45  # numbers and name of a plan's lower axis
 
@@ -53,9 +56,10 @@ def draw_panels(
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     with house_style(width):
-        figure, rects = _laid_out(stage, plan, width)
+        figure, rects = _laid_out(stage, plan, width, bool(titles))
         if width is not None:
-            stage = replace(stage, view=replace(stage.view, zoom=_PRINT_ZOOM[width], pad_pt=_PRINT_PAD))
+            zoom = _PRINT_ZOOM[width] * (_BESIDE_ZOOM if len(rects) > 1 + plan and width == "page" else 1.0)
+            stage = replace(stage, view=replace(stage.view, zoom=zoom, pad_pt=_PRINT_PAD))
         for index, (pose, rect) in enumerate(zip(stage.poses, rects, strict=False)):
             axes: Any = figure.add_subplot(projection="3d")
             axes.set_position(rect)
@@ -70,11 +74,11 @@ def draw_panels(
     return figure
 
 
-def _laid_out(stage: Stage, plan: bool, width: str | None) -> tuple[Figure, list[_Rect]]:
+def _laid_out(stage: Stage, plan: bool, width: str | None, titled: bool) -> tuple[Figure, list[_Rect]]:
     """Return a figure and where its panels are, as shares of it: those in 3-D, and the plan."""
     view, count = stage.view, len(stage.poses)
     if width == "column":
-        return _stacked(count, plan)
+        return _stacked(count, plan, _TITLE_INCH * titled)
     if width is None:
         size = (view.inches[0] * count + _PLAN_INCH * plan, view.inches[1])
         bottom, top = view.edges
@@ -91,13 +95,14 @@ def _laid_out(stage: Stage, plan: bool, width: str | None) -> tuple[Figure, list
     return Figure(figsize=size), [(at, bottom, share, top - bottom), (beside, low, narrow, up - low)]
 
 
-def _stacked(count: int, plan: bool) -> tuple[Figure, list[_Rect]]:
+def _stacked(count: int, plan: bool, title_inch: float) -> tuple[Figure, list[_Rect]]:
     """Return the same with the panels one below the other, in a column."""
     panel, below = _HIGH_INCH["column"]
+    step = panel + title_inch
     legend = _legend_inch("column")
-    high = panel * count + below * plan + legend
+    high = step * count + below * plan + legend
     rects: list[_Rect] = [
-        (0.02, (high - panel * index) / high, 0.94, panel / high) for index in range(1, count + 1)
+        (0.02, (high - step * index) / high, 0.94, panel / high) for index in range(1, count + 1)
     ]
     if plan:
         rects.append((_BELOW[0], (legend + _AXIS_INCH) / high, _BELOW[1], (below - _AXIS_INCH - 0.1) / high))
@@ -107,8 +112,7 @@ def _stacked(count: int, plan: bool) -> tuple[Figure, list[_Rect]]:
 def _legend_inch(width: str) -> float:
     """Return the height that is kept for the legend in print."""
     letters = FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points() / 72.0
-    rows = math.ceil(_MOST_NAMES / _LEGEND_COLUMNS[width])
-    return 0.1 + _LINE * letters * rows
+    return 0.1 + _LINE * letters * _MOST_LINES[width]
 
 
 def _draw_legend(figure: Figure, surface: str, width: str | None) -> None:
@@ -116,9 +120,12 @@ def _draw_legend(figure: Figure, surface: str, width: str | None) -> None:
     once: dict[str, Any] = {}
     for handles, names in (axes.get_legend_handles_labels() for axes in figure.axes):
         once = dict(zip(names, handles, strict=True)) | once
+    if width == "column":
+        surface = textwrap.fill(surface, _LEGEND_LETTERS)
     once[surface] = Patch(color=SURFACE, alpha=0.8)
     columns = _LEGEND_COLUMNS.get(width or "", int(figure.get_figwidth() / _LEGEND_COLUMN_INCH))
-    look: dict[str, Any] = {"handlelength": 2.6, "columnspacing": 1.2, "borderaxespad": 0.1}
+    look: dict[str, Any] = {"handlelength": 2.6 if width is None else 1.8, "columnspacing": 1.2}
+    look["borderaxespad"] = 0.1
     legend = figure.legend(
         once.values(), once.keys(), loc="lower center", ncols=min(len(once), columns), frameon=False, **look
     )
