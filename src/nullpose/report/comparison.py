@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from nullpose.notebook import html_table
 from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, latex_table, table
@@ -19,7 +20,7 @@ from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import Result, compare
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Comparison:
     """What each scheme makes of a scenario.
 
@@ -37,6 +38,17 @@ class Comparison:
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended a proof."""
         return any(solution.interrupted for solution in self.solutions)
+
+    def __repr__(self) -> str:
+        told = [f"Comparison({self.scenario.name!r}: {len(self.solutions)} cases", *self._absent()]
+        return "; ".join(told) + ")"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.scenario.name, [one.row() for one in self.solutions], self._absent())
+
+    def _absent(self) -> list[str]:
+        """Return the cases that do not apply, with the reasons."""
+        return [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out]
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""

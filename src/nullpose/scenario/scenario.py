@@ -14,6 +14,7 @@ from pydantic import Field
 from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, unit_axis
 from nullpose.antenna import Antenna as AnyAntenna
 from nullpose.errors import WrongTypeError
+from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
@@ -192,6 +193,29 @@ class Scenario(Section):
     def to_toml(self) -> str:
         """Returns the text of a scenario file that loads as an equal scenario."""
         return toml_text(self.to_dict())
+
+    def __repr__(self) -> str:
+        counts = [(len(self.nodes), "node"), (len(self.jammers), "jammer")]
+        counts += [(len(self.eavesdroppers), "eavesdropper")] * bool(self.eavesdroppers)
+        told = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
+        low, high = self.airspace.altitude_m
+        return f"Scenario({self.name!r}: {told}, {self.objective}, altitude {low:g} to {high:g} m)"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        groups = {"node": self.nodes, "jammer": self.jammers, "eavesdropper": self.eavesdroppers}
+        rows = [
+            {
+                "kind": kind,
+                "name": point.name,
+                **dict(zip(("x (m)", "y (m)", "z (m)"), point.position_m, strict=True)),
+                "power (W)": getattr(point, "transmit_power_w", None) or None,
+            }
+            for kind, points in groups.items()
+            for point in points
+        ]
+        return html_table(repr(self), rows)
 
     @property
     def objective_record(self) -> ObjectiveRecord:

@@ -18,7 +18,7 @@ from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Results, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.solve_and_prove import solve_and_prove
 
@@ -95,7 +95,7 @@ def compare(
     schemes: Sequence[Scheme | str] = PAPER_SCHEMES,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
-) -> tuple[Result, ...]:
+) -> Results:
     """Return the solutions of several schemes for one scenario, those without meaning here left out.
 
     After an interrupt during a proof the remaining schemes are solved without one.
@@ -120,7 +120,7 @@ def compare(
             options["certify"] = False
         if on_progress is not None:
             on_progress(done, len(applicable))
-    return tuple(solutions)
+    return Results(solutions)
 
 
 def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:

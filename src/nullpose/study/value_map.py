@@ -15,6 +15,7 @@ from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.family import build_family
 from nullpose.files import replacing
+from nullpose.notebook import imported
 from nullpose.physics import link_gain, objective_value, to_db
 from nullpose.scenario import Scenario
 from nullpose.scenario.airspace import BORDER_M
@@ -35,7 +36,7 @@ _FLOOR_DB = -60.0  # the null itself is minus infinity
 _GOLDEN_RAD = 2.399963229728653  # golden angle
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Field:
     """A number at every point of a horizontal grid.
 
@@ -63,6 +64,24 @@ class Field:
         row, column = np.unravel_index(np.argmax(np.nan_to_num(self.values, nan=-np.inf)), self.values.shape)
         place = (float(self.east_m[column]), float(self.north_m[row]), self.altitude_m)
         return float(self.values[row, column]), place
+
+    def __repr__(self) -> str:
+        value, (x, y, z) = self.best
+        rows, columns = self.values.shape
+        best = f"best {value:.7g} {self.unit} at ({x:z.3f}, {y:z.3f}, {z:z.3f}) m"
+        return f"Field({self.name}: {columns} x {rows} places {self.altitude_m:g} m up; {best})"
+
+    def to_xarray(self) -> Any:
+        """Return the map as an array of xarray over ``y_m`` and ``x_m``.
+
+        Raises:
+            UsageError: xarray is not installed.
+        """
+        places = {"y_m": self.north_m, "x_m": self.east_m, "z_m": self.altitude_m}
+        array = imported("xarray").DataArray
+        return array(
+            self.values, coords=places, dims=("y_m", "x_m"), name=self.name, attrs={"unit": self.unit}
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the map's plane and its best place as plain data; its numbers are in the CSV file."""
