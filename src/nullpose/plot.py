@@ -119,7 +119,7 @@ def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: An
     """Return axes with a bar for each case or vehicle, and a mark at its bound.
 
     Args:
-        found: by :func:`nullpose.compare` or :func:`nullpose.compare_airframes`.
+        found: by ``nullpose.compare`` or ``nullpose.compare_airframes``.
         ax: axes to draw on; new ones if left out.
 
     Raises:

@@ -122,7 +122,7 @@ class Scenario(Section):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
-        """Returns the scenario that a TOML file describes; the same as :func:`nullpose.load`.
+        """Returns the scenario that a TOML file describes; the same as ``nullpose.load``.
 
         Args:
             path: the file, of 10 MB at most.

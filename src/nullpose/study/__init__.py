@@ -8,7 +8,7 @@ from nullpose.study.airframe_comparison import (
     compare_airframes,
 )
 from nullpose.study.antenna_comparison import AntennaComparison, compare_antennas
-from nullpose.study.evaluation import Evaluation, evaluate_against
+from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
@@ -23,6 +23,7 @@ __all__ = [
     "AntennaComparison",
     "Evaluation",
     "Field",
+    "GivenDetails",
     "Guaranteed",
     "SweepPlan",
     "SweepRow",

@@ -17,6 +17,7 @@ from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.scene import SURFACE, Stage, draw_panel
 from nullpose.report.figures.style import house_style, inches
 
+_GAP = 0.08  # between panels, of their width
 _PLAN_INCH = 3.4  # width of a plan on a screen
 _PRINT_ZOOM = {"column": 1.03, "page": 0.93}  # letters are larger there against the scene
 _BESIDE_ZOOM = 0.88  # where one scene's names stand beside the next scene
@@ -87,8 +88,9 @@ def _laid_out(stage: Stage, plan: bool, width: str | None, titled: bool) -> tupl
         high = min(_HIGH_INCH[width][0], 0.95 * wide / count) + _legend_inch(width)
         size, bottom, top = (wide, high), _legend_inch(width) / high, 0.99
     if not plan:
-        share, left = 0.946 / count, 0.016
-        rects = [(left + index * share, bottom, 0.94 * share, top - bottom) for index in range(count)]
+        share = 0.946 / (count + _GAP * (count - 1))
+        starts = (0.016 + index * (1.0 + _GAP) * share for index in range(count))
+        rects = [(start, bottom, share, top - bottom) for start in starts]
         return Figure(figsize=size), rects
     low, up = bottom + _AXIS_INCH / size[1], top - (0.02 if width else 0.06)
     (at, share), (beside, narrow) = _BESIDE

@@ -66,7 +66,7 @@ class View:
 
 
 PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), elevation_deg=20.0, pattern=0.15)
-PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11)
+PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11, zoom=1.02)
 ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), elevation_deg=38.0, pattern=0.11)
 
 
