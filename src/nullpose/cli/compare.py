@@ -55,9 +55,8 @@ def compare(
     json_output: JsonOutput = False,
 ) -> None:
     """Solve under all four schemes, or with several vehicles."""
-    refuse("without --figure", width=width and figure is None)
     scenario = read_scenario(file, overrides, allow_outside)
-    prepare_outputs(file, figure=figure)
+    prepare_outputs(file, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     if airframes:
         refuse("with --airframes", table=table is not TableKind.TEXT)

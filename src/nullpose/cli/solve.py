@@ -69,8 +69,7 @@ def solve(
     from nullpose.report.results import result_view
 
     scenario = read_scenario(file, overrides, allow_outside)
-    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
-    refuse("without --figure", width=width and figure is None)
+    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     checked = verify or certificate is not None
     of_one_dipole = {
