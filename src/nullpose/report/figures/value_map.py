@@ -38,7 +38,9 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         axes = figure.add_subplot()
         draw_field(axes, result, field)
         if width is None:
-            axes.set_title(f"{result.scenario.name}\n{result.label}", fontsize=9, parse_math=False)
+            axes.set_title(
+                f"{result.scenario.name}\n{result.label}: {field.title}", fontsize=9, parse_math=False
+            )
     return figure
 
 
