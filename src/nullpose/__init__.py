@@ -24,8 +24,18 @@ if TYPE_CHECKING:
         ScenarioError,
         SolveError,
         UsageError,
+        WrongTypeError,
     )
-    from nullpose.physics import Link, Pose, evaluate, min_margin, min_secrecy_rate, min_sinr, pose_frames
+    from nullpose.physics import (
+        Link,
+        Pose,
+        Poses,
+        evaluate,
+        min_margin,
+        min_secrecy_rate,
+        min_sinr,
+        pose_frames,
+    )
     from nullpose.scenario import (
         Airframe,
         Airspace,
@@ -55,7 +65,15 @@ if TYPE_CHECKING:
         solve_many,
     )
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
-    from nullpose.study import AirframeComparison, SweepTable, compare_airframes, sweep
+    from nullpose.study import (
+        AirframeComparison,
+        SweepTable,
+        compare_airframes,
+        evaluate_against,
+        poses_from_csv,
+        sweep,
+        value_map,
+    )
 
 __all__ = [
     "Airframe",
@@ -75,6 +93,7 @@ __all__ = [
     "Origin",
     "OutputError",
     "Pose",
+    "Poses",
     "Receiver",
     "RobustSolution",
     "Scenario",
@@ -86,11 +105,13 @@ __all__ = [
     "SweepTable",
     "Transmitter",
     "UsageError",
+    "WrongTypeError",
     "__version__",
     "apply_overrides",
     "compare",
     "compare_airframes",
     "evaluate",
+    "evaluate_against",
     "guarantee",
     "json_schema",
     "load",
@@ -98,11 +119,13 @@ __all__ = [
     "min_secrecy_rate",
     "min_sinr",
     "pose_frames",
+    "poses_from_csv",
     "solve",
     "solve_array",
     "solve_many",
     "solve_robust",
     "sweep",
+    "value_map",
 ]
 
 _ROOMS = {
@@ -113,10 +136,12 @@ _ROOMS = {
         "ScenarioError",
         "SolveError",
         "UsageError",
+        "WrongTypeError",
     ),
     "nullpose.physics": (
         "Link",
         "Pose",
+        "Poses",
         "evaluate",
         "min_margin",
         "min_secrecy_rate",
@@ -152,7 +177,15 @@ _ROOMS = {
         "solve_many",
     ),
     "nullpose.solve.robust": ("RobustSolution", "guarantee", "solve_robust"),
-    "nullpose.study": ("AirframeComparison", "SweepTable", "compare_airframes", "sweep"),
+    "nullpose.study": (
+        "AirframeComparison",
+        "SweepTable",
+        "compare_airframes",
+        "evaluate_against",
+        "poses_from_csv",
+        "sweep",
+        "value_map",
+    ),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
@@ -173,7 +206,9 @@ sys.modules[__name__].__class__ = _Face
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, importing its room at the first use (PEP 562)."""
+    """Return a public name, or the module ``plot``, importing it at the first use (PEP 562)."""
+    if name == "plot":
+        return import_module("nullpose.plot")
     if name not in _ROOM_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(_ROOM_OF[name]), name)
@@ -183,4 +218,4 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     """Return the public names beside what the module holds already."""
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, "plot"})

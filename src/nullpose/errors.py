@@ -55,6 +55,10 @@ class UsageError(NullposeError, ValueError):
     """A request that does not fit its scenario or its options, such as a null without a jammer."""
 
 
+class WrongTypeError(UsageError, TypeError):
+    """A value of a type that does not belong there, such as a path where a scenario is asked for."""
+
+
 class CertificateError(NullposeError, ValueError):
     """A file that is no certificate, or one made for another scenario than the one inside."""
 

@@ -25,12 +25,20 @@ VERBS = {
         "--verify",
         "--geojson",
         "--figure",
+        "--width",
         "--combining",
         "--robust",
         "--json",
     }
     | PROOF,
-    "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"} | PROOF,
+    "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"}
+    | {"--width", "--table"}
+    | PROOF,
+    "evaluate": {"--set", "--allow-outside", "--pose", "--attitude", "--poses", "--seed", "--json"}
+    | (PROOF - {"--fast"}),
+    "map": {"--set", "--allow-outside", "--scheme", "--altitude", "--cells", "--out", "--width", "--seed"}
+    | {"--json"}
+    | PROOF,
     "sweep": {
         "--allow-outside",
         "--set",
@@ -41,6 +49,8 @@ VERBS = {
         "--linear",
         "--scheme",
         "--out",
+        "--width",
+        "--table",
         "--seed",
         "--json",
     }

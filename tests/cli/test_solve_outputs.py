@@ -135,3 +135,24 @@ def test_nodes_from_elsewhere_need_an_option(run: Run, scene: Path) -> None:
         assert "--allow-outside" in result.stderr
         assert run(verb, inner, *options, "--allow-outside").exit_code == 0
     assert load(inner, allow_outside=True) == load(scene)
+
+
+def test_every_file_is_told(run: Run, scene: Path, tmp_path: Path) -> None:
+    """What was written is named, each file once; `--width` without a figure is refused."""
+    written = [tmp_path / "pose.pdf", tmp_path / "pose.cert.json"]
+    arguments = ("--figure", written[0], "--width", "column", "--certificate", written[1])
+    result = run("solve", scene, *arguments)
+    assert result.exit_code == 0
+    assert all(result.stdout.count(f"Wrote {path}\n") == 1 for path in written)
+    refused = run("solve", scene, "--width", "page")
+    assert refused.exit_code == 2
+    assert "--width: given without --figure" in refused.stderr
+
+
+def test_a_latex_table_stands_alone(run: Run, paper: str, tmp_path: Path) -> None:
+    """Standard output holds the table, so that it can go to a file; the rest is on standard error."""
+    result = run("compare", paper, "--fast", "--table", "latex", "--figure", tmp_path / "cases.svg")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("\\begin{tabular}")
+    assert result.stdout.endswith("\\end{tabular}\n")
+    assert f"Wrote {tmp_path / 'cases.svg'}" in result.stderr

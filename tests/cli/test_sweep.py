@@ -12,12 +12,14 @@ Run = Callable[..., Result]
 
 
 def test_files_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
-    """CSV, PNG and SVG are written into a folder made with its parents; the table is printed."""
+    """CSV, PNG, SVG and PDF are written into a folder made with its parents; the table is printed."""
     out = tmp_path / "deep" / "out"
     arguments = ("--from", "1e-2", "--to", "1e2", "--points", 5, "--log", "--out", out)
     result = run("sweep", paper, "--set", "jammers.M.power_w", *arguments)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert sorted(path.name for path in out.iterdir()) == ["sweep.csv", "sweep.png", "sweep.svg"]
+    assert sorted(path.name for path in out.iterdir()) == [
+        f"sweep.{end}" for end in ("csv", "pdf", "png", "svg")
+    ]
     with (out / "sweep.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["jammers.M.power_w"]) for row in rows[::4]] == [0.01, 0.1, 1.0, 10.0, 100.0]
@@ -44,7 +46,7 @@ def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
         (2.0, "vertical"),
         (3.0, "vertical"),
     ]
-    assert [Path(path).exists() for path in answer["files"]] == [True] * 3
+    assert [Path(path).exists() for path in answer["files"]] == [True] * 4
 
 
 def test_a_case_that_does_not_apply_is_named(run: Run, paper: str, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def _elements(solution: ArraySolution) -> np.ndarray:
 
 
 def _drawn_elements(solution: ArraySolution) -> np.ndarray:
-    (axes,) = draw_array(solution).axes
+    axes = draw_array(solution).axes[0]
     (dots,) = [
         each for each in axes.collections if str(each.get_label()).startswith("elements, larger than life")
     ]
@@ -88,5 +88,5 @@ def test_the_beam_has_its_null_on_the_jammer(solution: ArraySolution) -> None:
 
 def test_the_array_is_not_seen_end_on(solution: ArraySolution) -> None:
     """The camera stands where the heading crosses its line of sight."""
-    (axes,) = draw_array(solution).axes
+    axes = draw_array(solution).axes[0]
     assert abs(np.sin(solution.yaw_rad - np.radians(axes.azim))) > 0.3

@@ -35,7 +35,7 @@ def test_names_stand_off_the_markers(field: Scenario) -> None:
     """No name lies over another point's marker, as the jammer's once did over a node."""
     figure = draw_pose(solve(field, certify=False))
     figure.canvas.draw()
-    (axes,) = figure.axes
+    axes = figure.axes[0]
     names = (*field.node_names, *field.jammer_names)
     points = dict(zip(names, np.vstack([field.node_positions_m, field.jammer_positions_m]), strict=True))
     anchors = {text.get_text(): axes.transData.transform(text.xy) for text in axes.texts}

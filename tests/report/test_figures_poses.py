@@ -21,7 +21,7 @@ def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     """The file is written, is not blank, names every point, and tells the value in its unit."""
     solution = solve(load(EXAMPLES / f"{name}.toml"), certify=False)
     figure = draw_pose(solution)
-    (axes,) = figure.axes
+    axes = figure.axes[0]
     scenario = solution.scenario
     names = {*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names}
     assert names <= {text.get_text() for text in axes.texts}
@@ -43,7 +43,7 @@ def test_zones_and_fence_are_drawn(paper: Scenario) -> None:
 
 def test_one_metre_is_as_long_along_every_axis() -> None:
     """The box is to scale, zones and fence included."""
-    (axes,) = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes
+    axes = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes[0]
     sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
     ratios = sides.ravel() / axes._box_aspect
     assert ratios == pytest.approx([ratios[0]] * 3)
@@ -81,8 +81,8 @@ def test_names_with_dollars(paper: Scenario, tmp_path: Path) -> None:
 
 
 def test_a_figure_is_named_by_its_kind(tmp_path: Path) -> None:
-    """Other kinds than PNG and SVG are refused before any work; a folder is made."""
-    with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png or \.svg"):
-        prepare_figure_file(tmp_path / "figure.pdf")
+    """Other kinds of file are refused before any work; a folder is made."""
+    with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png, \.svg, \.pdf or \.pgf"):
+        prepare_figure_file(tmp_path / "figure.jpg")
     prepare_figure_file(tmp_path / "new" / "figure.SVG")
     assert (tmp_path / "new").is_dir()

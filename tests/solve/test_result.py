@@ -86,8 +86,8 @@ def test_without_a_proof_nothing_is_claimed(paper: Callable) -> None:
 
 def test_statuses_have_sentences() -> None:
     """Only one status claims the gap, and only one claims nothing."""
-    assert [status.value for status in Status] == ["certified", "gap-not-reached", "best-found"]
-    assert len({status.message for status in Status}) == 3
+    assert [status.value for status in Status] == ["certified", "gap-not-reached", "best-found", "given"]
+    assert len({status.message for status in Status}) == 4
     assert "not reached" in Status.GAP_NOT_REACHED.message
 
 

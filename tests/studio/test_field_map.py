@@ -8,7 +8,8 @@ from nullpose.scenario import NoFlyZone, Scenario
 from nullpose.solve import best_axis, solve
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import Case, case_named
-from nullpose.studio.field_map import field_map, map_extent_m
+from nullpose.studio.field_map import field_map
+from nullpose.study.value_map import map_extent_m
 
 
 def _map(scenario: Scenario, case: Case):  # type: ignore[no-untyped-def]

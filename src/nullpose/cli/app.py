@@ -12,7 +12,9 @@ from nullpose.cli.antenna import antenna
 from nullpose.cli.check import check
 from nullpose.cli.cite import cite
 from nullpose.cli.compare import compare
+from nullpose.cli.evaluate import evaluate
 from nullpose.cli.faults import FaultReportingGroup
+from nullpose.cli.map import best_map
 from nullpose.cli.reproduce import reproduce
 from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
@@ -56,8 +58,9 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, sweep, verify, reproduce, studio, check, schema, cite):
+for _verb in (solve, compare, sweep, evaluate, verify, reproduce, studio, check, schema, cite):
     app.command()(_verb)
+app.command("map")(best_map)
 study.command()(report)
 app.add_typer(study)
 app.add_typer(antenna)

@@ -11,14 +11,19 @@ from nullpose.cli.options import (
     AllowOutside,
     Fast,
     FigureFile,
+    FigureWidth,
     Gap,
     JsonOutput,
     NodeLimit,
     Overrides,
     ScenarioFile,
     Seed,
+    Table,
+    TableKind,
     TimeLimit,
+    Width,
     read_scenario,
+    refuse,
     solve_options,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
@@ -40,6 +45,8 @@ def compare(
         ),
     ] = False,
     figure: FigureFile = None,
+    width: Width = None,
+    table: Table = TableKind.TEXT,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
@@ -48,25 +55,32 @@ def compare(
     json_output: JsonOutput = False,
 ) -> None:
     """Solve under all four schemes, or with several vehicles."""
-    from nullpose.errors import UsageError
-
-    if figure is not None and not airframes:
-        raise UsageError("--figure: given without --airframes, which it draws; add it, or leave out --figure")
     scenario = read_scenario(file, overrides, allow_outside)
+    prepare_outputs(file, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     if airframes:
-        prepare_outputs(file, figure=figure)
-        _compare_airframes(scenario, options, figure, json_output)
+        refuse("with --airframes", table=table is not TableKind.TEXT)
+        _compare_airframes(scenario, options, figure, width, json_output)
         return
-    from nullpose.report.comparison import compare_all, comparison_view
+    from nullpose.report.comparison import compare_all, comparison_latex, comparison_view
 
     with compiling_announced(), Ticker("solving") as ticker:
         comparison = compare_all(scenario, on_progress=ticker, **options)
-    tell(comparison, comparison_view, json_output)
+    if figure is not None:
+        from nullpose.report.figures.cases import draw_comparison
+        from nullpose.report.figures.style import write_figure_file
+
+        write_figure_file(draw_comparison(comparison, width), figure)
+    view = comparison_latex if table is TableKind.LATEX else comparison_view
+    tell(comparison, view, json_output, files=[] if figure is None else [figure])
 
 
 def _compare_airframes(
-    scenario: Scenario, options: dict[str, Any], figure: Path | None, json_output: bool
+    scenario: Scenario,
+    options: dict[str, Any],
+    figure: Path | None,
+    width: FigureWidth | None,
+    json_output: bool,
 ) -> None:
     """Print what was found of each vehicle, and draw it if that was asked for."""
     from nullpose.report.airframes import airframes_view, answer_lines
@@ -78,6 +92,6 @@ def _compare_airframes(
         from nullpose.report.figures.airframes import draw_airframes
         from nullpose.report.figures.style import write_figure_file
 
-        write_figure_file(draw_airframes(vehicles), figure)
+        write_figure_file(draw_airframes(vehicles, width), figure)
     files = [] if figure is None else [figure]
     tell(vehicles, airframes_view, json_output, files=files, answer=answer_lines(vehicles))

@@ -19,6 +19,20 @@ class CombiningName(StrEnum):
     ANALOGUE = "analogue"
 
 
+class FigureWidth(StrEnum):
+    """The widths of figures in print, by name."""
+
+    COLUMN = "column"
+    PAGE = "page"
+
+
+class TableKind(StrEnum):
+    """The ways to write a table, by name."""
+
+    TEXT = "text"
+    LATEX = "latex"
+
+
 ScenarioFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="Scenario file (TOML).", show_default=False)
 ]
@@ -111,12 +125,25 @@ FigureFile = Annotated[
     typer.Option(
         "--figure",
         metavar="FILE",
-        help="Draw what was found into a file named .png or .svg.",
+        help="Draw what was found into a file named .png, .svg, .pdf or .pgf.",
         show_default=False,
     ),
 ]
 
+Width = Annotated[
+    FigureWidth | None,
+    typer.Option(
+        "--width",
+        help="Size the figure for print: a column of 88 mm, or a page of 181 mm.",
+        show_default="for a screen",
+    ),
+]
+
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+
+Table = Annotated[
+    TableKind, typer.Option("--table", help="Print the table for a screen, or for a LaTeX document.")
+]
 
 OutFolder = Annotated[
     Path,

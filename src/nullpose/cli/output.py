@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, UsageError
 
 if TYPE_CHECKING:
     from nullpose.report.document import View
@@ -42,9 +42,10 @@ def tell(
         paths = {"files": [str(path) for path in files]} if files else {}
         show_json(found.to_dict() | more | paths)
     else:
-        show(view(found))
+        shown = view(found)
+        show(shown)
         for path in files:
-            typer.echo(f"Wrote {path}")
+            typer.echo(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
     if fault:
         raise SolveError(fault)
     if getattr(found, "interrupted", False):
@@ -91,21 +92,26 @@ def compiling_announced() -> Iterator[None]:
         yield
 
 
-def prepare_outputs(file: Path, *, figure: Path | None, **others: Path | None) -> None:
+def prepare_outputs(
+    file: Path, *, figure: Path | None, width: str | None = None, **others: Path | None
+) -> None:
     """Make sure, before any work, that what was asked for can be written, and takes no other file's place.
 
     Args:
         file: the scenario's.
         figure: where to, or None if no figure was asked for.
+        width: of the figure in print, or None.
         others: further outputs by the names of their options.
 
     Raises:
-        UsageError: the figure's name ends in neither .png nor .svg.
+        UsageError: a width without a figure; or the figure's name ends in none of .png, .svg, .pdf and .pgf.
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
     from nullpose.files import check_outputs
     from nullpose.scenario.loading import files_of
 
+    if width is not None and figure is None:
+        raise UsageError("--width: given without --figure; add --figure FILE, or leave out --width")
     if figure is not None:
         from nullpose.report.figures.style import prepare_figure_file
 

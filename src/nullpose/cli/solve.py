@@ -14,6 +14,7 @@ from nullpose.cli.options import (
     CombiningName,
     Fast,
     FigureFile,
+    FigureWidth,
     Gap,
     GeoJsonFile,
     JsonOutput,
@@ -25,6 +26,7 @@ from nullpose.cli.options import (
     Seed,
     TimeLimit,
     Verified,
+    Width,
     read_scenario,
     refuse,
     solve_options,
@@ -59,6 +61,7 @@ def solve(
     geojson: GeoJsonFile = None,
     combining: Combining = None,
     figure: FigureFile = None,
+    width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Find the best pose, and prove how good it is.
@@ -76,7 +79,7 @@ def solve(
     from nullpose.report.results import result_view
 
     scenario = read_scenario(file, overrides, allow_outside)
-    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure)
+    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     checked = verify or certificate is not None
     of_one_dipole = {
@@ -100,8 +103,9 @@ def solve(
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
         found = _solve_dipole(scenario, scheme, null_jammer, options, checked)
     rejected = checked and found.rigour.value != "verified"
-    _write(found, None if rejected else certificate, geojson, figure)
-    tell(found, result_view, json_output, fault=_REJECTED.format(found.reason) if rejected else "")
+    files = _write(found, None if rejected else certificate, geojson, figure, width)
+    fault = _REJECTED.format(found.reason) if rejected else ""
+    tell(found, result_view, json_output, files=files, fault=fault)
 
 
 def _solve_robustly(scenario: Scenario, options: dict[str, Any]) -> Result:
@@ -159,8 +163,14 @@ def _solve_dipole(
         return verified(solution, ticker)
 
 
-def _write(solution: Result, certificate: Path | None, geojson: Path | None, figure: Path | None) -> None:
-    """Write the files that were asked for."""
+def _write(
+    solution: Result,
+    certificate: Path | None,
+    geojson: Path | None,
+    figure: Path | None,
+    width: FigureWidth | None,
+) -> list[Path]:
+    """Return the files that were asked for after writing them."""
     if certificate is not None:
         from nullpose.certificate import write_certificate
         from nullpose.solve.certificate_from_proof import certificate_of
@@ -174,4 +184,5 @@ def _write(solution: Result, certificate: Path | None, geojson: Path | None, fig
         from nullpose.report.figures.poses import draw_result
         from nullpose.report.figures.style import write_figure_file
 
-        write_figure_file(draw_result(solution), figure)
+        write_figure_file(draw_result(solution, width), figure)
+    return [path for path in (certificate, geojson, figure) if path is not None]

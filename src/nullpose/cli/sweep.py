@@ -15,7 +15,10 @@ from nullpose.cli.options import (
     OutFolder,
     ScenarioFile,
     Seed,
+    Table,
+    TableKind,
     TimeLimit,
+    Width,
     solve_options,
 )
 from nullpose.cli.output import compiling_announced, tell
@@ -56,11 +59,13 @@ def sweep(
     node_limit: NodeLimit = 10**9,
     fast: Fast = False,
     seed: Seed = 0,
+    width: Width = None,
+    table: Table = TableKind.TEXT,
     json_output: JsonOutput = False,
 ) -> None:
     """Solve at many values of one setting.
 
-    A table (CSV) and a figure (PNG, SVG) are written.
+    A table (CSV) and a figure (PNG, SVG, PDF) are written.
     """
     from nullpose.files import check_outputs
     from nullpose.scenario.loading import files_of, load
@@ -76,13 +81,13 @@ def sweep(
         schemes=[name.value for name in scheme] if scheme else None,
         **solve_options(gap, time_limit, node_limit, fast, seed),
     )
-    outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg")}
+    outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg", "sweep.pdf")}
     check_outputs(files_of(file), outputs)
     with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
-        table = plan.run(on_progress=ticker)
+        found = plan.run(on_progress=ticker)
     if plan.scenario.array is not None:
         typer.echo("The swept cases have one dipole; the file's array is left out.", err=True)
-    from nullpose.report.sweep import sweep_view, write_sweep
+    from nullpose.report.sweep import sweep_latex, sweep_view, write_sweep
 
-    files = write_sweep(table, out, log=log)
-    tell(table, sweep_view, json_output, files=files)
+    files = write_sweep(found, out, log=log, width=width)
+    tell(found, sweep_latex if table is TableKind.LATEX else sweep_view, json_output, files=files)

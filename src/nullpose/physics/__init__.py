@@ -40,6 +40,7 @@ from nullpose.physics.maximum_gain import (
 from nullpose.physics.objective import margin, objective_value
 from nullpose.physics.polarisation import dipole_gain, link_gain
 from nullpose.physics.pose import Pose
+from nullpose.physics.poses import Poses
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -57,6 +58,7 @@ __all__ = [
     "Link",
     "Pose",
     "PoseFrames",
+    "Poses",
     "analogue_sinr",
     "analogue_weights",
     "antenna_axis",

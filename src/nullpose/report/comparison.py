@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from nullpose.notebook import html_table
 from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import View, beside, document, grouped, head, table
+from nullpose.report.document import View, beside, document, grouped, head, latex_table, table
 from nullpose.report.geometry import null_angle_rad, tilt_rad
 from nullpose.report.numbers import bound_text, degrees_text, fixed
 from nullpose.report.results import azimuth_text, binding_nodes, work_words
@@ -19,7 +20,7 @@ from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import Result, compare
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Comparison:
     """What each scheme makes of a scenario.
 
@@ -37,6 +38,17 @@ class Comparison:
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended a proof."""
         return any(solution.interrupted for solution in self.solutions)
+
+    def __repr__(self) -> str:
+        told = [f"Comparison({self.scenario.name!r}: {len(self.solutions)} cases", *self._absent()]
+        return "; ".join(told) + ")"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.scenario.name, [one.row() for one in self.solutions], self._absent())
+
+    def _absent(self) -> list[str]:
+        """Return the cases that do not apply, with the reasons."""
+        return [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out]
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""
@@ -70,18 +82,32 @@ def comparison_view(comparison: Comparison) -> View:
     Args:
         comparison: what each scheme makes of a scenario.
     """
-    scenario, solutions = comparison.scenario, comparison.solutions
-    quantity = Quantity.of(scenario)
+    scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
+    others = "Each case has one dipole on the file's vehicle. Other vehicles, and arrays: compare --airframes"
+    return document(
+        head(scenario.name),
+        table("", _rows(comparison), bold=[f"smallest {quantity.short} ({quantity.unit})"]),
+        "\n".join([*_lines(comparison), f"* binding: the {quantity.smallest} is at this node", others]),
+    )
+
+
+def comparison_latex(comparison: Comparison) -> str:
+    """Return several schemes' solutions side by side as a table in LaTeX.
+
+    Args:
+        comparison: what each scheme makes of a scenario.
+    """
+    return latex_table(_rows(comparison))
+
+
+def _rows(comparison: Comparison) -> list[Mapping[str, str]]:
+    """Return what is told of each scheme, one column each; a rule between values, poses and links."""
+    solutions, quantity = comparison.solutions, Quantity.of(comparison.scenario)
     best = max((quantity.in_unit(each.objective.value) for each in solutions), default=math.nan)
     rows: list[Mapping[str, str]] = []
     for cells in (_value_cells, _pose_cells, _link_cells):
         rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
-    others = "Each case has one dipole on the file's vehicle. Other vehicles, and arrays: compare --airframes"
-    return document(
-        head(scenario.name),
-        table("", rows, bold=[f"smallest {quantity.short} ({quantity.unit})"]),
-        "\n".join([*_lines(comparison), f"* binding: the {quantity.smallest} is at this node", others]),
-    )
+    return rows
 
 
 def _lines(comparison: Comparison) -> list[str]:

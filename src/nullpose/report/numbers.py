@@ -13,6 +13,21 @@ if TYPE_CHECKING:
 
 MINUS = "\N{MINUS SIGN}"
 _UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}
+_KEY_WORDS = {
+    "noise_w": "noise power",
+    "noise_dbm": "noise power",
+    "min_sinr_db": "required SINR",
+    "keep_out_m": "keep-out radius",
+    "tilt_max_deg": "largest tilt",
+    "mount_deg": "angle of the dipole",
+    "null_depth_db": "depth of the null",
+    "frequency_hz": "carrier frequency",
+    "reference_gain_db": "path gain at 1 m",
+    "spacing_wavelengths": "spacing in wavelengths",
+    "uncertainty_m": "uncertainty of the position",
+}
+_PARTS = {("position_m", str(i)): f", {name}" for i, name in enumerate(("east", "north", "up"))}
+_PARTS |= {("altitude_m", "0"): ", lowest", ("altitude_m", "1"): ", highest"}
 NONE = "\N{EN DASH}"
 
 
@@ -268,10 +283,18 @@ def unit_of(path: str) -> str:
 
 
 def axis_label(path: str) -> str:
-    """Return what an axis of a swept setting is labelled.
+    """Return what an axis of a swept setting is labelled, as in ``Power of jammer M  (W)``.
 
     Args:
-        path: of the setting.
+        path: of the setting, as in ``jammers.M.power_w``.
     """
-    unit = unit_of(path)
-    return f"{path}  ({unit})" if unit else path
+    *tables, leaf = path.split(".")
+    key, _, place = leaf.partition("[")
+    unit, words = unit_of(path), _KEY_WORDS.get(key, "")
+    if not words:
+        words = key.rpartition("_")[0] if unit else key
+    part = _PARTS.get((key, place[:1]), "")
+    group = tables[0].partition("[")[0].removesuffix("s") if tables else ""
+    whose = " ".join((group, *tables[1:])) if len(tables) > 1 else group and f"the {group}"
+    label = begun(f"{words} of {whose}" if whose else words).replace("_", " ") + part
+    return f"{label}  ({unit})" if unit else label

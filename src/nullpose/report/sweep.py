@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from nullpose.report.certainty import certainty_lines, rigour_lines
-from nullpose.report.document import View, document, grouped, table
+from nullpose.report.document import View, document, grouped, latex_table, table
 from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
-from nullpose.report.numbers import begun, bound_text
+from nullpose.report.numbers import axis_label, begun, bound_text
 from nullpose.schemes import Scheme
 from nullpose.solve import Status
 from nullpose.study import SweepRow, SweepTable
@@ -16,19 +16,23 @@ from nullpose.study import SweepRow, SweepTable
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
 
 
-def write_sweep(sweep: SweepTable, folder: Path, *, log: bool = False) -> tuple[Path, ...]:
-    """Return the paths of a sweep's CSV, PNG and SVG files after writing them.
+def write_sweep(
+    sweep: SweepTable, folder: Path, *, log: bool = False, width: str | None = None
+) -> tuple[Path, ...]:
+    """Return the paths of a sweep's CSV, PNG, SVG and PDF files after writing them.
 
     Args:
         sweep: what was found.
         folder: an existing folder.
         log: draw the swept setting on a logarithmic axis.
+        width: of the figure in print, a key of ``WIDTHS_MM``; None for a screen.
 
     Raises:
         OutputError: a file cannot be written.
     """
-    figure = draw_sweep(sweep, log=log)
-    return (sweep.write_csv(folder / "sweep.csv"), *write_figure(figure, folder, "sweep"))
+    figure = draw_sweep(sweep, log=log, width=width)
+    pictures = write_figure(figure, folder, "sweep", ("png", "svg", "pdf"))
+    return (sweep.write_csv(folder / "sweep.csv"), *pictures)
 
 
 def sweep_view(sweep: SweepTable) -> View:
@@ -39,12 +43,6 @@ def sweep_view(sweep: SweepTable) -> View:
     """
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
-    rows: dict[float, dict[str, str]] = {
-        value: {sweep.path: f"{value:.6g}"} for value in sweep.values[::step]
-    }
-    for row in sweep.rows:
-        if row.value in rows:
-            rows[row.value][Scheme(row.scheme).record.curve.label] = _cell(row)
     labelled = [(Scheme(row.scheme).label, row) for row in sweep.rows]
     absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
     lines = [
@@ -55,7 +53,24 @@ def sweep_view(sweep: SweepTable) -> View:
         *grouped((label, row.reason) for label, row in labelled),
     ]
     title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
-    return document(table(title, list(rows.values())), "\n".join(lines))
+    return document(table(title, _rows(sweep, sweep.path)[::step]), "\n".join(lines))
+
+
+def sweep_latex(sweep: SweepTable) -> str:
+    """Return a sweep as a table in LaTeX of the objective, one column per scheme, every value in a row.
+
+    Args:
+        sweep: what was found.
+    """
+    return latex_table(_rows(sweep, axis_label(sweep.path)))
+
+
+def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:
+    """Return a row for each value of a sweep."""
+    rows = {value: {heading: f"{value:.6g}"} for value in sweep.values}
+    for row in sweep.rows:
+        rows[row.value][Scheme(row.scheme).record.curve.label] = _cell(row)
+    return list(rows.values())
 
 
 def _cell(row: SweepRow) -> str:

@@ -12,7 +12,7 @@ from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.plausibility import doubts
 from nullpose.scenario.receiver import Receiver
-from nullpose.scenario.scenario import Scenario
+from nullpose.scenario.scenario import Scenario, require_scenario
 from nullpose.scenario.transmitter import Transmitter
 
 __all__ = [
@@ -35,4 +35,5 @@ __all__ = [
     "json_schema",
     "load",
     "parse_override",
+    "require_scenario",
 ]

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, unit_axis
 from nullpose.antenna import Antenna as AnyAntenna
+from nullpose.errors import WrongTypeError
+from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna
 from nullpose.scenario.array import Array
-from nullpose.scenario.arrays import read_only
+from nullpose.scenario.arrays import read_only, rows_of_points
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
@@ -30,6 +33,7 @@ from nullpose.scenario.toml_text import toml_text
 from nullpose.scenario.transmitter import Transmitter
 from nullpose.scenario.units import power_w
 from nullpose.scenario.ways import Ways
+from nullpose.scenario.wording import described
 
 _Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
 
@@ -117,6 +121,67 @@ class Scenario(Section):
     )
 
     @classmethod
+    def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
+        """Returns the scenario that a TOML file describes; the same as ``nullpose.load``.
+
+        Args:
+            path: the file, of 10 MB at most.
+            allow_outside: whether the file of nodes may be outside the folder of this one.
+
+        Raises:
+            ScenarioError: when the file cannot be read or is faulty; with every fault it has.
+        """
+        from nullpose.scenario.loading import load
+
+        return load(path, allow_outside=allow_outside)
+
+    @classmethod
+    def from_arrays(
+        cls,
+        nodes_m: ArrayLike,
+        jammers_m: ArrayLike = (),
+        *,
+        node_power_w: ArrayLike = 1.0,
+        jammer_power_w: ArrayLike = 1.0,
+        noise_w: float,
+        altitude_m: tuple[float, float],
+        reference_gain_db: float = 0.0,
+        **more: object,
+    ) -> Scenario:
+        """Returns the scenario of nodes and jammers that are given as arrays.
+
+        The paper's:
+        ``Scenario.from_arrays([[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30))``
+
+        Args:
+            nodes_m: positions east, north, up [m], shape (n, 3).
+            jammers_m: likewise, (m, 3); none if left out.
+            node_power_w: transmit powers [W], (n,) or one for all.
+            jammer_power_w: likewise, (m,) or one for all.
+            noise_w: noise power of the drone's receiver [W].
+            altitude_m: lowest and highest altitude of the vehicle [m].
+            reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; 0 in the paper.
+            more: other keys of a scenario, such as ``name`` or ``airframe``, with their tables; of
+                ``airspace`` and ``receiver`` what is not given above.
+
+        Raises:
+            UsageError: shapes that do not go together.
+            ScenarioError: with every fault of the values.
+        """
+        points = {
+            "nodes": rows_of_points("node", nodes_m, node_power_w),
+            "jammers": rows_of_points("jammer", jammers_m, jammer_power_w),
+        }
+        tables: dict[str, dict[str, object]] = {
+            "airspace": {"altitude_m": list(altitude_m)},
+            "receiver": {"noise_w": noise_w, "reference_gain_db": reference_gain_db},
+        }
+        for key, table in tables.items():
+            own = more.get(key)
+            more[key] = table | dict(own) if isinstance(own, Mapping) else table
+        return cls.from_dict({**points, **more})
+
+    @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Returns the raw scenario with the positions of points that are stated by latitude and longitude."""
         return located(data)
@@ -128,6 +193,29 @@ class Scenario(Section):
     def to_toml(self) -> str:
         """Returns the text of a scenario file that loads as an equal scenario."""
         return toml_text(self.to_dict())
+
+    def __repr__(self) -> str:
+        counts = [(len(self.nodes), "node"), (len(self.jammers), "jammer")]
+        counts += [(len(self.eavesdroppers), "eavesdropper")] * bool(self.eavesdroppers)
+        told = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
+        low, high = self.airspace.altitude_m
+        return f"Scenario({self.name!r}: {told}, {self.objective}, altitude {low:g} to {high:g} m)"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        groups = {"node": self.nodes, "jammer": self.jammers, "eavesdropper": self.eavesdroppers}
+        rows = [
+            {
+                "kind": kind,
+                "name": point.name,
+                **dict(zip(("x (m)", "y (m)", "z (m)"), point.position_m, strict=True)),
+                "power (W)": getattr(point, "transmit_power_w", None) or None,
+            }
+            for kind, points in groups.items()
+            for point in points
+        ]
+        return html_table(repr(self), rows)
 
     @property
     def objective_record(self) -> ObjectiveRecord:
@@ -269,6 +357,23 @@ class Scenario(Section):
             return stated
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         return float(np.sum(self.receiver.reference_gain * self.jammer_powers_w / distance_squared))
+
+
+def require_scenario(value: object) -> None:
+    """Raises an error with advice if a value is no scenario, such as the path of its file.
+
+    Args:
+        value: what was given for a scenario.
+
+    Raises:
+        WrongTypeError: it is none.
+    """
+    if isinstance(value, Scenario):
+        return
+    advice = "try Scenario.from_dict(...) or Scenario.from_arrays(...)"
+    if isinstance(value, str | os.PathLike):
+        advice = f"try Scenario.from_file({os.fspath(value)!r})"
+    raise WrongTypeError(f"scenario: got {described(value)}; must be a Scenario; {advice}")
 
 
 def _antennas_of(points: Sequence[GroundPoint]) -> GroundAntennas | None:

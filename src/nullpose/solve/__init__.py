@@ -13,7 +13,7 @@ from nullpose.solve.options import (
     default_gap,
     default_gap_of,
 )
-from nullpose.solve.result import Objective, Result, Stats, Status
+from nullpose.solve.result import Objective, Result, Results, Stats, Status
 from nullpose.solve.rigour import Rigour
 
 Solution = Result
@@ -31,6 +31,7 @@ __all__ = [
     "ManySolutions",
     "Objective",
     "Result",
+    "Results",
     "Rigour",
     "Scheme",
     "Solution",

@@ -13,13 +13,13 @@ from nullpose.family import AxisField, build_family
 from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, evaluate, to_db
 from nullpose.physics.pose import as_position
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, require_scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.compiling import working_clock
-from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Results, Stats, Status, objective_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.solve_and_prove import solve_and_prove
 
@@ -49,7 +49,7 @@ def solve(
             ``certify`` and ``seed``.
 
     Raises:
-        TypeError: what was given is no scenario, but its path, say.
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
@@ -96,7 +96,7 @@ def compare(
     schemes: Sequence[Scheme | str] = PAPER_SCHEMES,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
-) -> tuple[Result, ...]:
+) -> Results:
     """Return the solutions of several schemes for one scenario, those without meaning here left out.
 
     After an interrupt during a proof the remaining schemes are solved without one.
@@ -108,7 +108,7 @@ def compare(
         options: as for :func:`solve`.
 
     Raises:
-        TypeError: what was given is no scenario, but its path, say.
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
     """
@@ -122,7 +122,7 @@ def compare(
             options["certify"] = False
         if on_progress is not None:
             on_progress(done, len(applicable))
-    return tuple(solutions)
+    return Results(solutions)
 
 
 def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
@@ -137,7 +137,7 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         position_m: (3,) metres, at least the keep-out radius from every ground point.
 
     Raises:
-        TypeError: what was given is no scenario, but its path, say.
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: the position is not three finite numbers, or is too close to a ground point.
     """
     from nullpose.solve.kernels.axis import best_axis as kernel

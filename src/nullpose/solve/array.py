@@ -20,12 +20,12 @@ from nullpose.physics.array import (
     element_positions,
 )
 from nullpose.physics.evaluate import links_of
-from nullpose.scenario import Array, Scenario
+from nullpose.scenario import Array, Scenario, require_scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
 from nullpose.solve.array_search import ArrayHunt
 from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.compiling import working_clock
-from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, Status, objective_of
 
@@ -113,7 +113,7 @@ def solve_array(
         options: as for :func:`nullpose.solve`; limits of time and boxes are not consulted.
 
     Raises:
-        TypeError: what was given is no scenario, but its path, say.
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypedDict
@@ -12,7 +11,6 @@ from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
-from nullpose.scenario.wording import described
 
 TIME_LIMIT_S = 60.0
 NODE_LIMIT = 10**9
@@ -40,23 +38,6 @@ def default_gap_of(scenario: Scenario) -> float:
     if isinstance(scenario.antenna_record, PatternAntenna):
         return 1e-3 if len(scenario.nodes) <= 3 else 2e-2
     return default_gap(len(scenario.nodes) * max(1, len(scenario.eavesdroppers)))
-
-
-def require_scenario(scenario: object) -> None:
-    """Do nothing if what is to be solved is a scenario.
-
-    Args:
-        scenario: what was given.
-
-    Raises:
-        TypeError: it is something else, with what to do about it.
-    """
-    if not isinstance(scenario, Scenario):
-        path = repr(os.fspath(scenario)) if isinstance(scenario, str | os.PathLike) else '"scene.toml"'
-        raise TypeError(
-            f"scenario: given {described(scenario)}, must be a nullpose.Scenario; a file is read first, as "
-            f"in nullpose.solve(nullpose.load({path}))"
-        )
 
 
 class SolveKeywords(TypedDict, total=False):

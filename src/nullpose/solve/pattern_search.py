@@ -18,6 +18,7 @@ from nullpose.solve.multistart import multistart
 
 _HARD = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
 _LIGHTLY = 6_000, 120, 4  # where one does, which repairs what this misses
+_ROUND = 1_500, 30, 2  # likewise, for an antenna that is the same all round
 _LOW = 0.005  # of all directions, weighted by the grid's density
 _FEW = 12  # degree up to which lobes are few
 _WANDERED = 600  # random steps of a climb
@@ -40,9 +41,9 @@ class PatternSearch:
         self.family, self.arrays, self.reach = family, antenna.arrays, reach
         # with the largest gain in every direction
         self.loudest = family.changed(numerator_weight=family.numerator_weight * antenna.peak)
-        grid = directions(np.arange(181.0), np.arange(360.0)).reshape(-1, 3)
-        gains = antenna.gain(grid)
-        self.lowest = grid[gains <= np.quantile(gains, _LOW)]
+        theta_deg, phi_deg = np.arange(181.0), np.arange(360.0)
+        gains = antenna.harmonics.on_grid(np.radians(theta_deg), np.radians(phi_deg))
+        self.lowest = directions(theta_deg, phi_deg)[gains <= np.quantile(gains, _LOW)]
         self.rng = np.random.default_rng(seed)
         self.noise = self.rng.normal(size=(_WANDERED, 6))
         self.best, self.starts, self.evaluations = -math.inf, 0, 0
@@ -91,7 +92,8 @@ class PatternSearch:
         """
         lobes = max(1, self.arrays.cosine.shape[0] // _FEW)  # of which most climbs lead to a small one
         light = light and lobes == 1
-        drawn, climbs, polished = _LIGHTLY if light else (lobes * count for count in _HARD)
+        few = _ROUND if self.reach.spins else _LIGHTLY
+        drawn, climbs, polished = few if light else (lobes * count for count in _HARD)
         points = self.family.points_m
         margin = float(np.max(np.ptp(points, axis=0))) + 10.0 * self.family.keep_out_m
         widest_m = points.min(axis=0) - margin, points.max(axis=0) + margin

@@ -10,6 +10,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
+from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
@@ -24,6 +25,7 @@ class Status(StrEnum):
     CERTIFIED = "certified"
     GAP_NOT_REACHED = "gap-not-reached"
     BEST_FOUND = "best-found"
+    GIVEN = "given"
 
     @property
     def message(self) -> str:
@@ -47,6 +49,7 @@ _MESSAGES = {
     Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",
     Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
     Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
+    Status.GIVEN: "the pose was given, not searched for",
 }
 
 
@@ -138,7 +141,7 @@ def objective_of(
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Result:
     """A pose, what it gives, and how it was found. What the details have is read on it too.
 
@@ -208,6 +211,39 @@ class Result:
         """Whether Ctrl-C ended its proof."""
         return self.reason == INTERRUPT
 
+    def __repr__(self) -> str:
+        quantity, bound = self.objective.quantity, self.objective.upper_bound
+        value = f"{quantity.smallest} {quantity.in_unit(self.objective.value):.7g} {quantity.unit}"
+        above = "" if bound is None else f", at most {quantity.in_unit(bound):.7g}"
+        place = ", ".join(f"{x:z.3f}" for x in self.pose.position_m)
+        return f"{type(self).__name__}({self.label}, {self.status.value}: {value}{above}; at ({place}) m)"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.scenario.name, [self.row()], [self.status.message])
+
+    def row(self) -> dict[str, object]:
+        """Return the result as a row of a table: numbers by name and unit, angles in degrees."""
+        quantity, bound = self.objective.quantity, self.objective.upper_bound
+        unit = "bps_hz" if quantity.is_rate else "db"
+        angles = {name: getattr(self.pose, f"{name}_rad") for name in ("roll", "pitch", "yaw")}
+        return {
+            "case": self.label,
+            f"{quantity.name}_{unit}": quantity.in_unit(self.objective.value),
+            f"upper_bound_{unit}": None if bound is None else quantity.in_unit(bound),
+            "status": self.status.value,
+            **dict(zip(("x_m", "y_m", "z_m"), self.pose.position_m.tolist(), strict=True)),
+            **{f"{name}_deg": math.degrees(angle_rad) for name, angle_rad in angles.items()},
+            "binding_node": self.binding_node,
+        }
+
+    def frame(self) -> Any:
+        """Return the links as a data frame of pandas, a row for each node.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame([link.to_dict() for link in self.links])
+
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON; a number that JSON cannot hold becomes None."""
         stats = {key: value for key, value in asdict(self.stats).items() if value is not None}
@@ -227,6 +263,23 @@ class Result:
             "note": self.note,
             **({} if self.details is None else self.details.to_dict(objective)),
         }
+
+
+class Results(tuple[Result, ...]):
+    """Results of several cases of a scenario, in order."""
+
+    __slots__ = ()
+
+    def frame(self) -> Any:
+        """Return the results as a data frame of pandas, a row for each.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame([one.row() for one in self])
+
+    def _repr_html_(self) -> str:
+        return html_table(self[0].scenario.name if self else "", [one.row() for one in self])
 
 
 def _finite(value: float | None) -> float | None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nullpose.report.numbers import MINUS
 from nullpose.studio.colours import round_steps, scale_colours, scale_range
 from nullpose.studio.drawing import FLAT, add_label, add_lines
-from nullpose.studio.field_map import Field
+from nullpose.study.value_map import Field
 
 if TYPE_CHECKING:
     from viser import SceneApi

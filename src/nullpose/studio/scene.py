@@ -12,9 +12,9 @@ from nullpose.report.numbers import MINUS
 from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.colours import KIND_COLOURS, round_steps
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
-from nullpose.studio.field_map import map_extent_m
 from nullpose.studio.meshes import MARKS, ellipsoid_mesh, zone_mesh
 from nullpose.studio.view import PointKey, View
+from nullpose.study.value_map import map_extent_m
 
 if TYPE_CHECKING:
     from viser import SceneApi

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Unpack
 
 from nullpose.errors import SolveError
+from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solve import (
@@ -84,7 +85,7 @@ class AirframeResult:
         }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class AirframeComparison:
     """What each vehicle makes of a scenario.
 
@@ -168,6 +169,35 @@ class AirframeComparison:
     def arrays(self) -> tuple[AirframeResult, ...]:
         """The results of the level vehicles with an array."""
         return tuple(result for result in self.results if result.case.array is not None)
+
+    def __repr__(self) -> str:
+        least = self.least_sufficient
+        enough = "none suffices" if least is None else f"{least.case.name} suffices"
+        return f"AirframeComparison({self.scenario.name!r}: {len(self.results)} vehicles, {enough})"
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), self._records())
+
+    def frame(self) -> Any:
+        """Return the comparison as a data frame of pandas, a row for each vehicle.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame(self._records())
+
+    def _records(self) -> list[dict[str, object]]:
+        """Return a row for each vehicle; of one without a pose, its name and the reason alone."""
+        whole = self.omnidirectional.result
+        none: dict[str, object] = dict.fromkeys(whole.row()) if whole is not None else {}
+        return [
+            {
+                "vehicle": one.case.label,
+                **(none if one.result is None else one.result.row()),
+                "reason": one.reason,
+            }
+            for one in self.results
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the comparison as plain data, the scenario once for all vehicles."""

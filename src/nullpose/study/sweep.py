@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Unpack
 
 from nullpose.errors import Fault, ScenarioError, UsageError
-from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme
 from nullpose.solve import SolveKeywords, SolveOptions, solve
 from nullpose.study.grid import solved_grid
@@ -44,6 +44,7 @@ def sweep(
         UsageError: no scheme applies, or a bad limit.
         KeyboardInterrupt: Ctrl-C ended a proof.
     """
+    require_scenario(scenario)
     scenarios = _scenarios_along(scenario, path, values)
     reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in map(Scheme, schemes)}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}

@@ -11,11 +11,12 @@ from types import MappingProxyType
 from typing import Any
 
 from nullpose.files import replacing
+from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL, Quantity
 from nullpose.solve import Result
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SweepRow(Result):
     """What was found for one scheme at one value of a setting.
 
@@ -75,7 +76,7 @@ class SweepRow(Result):
         }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class SweepTable:
     """What a sweep found.
 
@@ -144,20 +145,70 @@ class SweepTable:
         Raises:
             OutputError: the file cannot be written.
         """
+        with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            records = self._records()
+            writer.writerow(records[0] if records else [self.path])
+            for record in records:
+                writer.writerow(_text(cell) for cell in record.values())
+        return path
+
+    def frame(self) -> Any:
+        """Return the table as a data frame of pandas with the columns of the CSV file.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame(self._records())
+
+    def to_xarray(self) -> Any:
+        """Return the table's numbers as arrays of xarray over the swept setting and the scheme.
+
+        Raises:
+            UsageError: pandas or xarray is not installed.
+        """
+        imported("xarray")
+        return self.frame().set_index([self.path, "scheme"]).to_xarray()
+
+    def __repr__(self) -> str:
+        values, cases = self.values, ", ".join(map(str, self.schemes))
+        span = f"{values[0]:g} to {values[-1]:g}, " if values else ""
+        told = [f"SweepTable({self.path}: {span}{len(values)} values of {cases}", *self._absent()]
+        return "; ".join(told) + ")"
+
+    def _repr_html_(self) -> str:
+        return html_table(
+            self.path, [{self.path: row.value} | row.row() for row in self.rows], self._absent()
+        )
+
+    def _absent(self) -> list[str]:
+        """Return what was left out, with the reasons."""
+        return [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out.items()]
+
+    def _records(self) -> list[dict[str, Any]]:
+        """Return the rows with every column, numbers as such; None for no number."""
         first = self.rows[:1]
         numbers = _NUMBERS | {
             name: take for row in first for name, take in _own_numbers(row.objective.quantity)
         }
-        links = [f"sinr_{link.node}_db" for row in first for link in row.links]
-        with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([self.path, "scheme", "status", "rigour", *numbers, *links, "note", "reason"])
-            for row in self.rows:
-                found = [take(row) for take in numbers.values()] + [link.sinr_db for link in row.links]
-                texts = ["" if number is None else repr(float(number)) for number in found]
-                words = (repr(float(row.value)), row.scheme, row.status, row.objective.rigour.value)
-                writer.writerow([*words, *texts, row.note, row.reason])
-        return path
+        return [
+            {
+                self.path: row.value,
+                "scheme": str(row.scheme),
+                "status": row.status.value,
+                "rigour": row.objective.rigour.value,
+                **{name: take(row) for name, take in numbers.items()},
+                **{f"sinr_{link.node}_db": link.sinr_db for link in row.links},
+                "note": row.note,
+                "reason": row.reason,
+            }
+            for row in self.rows
+        ]
+
+
+def _text(cell: object) -> str:
+    """Return a cell of a CSV file, a number to its last digit."""
+    return "" if cell is None else cell if isinstance(cell, str) else repr(float(cell))  # type: ignore[arg-type]
 
 
 _Number = Callable[[SweepRow], float | None]

@@ -83,7 +83,7 @@ def test_batches_are_the_frame(table: StudyTable) -> None:
 
 def test_arrays_have_a_dimension_for_each_choice(table: StudyTable) -> None:
     """Scene, swept parameters and case: what is looked up there is what the frame has."""
-    arrays, frame = table.xarray(), table.frame()
+    arrays, frame = table.to_xarray(), table.frame()
     assert dict(arrays.sizes) == {"scene": 5, "jammers.M.power_w": 2, "receiver.noise_w": 3, "case": 2}
     assert arrays.attrs["objective"] == "min-sinr"
     for row in frame.itertuples(index=False):

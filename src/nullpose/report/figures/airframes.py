@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.airframes import answer_lines, numbers_of
-from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style
+from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
-from nullpose.report.numbers import number, share_text
+from nullpose.report.numbers import begun, number, share_text
 from nullpose.study import AirframeComparison, AirframeResult
 
 _ROW_INCH = 0.3
@@ -23,32 +23,48 @@ _GAP = 0.6  # between dipoles and arrays, in rows
 _DEEPEST_DB = 25.0  # bars that end farther below the omnidirectional one are cut off
 
 
-def draw_airframes(comparison: AirframeComparison) -> Figure:
+def draw_airframes(comparison: AirframeComparison, width: str | None = None) -> Figure:
     """Return the figure: a bar for each vehicle, a line from it up to its bound, and what it guarantees.
 
     Args:
         comparison: what each vehicle makes of a scenario.
+        width: in print, where nothing is said around the axes, a key of ``WIDTHS_MM``; None for a screen.
     """
-    scenario, results = comparison.scenario, comparison.results
-    quantity, lines = Quantity.of(scenario), answer_lines(comparison)
-    places = np.arange(len(results)) + _GAP * (np.arange(len(results)) >= len(comparison.dipoles))
-    with house_style():
-        height = 1.6 + _ROW_INCH * len(results) + _SENTENCE_INCH * len(lines)
-        figure = Figure(figsize=(7.0, height), layout="constrained")
+    lines = answer_lines(comparison)
+    with house_style(width):
+        height = 1.6 + _ROW_INCH * len(comparison.results)
+        size = (7.0, height + _SENTENCE_INCH * len(lines))
+        if width is not None:
+            size = (inches(size, width, 0.0)[0], 0.7 * height)
+        figure = Figure(figsize=size, layout="constrained")
         axes = figure.add_subplot()
-        _draw_rows(axes, comparison, quantity, places)
-        whole = quantity.in_unit(comparison.omnidirectional.value)
-        axes.axvline(whole, color=VEHICLES["omnidirectional"].colour, linewidth=0.9, zorder=2.5)
-        axes.set_yticks(places, [result.case.label for result in results])
-        axes.tick_params(axis="y", length=0)
-        axes.set_ylim(places[-1] + 0.6, -0.6)
-        axes.grid(visible=False, axis="y")
-        look: dict[str, Any] = {"fontsize": 9.0, "fontweight": "bold", "color": INK, "parse_math": False}
-        axes.set_title(scenario.name, loc="left", **look)
-        axes.set_xlabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
-        figure.legend(loc="outside upper center", ncols=3, frameon=False, handlelength=1.6)
-        draw_caption(figure, lines)
+        draw_airframe_bars(axes, comparison)
+        columns = 1 if width == "column" else 3
+        figure.legend(loc="outside upper center", ncols=columns, frameon=False, handlelength=1.6)
+        if width is None:
+            look: dict[str, Any] = {"fontsize": 9.0, "fontweight": "bold", "color": INK, "parse_math": False}
+            axes.set_title(comparison.scenario.name, loc="left", **look)
+            draw_caption(figure, lines)
     return figure
+
+
+def draw_airframe_bars(axes: Axes, comparison: AirframeComparison) -> None:
+    """Draw a bar for each vehicle, a line from it up to its bound, and what it guarantees.
+
+    Args:
+        axes: where to draw.
+        comparison: what each vehicle makes of a scenario.
+    """
+    results, quantity = comparison.results, Quantity.of(comparison.scenario)
+    places = np.arange(len(results)) + _GAP * (np.arange(len(results)) >= len(comparison.dipoles))
+    _draw_rows(axes, comparison, quantity, places)
+    whole = quantity.in_unit(comparison.omnidirectional.value)
+    axes.axvline(whole, color=VEHICLES["omnidirectional"].colour, linewidth=0.9, zorder=2.5)
+    axes.set_yticks(places, [result.case.label for result in results])
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(places[-1] + 0.6, -0.6)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"{begun(quantity.smallest)} over the nodes  ({quantity.unit})")
 
 
 def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, places: FloatArray) -> None:
@@ -90,7 +106,7 @@ def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, p
             xytext=(5, 0),
             textcoords="offset points",
             va="center",
-            fontsize=8,
+            fontsize="small",
             zorder=4.0,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
         )

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
 
 from nullpose.physics.types import FloatArray
 
-_SIZE_PT = 9.0
 _MARKER_PT = 5.0  # half of a marker
 _AWAY_PT = 7.0  # from a point to its name
 _FARTHEST_PT = 30.0  # from a point to the end of what is drawn around it; a name stands within what is wider
@@ -53,7 +53,7 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
     """Write names where they cover least: of markers, of each other and of a ball.
 
     Args:
-        axes: of a 3-D picture, with its limits, its view and its place in the figure set.
+        axes: of a picture in 3-D or from above, with its limits, its view and its place in the figure set.
         labels: the names, the most important first.
         centre_m: of the ball to leave free, shape ``(3,)``, metres.
         radius_m: of the ball.
@@ -70,8 +70,13 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
         """Return how much a text covers, square pixels, after moving it to a place."""
         share = away_pt * (0.7 if all(place) else 1.0)
         text.set(position=(share * place[0], share * place[1]), ha=_SIDES[place[0]], va=_LEVELS[place[1]])
-        shared = [Bbox.intersection(text.get_window_extent(), box) for box in taken]
-        return sum(box.width * box.height for box in shared if box is not None)
+        own = text.get_window_extent()
+        shared = [Bbox.intersection(own, box) for box in taken]
+        return outside(own) + sum(_area(box) for box in shared)
+
+    def outside(own: Any) -> float:
+        """Return how much of a text is outside the axes, where the numbers are; nothing in 3-D."""
+        return 0.0 if axes.name == "3d" else _area(own) - _area(Bbox.intersection(own, axes.bbox))
 
     for label in labels:
         text = axes.annotate(
@@ -80,7 +85,7 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
             xytext=(0.0, 0.0),
             textcoords="offset points",
             color=label.colour,
-            fontsize=_SIZE_PT,
+            fontsize=rcParams["xtick.labelsize"],
             zorder=8,
             annotation_clip=False,
             parse_math=False,
@@ -95,8 +100,14 @@ def place_labels(axes: Any, labels: Sequence[Label], centre_m: FloatArray, radiu
 
 def _on_paper(axes: Any, point_m: FloatArray) -> tuple[tuple[float, float], FloatArray]:
     """Return where a point is in the plane that the axes project on, and on the paper, pixels."""
-    x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
+    x, y = point_m[:2]
+    if axes.name == "3d":
+        x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
     return (float(x), float(y)), np.asarray(axes.transData.transform((x, y)))
+
+
+def _area(box: Any) -> float:
+    return 0.0 if box is None else float(box.width * box.height)
 
 
 def _square(at: FloatArray, half: float) -> Any:

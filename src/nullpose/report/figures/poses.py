@@ -17,6 +17,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import element_positions
 from nullpose.physics.types import FloatArray
+from nullpose.report.figures.panels import draw_panels
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.scene import (
     ALONE,
@@ -27,7 +28,6 @@ from nullpose.report.figures.scene import (
     SURFACE,
     Stage,
     draw_line,
-    draw_panels,
 )
 from nullpose.report.figures.style import INK
 from nullpose.report.geometry import null_angle_rad
@@ -60,40 +60,43 @@ def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
     """
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
     stage = Stage(scenario=scenario, poses=tuple(row.pose for row in rows), view=PANELS)
-    return draw_panels(stage, _draw_dipole, surface=_SURFACE, titles=titles)
+    return draw_panels(stage, draw_dipole, surface=_SURFACE, titles=titles)
 
 
-def draw_result(result: Result) -> Figure:
+def draw_result(result: Result, width: str | None = None) -> Figure:
     """Return the figure of one result: of a dipole's pose, of an array, or of a robust pose.
 
     Args:
         result: of any kind.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     drawings = {RobustDetails: draw_robust, ArrayDetails: draw_array}
-    return drawings.get(type(result.details), draw_pose)(result)
+    return drawings.get(type(result.details), draw_pose)(result, width)
 
 
-def draw_pose(solution: Result) -> Figure:
+def draw_pose(solution: Result, width: str | None = None) -> Figure:
     """Return the figure of one solution: the scene, its fence and its no-fly zones, the pose and its pattern.
 
     Args:
         solution: what was found.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     scenario, pose = solution.scenario, solution.pose
     words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
     is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
-    surface = _WHOLE if is_pattern else _SURFACE
-    return draw_panels(stage, _draw_dipole, surface=surface, head=f"{scenario.name}\n{words}")
+    look: dict[str, Any] = {"surface": _WHOLE if is_pattern else _SURFACE, "plan": True, "width": width}
+    return draw_panels(stage, draw_dipole, head=f"{scenario.name}\n{words}", **look)
 
 
-def draw_robust(solution: Result) -> Figure:
+def draw_robust(solution: Result, width: str | None = None) -> Figure:
     """Return the figure of a robust solution: its pose, and beside it the one that is best as stated.
 
     Both panels show the same space, with the sets that jammers and eavesdroppers may be anywhere in.
 
     Args:
         solution: what was found.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     scenario, quantity = solution.scenario, Quantity.of(solution.scenario)
     both = {"robust pose": solution.details.robust, "best pose as stated": solution.details.nominal}
@@ -107,7 +110,7 @@ def draw_robust(solution: Result) -> Figure:
     stage = Stage(
         scenario=scenario, poses=tuple(one.pose for one in both.values()), view=PAIR, uncertain=True
     )
-    return draw_panels(stage, _draw_dipole, surface=_SURFACE, head=head, titles=titles)
+    return draw_panels(stage, draw_dipole, surface=_SURFACE, head=head, titles=titles, width=width)
 
 
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
@@ -121,8 +124,14 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
     return f"{value}, null {', '.join(nulls)}" if nulls and is_dipole else value
 
 
-def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
-    """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen."""
+def draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
+    """Draw the axis, and the doughnut with its near side cut away, so that the null can be seen.
+
+    Args:
+        axes: where to draw, three-dimensional.
+        stage: what is to be seen.
+        pose: of the drone.
+    """
     radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
     reach = AXIS * radius_m * pose.antenna_axis
     antenna = stage.scenario.antenna_record
@@ -135,13 +144,14 @@ def _draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     axes.scatter(*position, color=DRONE, s=26, zorder=7, depthshade=False, label="drone")
 
 
-def draw_array(solution: Result) -> Figure:
+def draw_array(solution: Result, width: str | None = None) -> Figure:
     """Return the figure of an array: the scene, its elements larger than life, its heading and its beam.
 
     Digital combining has a beam for each node; the one drawn is that of the node with the smallest value.
 
     Args:
         solution: what was found.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     array, quantity, yaw_rad = solution.details, solution.objective.quantity, solution.pose.yaw_rad
     elements = element_positions(array.elements, array.layout, array.spacing_wavelengths, yaw_rad)
@@ -161,6 +171,8 @@ def draw_array(solution: Result) -> Figure:
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
         surface=f"gain of the beam{whose}, horizontal cut as a line",
         head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}",
+        plan=True,
+        width=width,
     )
 
 

@@ -1,4 +1,4 @@
-"""A scene in 3-D: its points with their names, its fence and zones, a vehicle, and the panels of a figure."""
+"""A scene in 3-D: its points with their names, its fence and zones, and a vehicle."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
@@ -17,7 +15,7 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.bodies import draw_set, draw_zone, set_box_m
 from nullpose.report.figures.labels import Label, place_labels
-from nullpose.report.figures.style import GREY, house_style
+from nullpose.report.figures.style import GREY
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 
@@ -25,13 +23,11 @@ from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 _MARGIN = 0.12  # free ground around the scene
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
-_ZOOM = 1.12  # how much of its place a scene fills
-_COLUMN_INCH = 2.3  # of the legend
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
-_FORBIDDEN = "#b36b00"
-_KINDS = {
+FORBIDDEN = "#b36b00"
+KINDS = {
     "node": ("#0a6f3c", "s", 3.0),
     "jammer": ("#d40000", "X", 6.0),
     "eavesdropper": ("#9a4fb0", "D", 6.0),
@@ -49,6 +45,8 @@ class View:
         elevation_deg: how high the camera stands.
         pattern: radius drawn where the gain is largest; a pattern has no size of its own.
         azimuth_deg: where the camera stands, from x (east) towards y (north).
+        zoom: how much of its place a scene fills.
+        pad_pt: more room between numbers and names of the level axes, points.
     """
 
     inches: tuple[float, float]
@@ -56,6 +54,8 @@ class View:
     elevation_deg: float
     pattern: float
     azimuth_deg: float = -32.0
+    zoom: float = 1.12
+    pad_pt: float = 0.0
 
     @property
     def camera(self) -> FloatArray:
@@ -66,7 +66,7 @@ class View:
 
 
 PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), elevation_deg=20.0, pattern=0.15)
-PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11)
+PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11, zoom=1.02)
 ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), elevation_deg=38.0, pattern=0.11)
 
 
@@ -117,45 +117,6 @@ class Stage:
         return [each for each in outlines if np.all(np.abs(each[1] - middle_m) <= far_m)]
 
 
-def draw_panels(
-    stage: Stage,
-    draw_vehicle: Callable[[Any, Stage, Pose], None],
-    *,
-    surface: str,
-    head: str = "",
-    titles: Sequence[str] = (),
-) -> Figure:
-    """Return a figure with a panel for each pose: the scene, the vehicle, and the names of points.
-
-    Args:
-        stage: what each panel has to show.
-        draw_vehicle: draws the vehicle at a pose.
-        surface: what its pattern is called in the legend.
-        head: title of the figure; empty for none.
-        titles: of the panels; none for no titles.
-    """
-    view, count = stage.view, len(stage.poses)
-    with house_style():
-        figure = Figure(figsize=(view.inches[0] * count, view.inches[1]))
-        figure.subplots_adjust(left=0.016, right=0.962, bottom=view.edges[0], top=view.edges[1], wspace=0.08)
-        for index, pose in enumerate(stage.poses):
-            axes: Any = figure.add_subplot(1, count, index + 1, projection="3d", computed_zorder=False)
-            labels = _draw_scene(axes, stage, pose)
-            draw_vehicle(axes, stage, pose)
-            place_labels(axes, labels, pose.position_m, view.pattern * stage.extent_m)
-            axes.set_title(titles[index] if titles else "", fontsize=10, y=0.96)
-        figure.suptitle(head, fontsize=10, parse_math=False)
-        handles, names = figure.axes[0].get_legend_handles_labels()
-        once = dict(zip(names, handles, strict=True)) | {surface: Patch(color=SURFACE, alpha=0.8)}
-        columns = min(len(once), int(view.inches[0] * count / _COLUMN_INCH))
-        legend = figure.legend(
-            once.values(), once.keys(), loc="lower center", ncols=columns, frameon=False, handlelength=2.6
-        )
-        for text in legend.get_texts():
-            text.set_parse_math(False)
-    return figure
-
-
 def draw_line(axes: Any, start: ArrayLike, stop: ArrayLike, **style: Any) -> None:
     """Draw a straight line.
 
@@ -168,6 +129,21 @@ def draw_line(axes: Any, start: ArrayLike, stop: ArrayLike, **style: Any) -> Non
     axes.plot(*np.stack([start, stop]).T, **style)
 
 
+def draw_panel(axes: Any, stage: Stage, pose: Pose, draw_vehicle: Callable[[Any, Stage, Pose], None]) -> None:
+    """Draw the scene, the vehicle at a pose, and the names of points.
+
+    Args:
+        axes: where to draw, three-dimensional, its place in the figure set.
+        stage: what is to be seen.
+        pose: of the vehicle.
+        draw_vehicle: draws it.
+    """
+    axes.computed_zorder = False
+    labels = _draw_scene(axes, stage, pose)
+    draw_vehicle(axes, stage, pose)
+    place_labels(axes, labels, pose.position_m, stage.view.pattern * stage.extent_m)
+
+
 def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
     """Return the names of points and zones, after drawing the scene around a pose, all but the vehicle."""
     _frame(axes, stage)
@@ -177,7 +153,7 @@ def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
     axes.scatter(*ground, color=GREY, marker="+", s=30, zorder=2)
     labels = []
     for kind, point in stage.points:
-        place, (colour, marker, order) = np.asarray(point.position_m), _KINDS[kind]
+        place, (colour, marker, order) = np.asarray(point.position_m), KINDS[kind]
         axes.scatter(*place, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=kind)
         around_m = 0.0
         if isinstance(point, Node):
@@ -196,12 +172,16 @@ def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
                 draw_set(axes, point, colour, f"where the {kind} may be")
         labels.append(Label(point.name, place, colour, beside=kind != "node", around_m=around_m))
     for zone, corners_m in stage.zones:
-        labels += draw_zone(axes, zone, corners_m, _FORBIDDEN)
+        labels += draw_zone(axes, zone, corners_m, FORBIDDEN)
     return labels
 
 
-def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of the space drawn, metres."""
+def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
+    """Return the low and the high corner of the space drawn, each (3,), metres.
+
+    Args:
+        stage: what is to be seen.
+    """
     extent_m, points = stage.extent_m, stage.places_m
     hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
@@ -216,11 +196,12 @@ def _limits(stage: Stage) -> tuple[FloatArray, FloatArray]:
 
 
 def _frame(axes: Any, stage: Stage) -> None:
-    low, high = _limits(stage)
+    low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(tuple(high - low), zoom=_ZOOM)  # one metre is as long along every axis
-    axes.set_xlabel("x (east)  m", labelpad=-3)
-    axes.set_ylabel("y (north)  m", labelpad=-1)
+    axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
+    pad_pt = stage.view.pad_pt
+    axes.set_xlabel("x (east)  m", labelpad=pad_pt - 3)
+    axes.set_ylabel("y (north)  m", labelpad=pad_pt - 1)
     axes.set_zlabel("z (up)  m", labelpad=-8)
     axes.tick_params(pad=-2, labelsize=7.5)
     sides = ((axes.xaxis, 5), (axes.yaxis, 7), (axes.zaxis, 3))

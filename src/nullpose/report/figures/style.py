@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import shutil
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
-_FORMATS = (".png", ".svg")
+_FORMATS = (".png", ".svg", ".pdf", ".pgf")
+_TEX = ("xelatex", "lualatex", "pdflatex")
+_NAMED = ".png, .svg, .pdf or .pgf"
 
 
 CURVES: Mapping[str, Curve] = MappingProxyType({scheme.value: scheme.record.curve for scheme in Scheme})
@@ -61,15 +64,47 @@ _RC: dict[Any, Any] = {
     "ytick.labelcolor": INK,
     "text.color": INK,
     "svg.hashsalt": "nullpose",  # the same figure gives the same file
+    "pdf.fonttype": 42,  # fonts are embedded whole, as TrueType
+    "pgf.rcfonts": False,  # the document's own
 }
+
+_PRINT: dict[Any, Any] = {
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
+}
+
+WIDTHS_MM: Mapping[str, float] = MappingProxyType({"column": 88.0, "page": 181.0})
+"""Widths of figures in print: one column, or both, of an IEEE page."""
+
+
+def inches(usual: tuple[float, float], width: str | None, share: float) -> tuple[float, float]:
+    """Return the width and height of a figure.
+
+    Args:
+        usual: those on a screen, inches.
+        width: a key of ``WIDTHS_MM``, or None for the usual.
+        share: height over width in print.
+    """
+    if width is None:
+        return usual
+    wide = WIDTHS_MM[width] / 25.4
+    return wide, share * wide
 
 
 @contextmanager
-def house_style() -> Iterator[None]:
-    """Apply the shared look to every figure made inside."""
+def house_style(width: str | None = None) -> Iterator[None]:
+    """Apply the shared look to every figure made inside.
+
+    Args:
+        width: a key of ``WIDTHS_MM`` for the letters of a figure in print; None for a screen's.
+    """
     import matplotlib
 
-    with matplotlib.rc_context(_RC):
+    with matplotlib.rc_context(_RC if width is None else _RC | _PRINT):
         yield
 
 
@@ -114,47 +149,63 @@ def draw_curve(
             axes.fill_between(across, *band, where=known, step="post" if steps else None, **shade)
 
 
-def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
-    """Return the paths of a PNG and an SVG of a figure after writing both.
+def write_figure(
+    figure: Figure, folder: Path, stem: str, kinds: Iterable[str] = ("png", "svg")
+) -> tuple[Path, ...]:
+    """Return the paths of a figure's files after writing them.
 
     Args:
         figure: what to write.
         folder: an existing folder.
         stem: file name without its suffix.
+        kinds: suffixes.
 
     Raises:
         OutputError: a file cannot be written.
     """
-    png, svg = folder / f"{stem}.png", folder / f"{stem}.svg"
-    return write_figure_file(figure, png), write_figure_file(figure, svg)
+    return tuple(write_figure_file(figure, folder / f"{stem}.{kind}") for kind in kinds)
 
 
 def prepare_figure_file(path: Path) -> None:
     """Make sure that a figure can be written later, its folder made if need be.
 
     Args:
-        path: ends in .png or .svg.
+        path: ends in .png, .svg, .pdf or .pgf.
 
     Raises:
-        UsageError: it ends otherwise.
+        UsageError: it ends otherwise; or it is a PGF file, and there is no TeX, which measures its letters.
         OutputError: its folder cannot be made or written.
     """
     if path.suffix.lower() not in _FORMATS:
-        raise UsageError(f"figure: given {path}; allowed: a name that ends in {' or '.join(_FORMATS)}")
+        raise UsageError(f"figure: given {path}; allowed: a name that ends in {_NAMED}")
+    if path.suffix.lower() == ".pgf" and not any(map(shutil.which, _TEX)):
+        raise UsageError(
+            f"figure: given {path}; .pgf needs {', '.join(_TEX[:-1])} or {_TEX[-1]} on the path, and none is "
+            "there; install TeX, or write a .pdf, in which the fonts are embedded"
+        )
     prepare_folder(path.parent)
 
 
 def write_figure_file(figure: Figure, path: Path) -> Path:
-    """Return the path of a figure after writing it, as PNG or SVG by the path's suffix.
+    """Return the path of a figure after writing it, as PNG, SVG, PDF or PGF by the path's suffix.
 
     Args:
         figure: what to write.
-        path: ends in .png or .svg; an existing file is replaced.
+        path: ends in .png, .svg, .pdf or .pgf; an existing file is replaced.
 
     Raises:
         OutputError: the file cannot be written.
     """
-    options: dict[str, Any] = {"dpi": 200} if path.suffix.lower() == ".png" else {"metadata": {"Date": None}}
-    with house_style(), replacing(path) as temporary:
-        figure.savefig(temporary, format=path.suffix.lower()[1:], facecolor="white", **options)
+    import matplotlib
+
+    kind = path.suffix.lower()[1:]
+    in_print = any(abs(figure.get_figwidth() - mm / 25.4) < 1e-6 for mm in WIDTHS_MM.values())
+    options: dict[str, dict[str, Any]] = {
+        "png": {"dpi": 600 if in_print else 200},
+        "svg": {"metadata": {"Date": None}},
+        "pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps
+    }
+    tex = next(filter(shutil.which, _TEX), _TEX[0])
+    with house_style(), matplotlib.rc_context({"pgf.texsystem": tex}), replacing(path) as temporary:
+        figure.savefig(temporary, format=kind, facecolor="white", **options.get(kind, {}))
     return path

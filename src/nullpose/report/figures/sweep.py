@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style
-from nullpose.report.numbers import axis_label
+from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style, inches
+from nullpose.report.numbers import axis_label, begun
 from nullpose.study import SweepRow, SweepTable
 
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
@@ -64,8 +64,11 @@ def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bo
         _in_unit(rows, "value"),
         _in_unit(rows, "upper_bound"),
     )
-    first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
-    every = (first, max(len(CURVES), math.ceil(len(rows) / _MARKERS)))
+    first = list(CURVES).index(
+        scheme
+    )  # staggered, so that curves of many points which coincide both stay visible
+    step = math.ceil(len(rows) / _MARKERS)
+    every = 1 if step == 1 else (first, max(len(CURVES), step))
     draw_curve(axes, look, levels, values, (values, bounds), every=every)
     seen = bounds - values > apart
     marks: dict[str, Any] = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
@@ -95,23 +98,41 @@ def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
         axes.set_ylim(low - 0.05 * room, high + room)
 
 
-def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
+def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None) -> Figure:
     """Return the figure of a sweep, its legend above the axes and what is proved below them.
 
     Args:
         table: what the sweep found.
         log: draw the swept setting on a logarithmic axis.
+        width: in print, where nothing is said below the axes, a key of ``WIDTHS_MM``; None for a screen.
     """
-    quantity, lines = quantity_of(table), [f"{line}." for line in certainty_lines(table)]
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.6), layout="constrained")
-        axes = figure.add_subplot()
-        if draw_curves(axes, table):
+    lines = [f"{line}." for line in certainty_lines(table)]
+    with house_style(width):
+        size = inches((7.0, 4.6), width, 0.8 if width == "column" else 0.5)
+        figure = Figure(figsize=size, layout="constrained")
+        if draw_sweep_axes(figure.add_subplot(), table, log=log):
             lines.append("Bands reach up to the bound, a small triangle above which no pose is.")
-        _keep_curves_large(axes, table)
-        axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
-        axes.set_ylabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
-        axes.margins(x=0.02)
-        figure.legend(loc="outside upper center", ncols=4, frameon=False, handlelength=3.2, columnspacing=1.4)
-        draw_caption(figure, lines)
+        columns = 2 if width == "column" else 4
+        figure.legend(
+            loc="outside upper center", ncols=columns, frameon=False, handlelength=3.2, columnspacing=1.4
+        )
+        if width is None:
+            draw_caption(figure, lines)
     return figure
+
+
+def draw_sweep_axes(axes: Axes, table: SweepTable, *, log: bool = False) -> bool:
+    """Return whether bounds can be seen apart from their values, after drawing a sweep with its labels.
+
+    Args:
+        axes: where to draw.
+        table: what the sweep found.
+        log: draw the swept setting on a logarithmic axis.
+    """
+    quantity = quantity_of(table)
+    seen = draw_curves(axes, table)
+    _keep_curves_large(axes, table)
+    axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
+    axes.set_ylabel(f"{begun(quantity.smallest)} over the nodes  ({quantity.unit})")
+    axes.margins(x=0.02)
+    return seen

@@ -305,5 +305,5 @@ def _data(summary: Summary) -> list[str]:
         "`study.csv` has a row for each scene, combination and case; `summary.csv` one for each combination "
         "and case, with every number above. In one line each, in the study's folder:",
         '```python\nframe = nullpose.study.monte_carlo.read_study(".").frame()    # pandas\n'
-        'arrays = nullpose.study.monte_carlo.read_study(".").xarray()  # by scene, swept value and case\n```',
+        'arrays = nullpose.study.monte_carlo.read_study(".").to_xarray()  # by scene, value and case\n```',
     ]

@@ -114,7 +114,7 @@ def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | Non
     return 0.0 if given is None and quantity.noun == "margin" else given
 
 
-def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, Path]]:
+def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]]:
     """Write what there is to draw; take away what an earlier report drew and this one does not."""
     from nullpose.report.study.figures import FIGURES, figures_of
 

@@ -10,10 +10,10 @@ from typing import Unpack
 from nullpose.family import AxisField
 from nullpose.physics import Pose, evaluate
 from nullpose.physics.polarisation import worst_polarised
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, require_scenario
 from nullpose.solve.api import solve
 from nullpose.solve.compiling import working_clock
-from nullpose.solve.options import SolveKeywords, SolveOptions, require_scenario
+from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
@@ -51,7 +51,7 @@ def solve_robust(
         options: as for :func:`nullpose.solve`; the gap is ``ROBUST_GAP`` unless another is asked for.
 
     Raises:
-        TypeError: what was given is no scenario, but its path, say.
+        WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: an array in place of the dipole, a bad seed or limit.
         SolveError: no pose reaches every node.
     """

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
+from nullpose.notebook import html_table
 from nullpose.solve import Rigour
 from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.extra import require_extra
@@ -20,6 +21,8 @@ from nullpose.study.monte_carlo.store import QUANTITIES, Store
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+_SHOWN = 10  # rows of a large table
 
 
 class StudyTable:
@@ -68,7 +71,16 @@ class StudyTable:
         for part in self._parts:
             yield self._read(part)
 
-    def xarray(self) -> xr.Dataset:
+    def __repr__(self) -> str:
+        done = f"{self.scenes_done} of {self.spec.n_scenes} scenes"
+        return f"StudyTable({self.spec.name!r}: {done}, {self.quantity.smallest})"
+
+    def _repr_html_(self) -> str:
+        some = next(self.batches(), None)
+        rows = [] if some is None else some.head(_SHOWN).to_dict("records")
+        return html_table(repr(self), rows, [f"the first {len(rows)} rows; .frame() has all"])
+
+    def to_xarray(self) -> xr.Dataset:
         """Return all rows as arrays over scene, each swept parameter, and case.
 
         Raises:
@@ -80,6 +92,8 @@ class StudyTable:
         swept = {path: list(values) for path, values in spec.sweep}
         in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
         return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
+
+    xarray = to_xarray  # as it was called before
 
     def _read(self, part: Part) -> pd.DataFrame:
         import pyarrow as pa

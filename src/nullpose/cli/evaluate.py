@@ -1,0 +1,107 @@
+"""The verb ``evaluate``."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+from nullpose.cli.options import (
+    AllowOutside,
+    Gap,
+    JsonOutput,
+    NodeLimit,
+    Overrides,
+    ScenarioFile,
+    Seed,
+    TimeLimit,
+    read_scenario,
+    solve_options,
+)
+from nullpose.cli.output import compiling_announced, tell
+from nullpose.cli.progress import GapBar
+
+
+def evaluate(
+    file: ScenarioFile,
+    pose: Annotated[
+        str | None,
+        typer.Option("--pose", metavar="X,Y,Z", help="Position of the drone, metres.", show_default=False),
+    ] = None,
+    attitude: Annotated[
+        str | None,
+        typer.Option(
+            "--attitude",
+            metavar="ROLL,PITCH,YAW",
+            help="Attitude of the drone, degrees.",
+            show_default="0,0,0",
+        ),
+    ] = None,
+    poses: Annotated[
+        Path | None,
+        typer.Option(
+            "--poses",
+            metavar="CSV",
+            help="File of poses in place of one: x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg.",
+            show_default=False,
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
+    gap: Gap = None,
+    time_limit: TimeLimit = 60.0,
+    node_limit: NodeLimit = 10**9,
+    seed: Seed = 0,
+    json_output: JsonOutput = False,
+) -> None:
+    """Show what a pose of your own gives, and how far it is below the proved bound."""
+    from nullpose.errors import UsageError
+    from nullpose.physics import Pose, Poses
+    from nullpose.report.evaluation import evaluation_view
+    from nullpose.solve import solve
+    from nullpose.solve.options import SolveOptions
+    from nullpose.study import evaluate_against, poses_from_csv
+
+    if (pose is None) == (poses is None) or (poses is not None and attitude is not None):
+        raise UsageError("evaluate: give either --pose, with --attitude unless it is 0,0,0, or --poses")
+    scenario = read_scenario(file, overrides, allow_outside)
+    if scenario.array is not None:
+        raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
+    mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
+    given: Poses | list[Pose]
+    if poses is not None:
+        given = poses_from_csv(poses, mount_rad)
+    else:
+        angles_deg = _three("--attitude", attitude or "0,0,0")
+        roll, pitch, yaw = map(math.radians, angles_deg)
+        given = [Pose(_three("--pose", pose or ""), roll, pitch, yaw, mount_rad)]
+    options = solve_options(gap, time_limit, node_limit, False, seed)
+    with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
+        best = solve(scenario, on_progress=bar, **options)
+    evaluation = evaluate_against(best, given)
+    found = evaluation.results[0] if poses is None else evaluation
+    tell(found, lambda _: evaluation_view(evaluation), json_output)
+
+
+def _three(option: str, text: str) -> NDArray[np.float64]:
+    """Return three numbers that are separated by commas.
+
+    Raises:
+        UsageError: they are not.
+    """
+    import numpy as np
+
+    from nullpose.errors import UsageError
+
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise UsageError(f"{option}: given {text!r}; allowed: three numbers with commas, as in 3,24,8.5")
+    return np.array(numbers)

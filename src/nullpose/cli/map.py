@@ -1,0 +1,68 @@
+"""The verb ``map``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.options import (
+    AllowOutside,
+    Fast,
+    Gap,
+    JsonOutput,
+    NodeLimit,
+    OutFolder,
+    Overrides,
+    ScenarioFile,
+    Seed,
+    TimeLimit,
+    Width,
+    read_scenario,
+    solve_options,
+)
+from nullpose.cli.output import compiling_announced, tell
+from nullpose.cli.progress import GapBar
+from nullpose.schemes import Scheme
+
+
+def best_map(
+    file: ScenarioFile,
+    out: OutFolder,
+    scheme: Annotated[Scheme, typer.Option("--scheme", help="How the axis is chosen.")] = Scheme.OPTIMUM,
+    altitude: Annotated[
+        float | None,
+        typer.Option("--altitude", metavar="M", help="Of the map, metres.", show_default="the best pose's"),
+    ] = None,
+    cells: Annotated[int, typer.Option("--cells", metavar="N", help="Points along the longer side.")] = 181,
+    overrides: Overrides = None,
+    allow_outside: AllowOutside = False,
+    gap: Gap = None,
+    time_limit: TimeLimit = 60.0,
+    node_limit: NodeLimit = 10**9,
+    fast: Fast = False,
+    seed: Seed = 0,
+    width: Width = None,
+    json_output: JsonOutput = False,
+) -> None:
+    """Map what each place gives with the best axis there.
+
+    A table (CSV) and a figure (PNG, PDF) are written.
+    """
+    from nullpose.files import check_outputs, prepare_folder
+    from nullpose.report.value_map import map_view, write_map
+    from nullpose.scenario.loading import files_of
+    from nullpose.solve import solve
+    from nullpose.solve.options import SolveOptions
+    from nullpose.study.value_map import require_map, value_map
+
+    scenario = read_scenario(file, overrides, allow_outside)
+    require_map(scenario, altitude, cells)
+    outputs = {f"--out ({name})": out / name for name in ("map.csv", "map.png", "map.pdf")}
+    check_outputs(files_of(file), outputs)
+    options = solve_options(gap, time_limit, node_limit, fast, seed)
+    with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
+        result = solve(scenario, scheme.value, on_progress=bar, **options)
+        field = value_map(result, altitude_m=altitude, cells=cells)
+    files = write_map(result, field, prepare_folder(out), width)
+    tell(result, lambda found: map_view(found, field), json_output, files=files, map=field.to_dict())

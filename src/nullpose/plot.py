@@ -1,0 +1,133 @@
+"""Figures for notebooks: each function returns Matplotlib axes, new ones or those that it is given as ``ax``.
+
+Example:
+    ``nullpose.plot.pose(nullpose.solve(scenario))``
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from nullpose.errors import UsageError
+from nullpose.report.comparison import Comparison
+from nullpose.report.figures.airframes import draw_airframe_bars
+from nullpose.report.figures.cases import draw_cases
+from nullpose.report.figures.plan import draw_plan
+from nullpose.report.figures.poses import draw_dipole
+from nullpose.report.figures.scene import ALONE, Stage, draw_panel
+from nullpose.report.figures.style import house_style
+from nullpose.report.figures.sweep import draw_sweep_axes
+from nullpose.report.figures.value_map import draw_field
+from nullpose.solve import Result
+from nullpose.study import AirframeComparison, Field, SweepTable, value_map
+
+__all__ = ["comparison", "heat_map", "plan", "pose", "sweep"]
+
+_CELLS = 121  # of a map, along its longer side
+
+
+@contextmanager
+def _axes(ax: Any, size_inch: tuple[float, float], *, solid: bool = False) -> Iterator[Any]:
+    """Yield axes to draw on: those given, in the caller's style, or new ones in the house's.
+
+    Raises:
+        UsageError: the axes given are flat where a scene in 3-D is drawn, or the other way round.
+    """
+    if ax is not None:
+        if (getattr(ax, "name", "") == "3d") != solid:
+            wanted = "made with projection='3d'" if solid else "without a projection"
+            raise UsageError(f"ax: given axes of the other kind; allowed: axes {wanted}")
+        yield ax
+        return
+    from matplotlib import pyplot
+
+    with house_style():
+        figure = pyplot.figure(figsize=size_inch, layout=None if solid else "constrained")
+        yield figure.add_subplot(projection="3d" if solid else None)
+
+
+def pose(result: Result, ax: Any = None) -> Any:
+    """Return axes with a scene in 3-D, the best pose and the antenna's pattern.
+
+    Args:
+        result: of a dipole or another antenna; of an array see ``solve --figure``.
+        ax: axes in 3-D to draw on; new ones if left out.
+
+    Raises:
+        UsageError: the axes are not in 3-D, or the result is of an array.
+    """
+    if hasattr(result.details, "weights"):
+        raise UsageError("pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
+    with _axes(ax, ALONE.inches, solid=True) as axes:
+        stage = Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE)
+        draw_panel(axes, stage, result.pose, draw_dipole)
+    return axes
+
+
+def plan(result: Result, ax: Any = None) -> Any:
+    """Return axes with a scene from above: points, zones, the drone and its antenna's axis.
+
+    Args:
+        result: of any kind.
+        ax: axes to draw on; new ones if left out.
+
+    Raises:
+        UsageError: the axes are in 3-D.
+    """
+    with _axes(ax, (5.0, 5.0)) as axes:
+        draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose)
+    return axes
+
+
+def heat_map(result: Result, ax: Any = None, *, field: Field | None = None) -> Any:
+    """Return axes with a map of what each place gives with the best axis there, and the scene on it.
+
+    Args:
+        result: of a solve.
+        ax: axes to draw on; new ones if left out.
+        field: the map; that of :func:`nullpose.study.value_map` if left out.
+
+    Raises:
+        UsageError: the axes are in 3-D, or the result is of an array.
+    """
+    field = value_map(result, cells=_CELLS) if field is None else field
+    with _axes(ax, (6.0, 6.0)) as axes:
+        draw_field(axes, result, field)
+    return axes
+
+
+def sweep(table: SweepTable, ax: Any = None, *, log: bool = False) -> Any:
+    """Return axes with a curve for each scheme of a sweep, and its bounds where they can be seen.
+
+    Args:
+        table: what the sweep found.
+        ax: axes to draw on; new ones if left out.
+        log: draw the swept setting on a logarithmic axis.
+
+    Raises:
+        UsageError: the axes are in 3-D.
+    """
+    with _axes(ax, (7.0, 4.2)) as axes:
+        draw_sweep_axes(axes, table, log=log)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, handlelength=3.2)
+    return axes
+
+
+def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: Any = None) -> Any:
+    """Return axes with a bar for each case or vehicle, and a mark at its bound.
+
+    Args:
+        found: by ``nullpose.compare`` or ``nullpose.compare_airframes``.
+        ax: axes to draw on; new ones if left out.
+
+    Raises:
+        UsageError: the axes are in 3-D.
+    """
+    with _axes(ax, (7.0, 3.6)) as axes:
+        if isinstance(found, AirframeComparison):
+            draw_airframe_bars(axes, found)
+        else:
+            draw_cases(axes, found.solutions if isinstance(found, Comparison) else found)
+    return axes

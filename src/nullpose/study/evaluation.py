@@ -1,0 +1,143 @@
+"""Poses of one's own, held against the bound that no pose exceeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from nullpose.errors import UsageError
+from nullpose.objectives import Quantity
+from nullpose.physics import Pose, evaluate
+from nullpose.scenario import Scenario
+from nullpose.scenario.airspace import BORDER_M
+from nullpose.solve import Result, Status
+from nullpose.solve.result import objective_of
+
+_TILT_RAD = 1e-9  # rounding of a stated tilt
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GivenDetails:
+    """What is told of a pose that was given.
+
+    Args:
+        best: the result that it is held against.
+        below_bound: how far its value is below the bound, in dB or bits/s/Hz; None if no bound holds for it.
+        not_allowed: why the vehicle may not take this pose; empty if it may.
+    """
+
+    best: Result
+    below_bound: float | None
+    not_allowed: tuple[str, ...]
+    label: str = "Given pose"
+
+    def to_dict(self, objective: object) -> dict[str, Any]:
+        """Return it as plain data.
+
+        Args:
+            objective: of the pose, told elsewhere.
+        """
+        best = {"objective": self.best.objective.to_dict(), "pose": self.best.pose.to_dict()}
+        return {"below_bound": self.below_bound, "not_allowed": list(self.not_allowed), "best": best}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Evaluation:
+    """Several poses, each held against the same bound.
+
+    Args:
+        best: the result that they are held against.
+        results: one for each pose, in order.
+    """
+
+    best: Result
+    results: tuple[Result, ...]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the proof of the bound."""
+        return self.best.interrupted
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the evaluation as plain data, the scenario once for all poses."""
+        once = ("scenario", "provenance", "best")
+        poses = [
+            {key: value for key, value in one.to_dict().items() if key not in once} for one in self.results
+        ]
+        best = self.best.to_dict()
+        return {
+            "scenario": best.pop("scenario"),
+            "cases": poses,
+            "best": best,
+            "provenance": best.pop("provenance"),
+        }
+
+
+def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
+    """Return what poses give, each with the bound of a result.
+
+    Args:
+        best: of a solve of the optimum pose, whose bound holds for every pose that the vehicle may take.
+        poses: any; one that the vehicle may not take is told as such, without a bound.
+
+    Raises:
+        UsageError: a pose is at a ground point, where the model has no value; or the result is of an array.
+    """
+    if best.scenario.array is not None:
+        raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
+    return Evaluation(best=best, results=tuple(_against(best, pose) for pose in poses))
+
+
+def _against(best: Result, pose: Pose) -> Result:
+    scenario, quantity = best.scenario, Quantity.of(best.scenario)
+    not_allowed, bound = tuple(_not_allowed(scenario, pose)), best.objective.upper_bound
+    links = evaluate(scenario, pose)
+    value = quantity.least(links)
+    if not_allowed or bound is None:
+        objective, below = objective_of(scenario, value, None), None
+    else:
+        ratio_bound = 2.0**bound if quantity.is_rate else bound
+        objective = objective_of(scenario, value, ratio_bound, best.rigour)
+        below = quantity.in_unit(bound) - quantity.in_unit(value)
+    place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
+    told = [f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed]
+    told += [] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]
+    told += [f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m"]
+    return replace(
+        best,
+        scheme="given",
+        status=Status.GIVEN,
+        objective=objective,
+        pose=pose,
+        links=links,
+        reason="",
+        note="\n".join(told),
+        proofs=(),
+        details=GivenDetails(best=best, below_bound=below, not_allowed=not_allowed),
+    )
+
+
+def _not_allowed(scenario: Scenario, pose: Pose) -> Iterable[str]:
+    """Yield why the vehicle may not take a pose.
+
+    Raises:
+        UsageError: the pose is at a ground point.
+    """
+    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
+    names = (*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names)
+    distances_m = np.linalg.norm(np.vstack([g.reshape(-1, 3) for g in groups]) - pose.position_m, axis=-1)
+    nearest, keep_out_m = int(np.argmin(distances_m)), scenario.airspace.keep_out_m
+    if distances_m[nearest] == 0.0:
+        raise UsageError(
+            f"pose: given the position of {names[nearest]}; allowed: {keep_out_m:g} m or more from it"
+        )
+    if not scenario.airspace.allows(pose.position_m):
+        yield "the position is outside the airspace"
+    if distances_m[nearest] < keep_out_m - BORDER_M:
+        yield f"{distances_m[nearest]:.3g} m from {names[nearest]}, closer than keep_out_m = {keep_out_m:g} m"
+    if scenario.airframe is not None and pose.tilt_rad > scenario.airframe.tilt_max_rad + _TILT_RAD:
+        tilts_deg = np.degrees([pose.tilt_rad, scenario.airframe.tilt_max_rad])
+        yield "tilted by {:.3f} deg, more than the airframe's {:g} deg".format(*tilts_deg)

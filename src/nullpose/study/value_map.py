@@ -1,0 +1,298 @@
+"""A map: what each position of a plane gives with the best axis that its case allows there."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import UsageError
+from nullpose.family import build_family
+from nullpose.files import replacing
+from nullpose.notebook import imported
+from nullpose.physics import link_gain, objective_value, to_db
+from nullpose.scenario import Scenario
+from nullpose.scenario.airspace import BORDER_M
+from nullpose.schemes import Scheme
+from nullpose.solve import Result
+
+FloatArray = NDArray[np.float64]
+
+CELLS = 45
+"""Points along the longer side of a map, unless told otherwise."""
+
+_MOST_CELLS = 2000
+_CHUNK = 64  # positions tried together against all sampled axes
+_AXES = 400
+_MARGIN = 0.35  # free ground around the points, of their extent
+_LEAST_M = 20.0
+_FLOOR_DB = -60.0  # the null itself is minus infinity
+_GOLDEN_RAD = 2.399963229728653  # golden angle
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Field:
+    """A number at every point of a horizontal grid.
+
+    Args:
+        east_m: (nx,) metres.
+        north_m: (ny,) metres.
+        altitude_m: of the plane, metres.
+        values: (ny, nx), not a number where there is none.
+        unit: as in "dB".
+        title: what it shows.
+        name: of the number, as in ``min_sinr_db``.
+    """
+
+    east_m: FloatArray
+    north_m: FloatArray
+    altitude_m: float
+    values: FloatArray
+    unit: str
+    title: str
+    name: str
+
+    @property
+    def best(self) -> tuple[float, tuple[float, float, float]]:
+        """The largest value, and where it is, metres; not a number where no place is allowed."""
+        row, column = np.unravel_index(np.argmax(np.nan_to_num(self.values, nan=-np.inf)), self.values.shape)
+        place = (float(self.east_m[column]), float(self.north_m[row]), self.altitude_m)
+        return float(self.values[row, column]), place
+
+    def __repr__(self) -> str:
+        value, (x, y, z) = self.best
+        rows, columns = self.values.shape
+        best = f"best {value:.7g} {self.unit} at ({x:z.3f}, {y:z.3f}, {z:z.3f}) m"
+        return f"Field({self.name}: {columns} x {rows} places {self.altitude_m:g} m up; {best})"
+
+    def to_xarray(self) -> Any:
+        """Return the map as an array of xarray over ``y_m`` and ``x_m``.
+
+        Raises:
+            UsageError: xarray is not installed.
+        """
+        places = {"y_m": self.north_m, "x_m": self.east_m, "z_m": self.altitude_m}
+        array = imported("xarray").DataArray
+        return array(
+            self.values, coords=places, dims=("y_m", "x_m"), name=self.name, attrs={"unit": self.unit}
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the map's plane and its best place as plain data; its numbers are in the CSV file."""
+        value, position_m = self.best
+        return {
+            "name": self.name,
+            "unit": self.unit,
+            "altitude_m": self.altitude_m,
+            "shape": list(self.values.shape),
+            "best": {"value": value, "position_m": list(position_m)},
+        }
+
+    def write_csv(self, path: Path) -> Path:
+        """Return the path of a CSV file after writing a line for each point; an empty cell is no value.
+
+        Args:
+            path: the file to write; an existing one is replaced.
+
+        Raises:
+            OutputError: the file cannot be written.
+        """
+        with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["x_m", "y_m", "z_m", self.name])
+            for north, row in zip(self.north_m.tolist(), self.values.tolist(), strict=True):
+                for east, value in zip(self.east_m.tolist(), row, strict=True):
+                    cells = (east, north, self.altitude_m, value)
+                    writer.writerow(["" if cell != cell else repr(cell) for cell in cells])
+        return path
+
+
+def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the low and high corner, each (2,) in metres, of the ground that is drawn.
+
+    The points and the drone with a margin around them.
+
+    Args:
+        scenario: the scene.
+        position_m: (3,) where the drone is, metres.
+    """
+    places = np.vstack([_points_m(scenario), position_m])[:, :2]
+    low, high = places.min(axis=0), places.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    half = np.maximum(half + _MARGIN * max(float(half.max()), 0.5 * _LEAST_M), 0.5 * _LEAST_M)
+    half = np.maximum(half, 0.6 * half.max())
+    return middle - half, middle + half
+
+
+def value_map(
+    result: Result,
+    *,
+    altitude_m: float | None = None,
+    cells: int = CELLS,
+    go_on: Callable[[], None] = lambda: None,
+) -> Field:
+    """Return what each position of a plane gives with the best axis of a result's case there.
+
+    The points of the grid are evenly apart, and the drone is at one of them: where the plane is at its
+    altitude, the map has the result's value there. Of a case that fixes the axis that axis is taken; with
+    every axis allowed, the best one by enumeration, which is exact for a SINR or margin; an antenna with a
+    pattern keeps the result's attitude. Otherwise the best of the result's axis and of 400 axes spread evenly
+    over those that the vehicle reaches is taken, slightly below the true best.
+
+    Args:
+        result: of a solve, whose scenario and case the map is of.
+        altitude_m: of the plane, metres; that of the result's pose if left out.
+        cells: points along the longer side.
+        go_on: called now and then; what it raises ends the work.
+
+    Raises:
+        UsageError: the altitude is outside the airspace, there are too few or too many cells, or the result
+            is of an array.
+
+    Example:
+        ``value_map(nullpose.solve(scenario)).best`` is the value and the position of the best pose.
+    """
+    scenario, place_m = result.scenario, result.pose.position_m
+    require_map(scenario, altitude_m, cells)
+    up = float(place_m[2]) if altitude_m is None else altitude_m
+    east, north = map_grid_m(scenario, place_m, cells)
+    grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), up), -1)
+    nearest_m = np.linalg.norm(grid[..., None, :] - _points_m(scenario), axis=-1).min(axis=-1)
+    usable = scenario.airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m - BORDER_M)
+    values = np.full(usable.shape, np.nan)
+    values[usable] = _best_values(result, grid[usable], go_on)
+    quantity = result.objective.quantity
+    is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
+    return Field(
+        east_m=east,
+        north_m=north,
+        altitude_m=up,
+        values=values if quantity.is_rate else in_decibels(values),
+        unit=quantity.unit,
+        title=f"{'value in this attitude' if is_pattern else 'best value'} at each place, {up:.1f} m up",
+        name=f"{quantity.name}_{'bps_hz' if quantity.is_rate else 'db'}",
+    )
+
+
+def require_map(scenario: Scenario, altitude_m: float | None, cells: int) -> None:
+    """Raise a UsageError if a scenario has no such map.
+
+    Args:
+        scenario: any.
+        altitude_m: of the plane, metres, or None.
+        cells: points along the longer side.
+
+    Raises:
+        UsageError: the altitude is outside the airspace, there are too few or too many cells, or the drone
+            has an array.
+    """
+    low, high = scenario.airspace.altitude_m
+    if altitude_m is not None and not low <= altitude_m <= high:
+        told = f"given {altitude_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m"
+        raise UsageError(f"altitude: {told}")
+    if not 2 <= cells <= _MOST_CELLS:
+        raise UsageError(f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side")
+    if scenario.array is not None:
+        raise UsageError("map: given a scenario with an [array]; allowed: one antenna; remove [array]")
+
+
+def map_grid_m(scenario: Scenario, position_m: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
+    """Return the east and north of a map's points, each (n,) in metres and evenly apart; one is the drone's.
+
+    Args:
+        scenario: the scene.
+        position_m: (3,) where the drone is, metres.
+        cells: points along the longer side.
+    """
+    low_m, high_m = map_extent_m(scenario, position_m)
+    step_m = float(np.max(high_m - low_m)) / (cells - 1)
+    ends = zip(low_m, high_m, position_m[:2], strict=True)
+    east, north = (
+        at + step_m * np.arange(-round((at - low) / step_m), round((high - at) / step_m) + 1)
+        for low, high, at in ends
+    )
+    return east, north
+
+
+def _points_m(scenario: Scenario) -> FloatArray:
+    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
+    return np.vstack([group.reshape(-1, 3) for group in groups])
+
+
+def in_decibels(values: FloatArray) -> FloatArray:
+    """Return ratios in decibels, those of a null ending at a floor.
+
+    Args:
+        values: power ratios; not a number where there is none.
+    """
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.where(np.isnan(values), np.nan, np.maximum(to_db(values), _FLOOR_DB)))
+
+
+def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
+    """Return the objective at each position with the axis of the result's case, shape (n,)."""
+    scenario, held = result.scenario, result.pose.orientation(result.scenario.antenna_record)
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
+    scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
+    if scheme.record.ratios_at is not None:
+        return np.asarray(np.min(scheme.record.ratios_at(scenario, positions_m), axis=-1))
+    fields = scheme.record.fields(scenario, result.null_jammer)
+    given = [field for field in (fields or {}).values() if not field.is_free]
+    if given:
+        each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in given]
+        return np.asarray(np.max(each, axis=0))
+    is_rate = result.objective.quantity.is_rate
+    if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate:
+        axes = _exact_axes(scenario, positions_m, go_on)
+    else:
+        rank = _served if fields is None else objective_value
+        axes = _ranked_axes(scenario, positions_m, held, rank, go_on)
+    return objective_value(scenario, positions_m, axes)
+
+
+def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
+    from nullpose.solve.kernels.axis import best_axis
+
+    arrays = build_family(scenario).arrays
+    axes = np.empty_like(positions_m)
+    for position_m, axis in zip(np.ascontiguousarray(positions_m), axes, strict=True):
+        go_on()
+        best_axis(arrays, position_m, axis)
+    return axes
+
+
+def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> FloatArray:
+    """Return how well the nodes are served, the jammers ignored."""
+    nodes = scenario.node_positions_m
+    loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
+    gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
+    received = gain * scenario.node_powers_w / loss
+    return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
+
+
+def _ranked_axes(
+    scenario: Scenario,
+    positions_m: FloatArray,
+    held: FloatArray,
+    rank: Callable[[Scenario, FloatArray, FloatArray], FloatArray],
+    go_on: Callable[[], None],
+) -> FloatArray:
+    """Return, for each position, the highest ranked of one axis and of those spread evenly."""
+    low, high = np.sqrt(scenario.axis_band)
+    up = low + (high - low) * np.linspace(0.0, 1.0, _AXES)
+    across, azimuth_rad = np.sqrt(np.maximum(0.0, 1.0 - up**2)), _GOLDEN_RAD * np.arange(_AXES)
+    axes = np.stack([across * np.cos(azimuth_rad), across * np.sin(azimuth_rad), up], axis=-1)
+    axes = np.vstack([held, axes])
+    chosen = np.empty_like(positions_m)
+    for start in range(0, len(positions_m), _CHUNK):
+        go_on()
+        some = slice(start, start + _CHUNK)
+        chosen[some] = axes[np.argmax(rank(scenario, positions_m[some, None, :], axes), axis=1)]
+    return chosen

@@ -1,0 +1,64 @@
+"""The verb `evaluate`: a pose of one's own, held against the proved bound."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+BEST = ("--pose", "-2.2423,23.8182,8", "--attitude", "-17.180,-79.071,0")
+
+
+def test_one_pose(run: Run, paper: str) -> None:
+    """The pose that `solve` prints gives what `solve` says, and is next to the bound."""
+    result = run("evaluate", paper, *BEST)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "Given pose: smallest SINR 0.98369" in result.stdout
+    assert "dB below the bound" in result.stdout
+    assert "Links" in result.stdout
+
+
+def test_json_has_the_shape_of_solve(run: Run, paper: str) -> None:
+    """All keys of `solve --json` are there, and what the distance and the best pose are."""
+    given = json.loads(run("evaluate", paper, *BEST, "--json").stdout)
+    solved = json.loads(run("solve", paper, "--json").stdout)
+    assert set(solved) <= set(given)
+    assert given["status"] == "given"
+    assert given["objective"]["upper_bound"] == pytest.approx(solved["objective"]["upper_bound"], rel=1e-6)
+    assert 0.0 <= given["below_bound"] < 1e-3
+    assert given["best"]["objective"]["value"] == solved["objective"]["value"]
+
+
+def test_a_file_of_poses(run: Run, paper: str, tmp_path: Path) -> None:
+    """A row for each, as a table and as JSON with the scenario once."""
+    file = tmp_path / "poses.csv"
+    file.write_text("x_m,y_m,z_m,roll_deg,pitch_deg\n0,25,9,0,80\n0,25,4,0,80\n", encoding="utf-8")
+    shown = run("evaluate", paper, "--poses", file)
+    assert (shown.exit_code, shown.stderr) == (0, "")
+    assert "2 poses given" in shown.stdout
+    assert "not allowed" in shown.stdout
+    told = json.loads(run("evaluate", paper, "--poses", file, "--json").stdout)
+    assert [case["status"] for case in told["cases"]] == ["given", "given"]
+    assert told["cases"][0]["below_bound"] > 0.0
+    assert told["cases"][1]["not_allowed"] == ["the position is outside the airspace"]
+    assert all("scenario" not in case for case in told["cases"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ((), "give either --pose"),
+        (("--pose", "1,2"), "--pose: given '1,2'; allowed: three numbers"),
+        (("--pose", "1,2,9", "--attitude", "0;0;0"), "--attitude: given '0;0;0'"),
+        (("--pose", "1,2,9", "--poses", "none.csv"), "give either --pose"),
+        (("--poses", "none.csv"), "none.csv: 1 fault"),
+        (("--pose", "1,2,9", "--set", "array.elements=2"), "array"),
+    ],
+)
+def test_what_cannot_be_evaluated(run: Run, paper: str, arguments: tuple[str, ...], told: str) -> None:
+    """Ends with a message and exit code 2."""
+    result = run("evaluate", paper, *arguments)
+    assert result.exit_code == 2
+    assert told in result.stderr

@@ -1,0 +1,48 @@
+"""The verb `map`: a table and a figure of what each place gives."""
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+def test_files_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:
+    """CSV, PNG and PDF; the best of the table is the value that is certified, and so said."""
+    result = run("map", paper, "--out", tmp_path / "new", "--cells", 31)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["map.csv", "map.pdf", "map.png"]
+    with (tmp_path / "new" / "map.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert max(float(row["min_sinr_db"]) for row in rows) == pytest.approx(0.9836997, abs=1e-3)
+    assert "best 0.98369" in result.stdout
+    assert result.stdout.count("Wrote ") == 3
+
+
+def test_json_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:
+    """The result as of `solve`, the map's best place, and the files."""
+    arguments = ("--scheme", "vertical", "--altitude", 9, "--cells", 21, "--fast", "--json")
+    answer = json.loads(run("map", paper, "--out", tmp_path, *arguments).stdout)
+    assert answer["scheme"] == "vertical"
+    assert answer["map"]["altitude_m"] == 9.0
+    assert answer["map"]["best"]["value"] < answer["objective"]["value_db"]
+    assert len(answer["files"]) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--altitude", 99), "altitude: given 99 m; allowed: 8 to 30 m"),
+        (("--cells", 1), "cells: given 1; allowed: 2 to 2000"),
+    ],
+)
+def test_what_makes_no_map(run: Run, paper: str, tmp_path: Path, arguments: tuple, told: str) -> None:
+    """Ends before any work, with exit code 2."""
+    result = run("map", paper, "--out", tmp_path / "none", *arguments)
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert not (tmp_path / "none").exists()

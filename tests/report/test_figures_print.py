@@ -1,0 +1,95 @@
+"""Figures for print: as wide as a column or a page, with embedded letters that do not touch."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose import Scenario, compare_airframes, load, solve, solve_array, solve_robust, sweep
+from nullpose.errors import UsageError
+from nullpose.report.comparison import compare_all
+from nullpose.report.figures.airframes import draw_airframes
+from nullpose.report.figures.cases import draw_comparison
+from nullpose.report.figures.poses import draw_pose, draw_result
+from nullpose.report.figures.style import WIDTHS_MM, prepare_figure_file, write_figure_file
+from nullpose.report.figures.sweep import draw_sweep
+from nullpose.report.figures.value_map import draw_value_map
+from nullpose.study import value_map
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+WIDTHS = pytest.mark.parametrize("width", list(WIDTHS_MM))
+
+
+@WIDTHS
+def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
+    """To the hundredth of a millimetre, and none is higher than a page."""
+    result = solve(paper, certify=False)
+    table = sweep(paper, "jammers.M.power_w", [0.5, 2.0], certify=False)
+    figures = [
+        draw_pose(result, width),
+        draw_sweep(table, width=width),
+        draw_value_map(result, value_map(result, cells=15), width),
+        draw_comparison(compare_all(paper, certify=False), width),
+        draw_airframes(compare_airframes(paper, certify=False), width),
+    ]
+    for figure in figures:
+        wide, high = figure.get_size_inches() * 25.4
+        assert wide == pytest.approx(WIDTHS_MM[width], abs=0.01)
+        assert high < 235.0
+        assert figure.get_suptitle() == ""
+
+
+@WIDTHS
+@pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
+def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
+    """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
+    solvers = {"array": solve_array, "robust": solve_robust}
+    solved = solvers.get(name, solve)(load(EXAMPLES / f"{name}.toml"), certify=False)
+    figure = draw_result(solved, width)
+    figure.canvas.draw()
+    legend = figure.legends[0].get_window_extent()
+    assert legend.x0 >= 0.0
+    assert legend.x1 <= figure.bbox.x1
+    for axes in figure.axes:
+        whole = axes.get_tightbbox()
+        assert min(whole.x0, whole.y0) >= 0.0
+        assert whole.x1 <= figure.bbox.x1
+        assert axes.title.get_window_extent().y1 <= figure.bbox.y1
+        assert not whole.overlaps(legend)
+        names = [text.get_window_extent().shrunk(0.8, 0.6) for text in axes.texts]
+        touching = [(i, j) for i, one in enumerate(names) for j in range(i) if one.overlaps(names[j])]
+        assert touching == []
+
+
+def test_the_plan_is_to_scale_and_has_every_name(paper: Scenario) -> None:
+    """Beside the scene in 3-D there is one from above, a metre being as long to the east as to the north."""
+    solid, plan = draw_pose(solve(paper, certify=False)).axes
+    assert (solid.name, plan.name) == ("3d", "rectilinear")
+    assert {text.get_text() for text in plan.texts} == {"S1", "S2", "M"}
+    across, along = plan.transData.transform([[1.0, 0.0], [0.0, 1.0]]) - plan.transData.transform([0.0, 0.0])
+    assert across[0] == pytest.approx(along[1], rel=1e-6)
+
+
+def test_fonts_are_in_the_pdf(paper: Scenario, tmp_path: Path) -> None:
+    """As TrueType, whole; and the same figure gives the same file."""
+    figure = draw_pose(solve(paper, certify=False), "column")
+    content = write_figure_file(figure, tmp_path / "pose.pdf").read_bytes()
+    assert b"/FontFile2" in content
+    assert b"/Type3" not in content
+    assert write_figure_file(figure, tmp_path / "again.pdf").read_bytes() == content
+
+
+def test_pgf_needs_tex(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without it the message says what to install, or to write instead."""
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(UsageError, match=r"needs xelatex, lualatex or pdflatex.*write a \.pdf"):
+        prepare_figure_file(tmp_path / "pose.pgf")
+
+
+def test_few_points_have_a_marker_each(paper: Scenario) -> None:
+    """Of many only some have one, so that they do not merge."""
+    few = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], certify=False)).axes[0].lines
+    assert {line.get_markevery() for line in few} == {1}
+    values = np.geomspace(0.1, 10.0, 27)
+    many = draw_sweep(sweep(paper, "jammers.M.power_w", values, schemes=["vertical"], certify=False))
+    assert many.axes[0].lines[0].get_markevery()[1] > 1

@@ -1,0 +1,88 @@
+"""A scenario from arrays is that of the file; shapes that do not fit are told as shapes."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nullpose
+from nullpose import NullposeError, Scenario, ScenarioError, UsageError
+
+PAPER = Scenario.from_file(Path(__file__).parents[2] / "examples" / "paper.toml")
+NODES_M = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]])
+
+
+def test_the_paper_from_arrays() -> None:
+    """The scene of the paper, in code, gives every pose what the file's does."""
+    scene = Scenario.from_arrays(NODES_M, [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30))
+    pose = nullpose.Pose([3.0, 24.0, 9.0], 0.2, -1.1)
+    assert nullpose.evaluate(scene, pose) == nullpose.evaluate(PAPER, pose)
+    assert scene.airspace == PAPER.airspace
+    assert scene.jammer_names == ("M1",)
+
+
+def test_powers_and_other_tables() -> None:
+    """Powers by point or one for all; other keys as in a file, those of two tables beside the given ones."""
+    scene = Scenario.from_arrays(
+        NODES_M,
+        node_power_w=[1.0, 2.0],
+        noise_w=1e-9,
+        altitude_m=(8, 30),
+        name="two nodes",
+        airspace={"keep_out_m": 3.0},
+        receiver={"attitude_error_deg": 2.0},
+    )
+    assert scene.node_powers_w.tolist() == [1.0, 2.0]
+    assert scene.jammers == ()
+    assert (scene.name, scene.airspace.keep_out_m) == ("two nodes", 3.0)
+    assert (scene.receiver.noise_power_w, scene.receiver.attitude_error_deg) == (1e-9, 2.0)
+    assert Scenario.from_dict(scene.to_dict()) == scene
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"nodes_m": [0, 0, 0]}, r"nodes_m: given shape \(3,\).*\(n, 3\).*write \[\[east, north, up\]\]"),
+        ({"nodes_m": np.zeros((4, 2))}, r"nodes_m: given shape \(4, 2\).*column of heights"),
+        ({"nodes_m": np.zeros((3, 5))}, r"nodes_m: given shape \(3, 5\).*\.T"),
+        ({"nodes_m": [[0, 0, 0], [1, 2]]}, "nodes_m: .*rows of equal length"),
+        ({"jammers_m": np.zeros((2, 2, 3))}, r"jammers_m: given shape \(2, 2, 3\)"),
+        ({"node_power_w": [1.0, 2.0, 3.0]}, r"node_power_w: given shape \(3,\) with 2 nodes.*\(2,\)"),
+    ],
+)
+def test_a_wrong_shape_is_told_as_a_shape(given: dict, told: str) -> None:
+    """The message has the shape that was given, the one that is allowed, and what to try."""
+    with pytest.raises(UsageError, match=told):
+        Scenario.from_arrays(**{"nodes_m": NODES_M, "noise_w": 1e-3, "altitude_m": (8, 30)} | given)
+
+
+def test_a_wrong_value_is_told_with_its_place() -> None:
+    """What is wrong with a number is told as of a file."""
+    with pytest.raises(ScenarioError, match=r"nodes\[1\]\.power_w"):
+        Scenario.from_arrays(NODES_M, node_power_w=[1.0, -1.0], noise_w=1e-3, altitude_m=(8, 30))
+
+
+@pytest.mark.parametrize(
+    "verb", [nullpose.solve, nullpose.compare, lambda s: nullpose.sweep(s, "a.b", [1.0])]
+)
+def test_a_path_is_no_scenario(verb: object) -> None:
+    """A path in place of a scenario is a TypeError that says how to read it."""
+    with pytest.raises(TypeError, match=r"Scenario.from_file\('examples/paper\.toml'\)") as caught:
+        verb("examples/paper.toml")  # type: ignore[operator]
+    assert isinstance(caught.value, NullposeError)
+    with pytest.raises(TypeError, match=r"got a table; must be a Scenario; try Scenario\.from_dict"):
+        verb({})  # type: ignore[operator]
+
+
+def test_a_pose_needs_a_scenario_too() -> None:
+    """So is a path given to what evaluates poses."""
+    for verb in (nullpose.evaluate, nullpose.min_sinr):
+        with pytest.raises(TypeError, match=r"try Scenario\.from_file"):
+            verb("paper.toml", nullpose.Pose([3.0, 24.0, 9.0], 0.2, -1.1))  # type: ignore[call-overload]
+
+
+def test_the_error_survives_pickling() -> None:
+    """Workers of other processes can hand it on."""
+    error = nullpose.WrongTypeError("scenario: got nothing")
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
