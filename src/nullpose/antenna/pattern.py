@@ -13,10 +13,18 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
 from nullpose.antenna.caps import PatternArrays, pattern_arrays
-from nullpose.antenna.harmonics import HIGHEST_DEGREE, FloatArray, Harmonics, fit, supported_degree
+from nullpose.antenna.harmonics import (
+    HIGHEST_DEGREE,
+    FloatArray,
+    Harmonics,
+    directions,
+    fit,
+    supported_degree,
+)
 from nullpose.antenna.table import PatternTable
 
 _TINY = 1e-7  # of the largest gain
+_LOW = 0.005  # of all directions, weighted by the grid's density
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = (
@@ -57,6 +65,12 @@ class PatternAntenna:
         """
         bend = 0.5 * (self.harmonics.degree * math.radians(math.hypot(0.5, 0.5))) ** 2
         return float(np.max(np.abs(self.harmonics.on_grid(*_GRID)))) / (1.0 - bend)
+
+    @cached_property
+    def lowest(self) -> FloatArray:
+        """Directions of the lowest gain, (n, 3): the lowest half per cent of a grid's."""
+        gains = self.harmonics.on_grid(*_GRID)
+        return directions(*map(np.degrees, _GRID))[gains <= np.quantile(gains, _LOW)]
 
     @property
     def arrays(self) -> PatternArrays:

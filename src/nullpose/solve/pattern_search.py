@@ -10,7 +10,6 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import PatternAntenna
-from nullpose.antenna.harmonics import directions
 from nullpose.family import AxisField, Family
 from nullpose.family.records import Reach
 from nullpose.objectives import FloatArray
@@ -19,7 +18,6 @@ from nullpose.solve.multistart import multistart
 _HARD = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
 _LIGHTLY = 6_000, 120, 4  # where one does, which repairs what this misses
 _ROUND = 1_500, 30, 2  # likewise, for an antenna that is the same all round
-_LOW = 0.005  # of all directions, weighted by the grid's density
 _FEW = 12  # degree up to which lobes are few
 _WANDERED = 600  # random steps of a climb
 _NEAR = 0.2  # radians, and as much of the scene, that the last part of a climb moves at most
@@ -41,9 +39,7 @@ class PatternSearch:
         self.family, self.arrays, self.reach = family, antenna.arrays, reach
         # with the largest gain in every direction
         self.loudest = family.changed(numerator_weight=family.numerator_weight * antenna.peak)
-        theta_deg, phi_deg = np.arange(181.0), np.arange(360.0)
-        gains = antenna.harmonics.on_grid(np.radians(theta_deg), np.radians(phi_deg))
-        self.lowest = directions(theta_deg, phi_deg)[gains <= np.quantile(gains, _LOW)]
+        self.lowest = antenna.lowest
         self.rng = np.random.default_rng(seed)
         self.noise = self.rng.normal(size=(_WANDERED, 6))
         self.best, self.starts, self.evaluations = -math.inf, 0, 0
