@@ -9,7 +9,7 @@ import pytest
 
 from nullpose.errors import UsageError
 from nullpose.physics import sinr
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, apply_overrides
 from nullpose.solve import PAPER_SCHEMES, Scheme, Solution, Status, best_axis, compare, default_gap, solve
 
 
@@ -155,3 +155,18 @@ def test_bad_limits_are_refused(options: dict, words: Sequence[str], certify: bo
 def test_no_time_limit_is_a_time_limit(paper: Callable) -> None:
     """Infinity is allowed: the proof takes as long as it takes."""
     assert solve(paper(1.0), time_limit_s=math.inf).status is Status.CERTIFIED
+
+
+def test_tilt_limits_among_strong_jammers() -> None:
+    """Where the airframe's limit binds, axes that are cut early never come to an end, and late ones do."""
+    rng = np.random.default_rng(6)
+    nodes, jammers = rng.uniform(0.0, 100.0, (12, 2)), rng.uniform(20.0, 80.0, (2, 2))
+    scenario = Scenario.from_arrays(
+        nodes_m=np.column_stack([nodes, np.zeros(12)]),
+        jammers_m=np.column_stack([jammers, np.ones(2)]),
+        jammer_power_w=200.0,
+        noise_w=1e-3,
+        altitude_m=(8.0, 60.0),
+    )
+    tilted = apply_overrides(scenario, ["airframe.tilt_max_deg=45"])
+    assert solve(tilted, node_limit=400_000, time_limit_s=math.inf, threads=1).status is Status.CERTIFIED

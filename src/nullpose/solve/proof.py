@@ -22,6 +22,7 @@ from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 _DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
 _ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
 _DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
+_LATE_DIRECT_NODES = 200_000  # where splitting them early does not come to an end
 _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _LATE_SEEN = 400
@@ -124,6 +125,9 @@ class _Run:
         if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
             late = min(_LATE_NODES, _LATE_NODES_EACH * ratios)
             tries.insert(0, (self.kernel.LATE, _LATE_SEEN, late, _LATE_LEFT))
+            tries.append((self.kernel.LATE, _ALONE_NODES, _LATE_DIRECT_NODES, 1.0))
+        least = math.inf
+        best = self.kernel.EARLY
         for self.axes_above, alone, nodes, left in tries:
             most = min(nodes, max(1, self.node_limit - self.nodes - _KEPT))
             workers = WorkerPool(self.root, 1)
@@ -133,6 +137,9 @@ class _Run:
                 done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
             if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
                 break
+            if nodes >= _DIRECT_NODES and self._volume(workers.nodes()) < least:
+                least, best = self._volume(workers.nodes()), self.axes_above
+        self.axes_above = best  # for the stages that may follow
         return done, reason
 
     def _volume(self, nodes: FloatArray) -> float:

@@ -11,8 +11,9 @@ from typing import Unpack
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.schemes import PAPER_SCHEMES, Scheme
-from nullpose.solve import SolveKeywords, SolveOptions, solve
+from nullpose.solve import Result, SolveKeywords, SolveOptions, solve
 from nullpose.study.grid import solved_grid
+from nullpose.study.neighbours import freedom, from_freer
 from nullpose.study.spacing import spaced
 from nullpose.study.table import SweepRow, SweepTable
 
@@ -27,6 +28,9 @@ def sweep(
     **options: Unpack[SolveKeywords],
 ) -> SweepTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
+
+    Where the best value can only fall along the setting, a point takes the bound of a freer one if a pose of
+    that one reaches it (:mod:`nullpose.study.neighbours`); such a row has no certificate.
 
     Schemes that have no meaning at some value are left out, with the reason in the table. Every value is
     checked before the first solve. An interrupt ends the sweep, during a proof as anywhere else.
@@ -52,15 +56,23 @@ def sweep(
     if not applicable:
         raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
 
+    asked, sign = SolveOptions(**options), freedom(path, scenario)
+    found: dict[Scheme, list[Result]] = defaultdict(list)
+
     def solved(point: tuple[float, Scenario], scheme: Scheme) -> SweepRow:
         value, varied = point
-        result = solve(varied, scheme, **options)
+        known = from_freer(varied, found[scheme], asked) if sign else None
+        result = known or solve(varied, scheme, **options)
         if result.interrupted:
             raise KeyboardInterrupt
+        found[scheme].append(result)
         return SweepRow.of(value, result)
 
-    rows = tuple(solved_grid(scenarios, applicable, solved, on_progress))
-    return SweepTable(path, rows, MappingProxyType(left_out))
+    # what bounds others comes first; without a direction the order is that of the values
+    order = sorted(scenarios, key=lambda point: -sign * point[0])
+    rows = {(row.value, row.scheme): row for row in solved_grid(order, applicable, solved, on_progress)}
+    asked_for = (rows[value, scheme] for value, _ in scenarios for scheme in applicable)
+    return SweepTable(path, tuple(asked_for), MappingProxyType(left_out))
 
 
 def _scenarios_along(

@@ -1,0 +1,72 @@
+"""What the points of a sweep say of each other, where the value can only fall along the setting."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from nullpose.objectives import Quantity
+from nullpose.physics import evaluate
+from nullpose.scenario import Scenario
+from nullpose.solve import Result, Rigour, SolveOptions, Status
+from nullpose.solve.result import objective_of
+
+_FREER = {
+    r"airframe\.tilt_max_(deg|rad)": 1.0,
+    r"jammers(\.\w+|\[\d+\])\.power_(w|dbm)": -1.0,
+    r"receiver\.noise_(w|dbm)": -1.0,
+}
+"""Settings, and in which direction no pose gets worse and none is lost."""
+
+
+def freedom(path: str, scenario: Scenario) -> float:
+    """Return 1 if the best value can only grow with a setting, -1 if it can only fall, 0 if neither is known.
+
+    Where tilt limits grow, the attitudes of the smaller one are among those of the larger. Less jamming and
+    less noise raise every SINR, but also an eavesdropper's.
+
+    Args:
+        path: the setting, as in ``jammers.M.power_w``.
+        scenario: what is swept.
+    """
+    sign = next((sign for pattern, sign in _FREER.items() if re.fullmatch(pattern, path)), 0.0)
+    at_every_pose = path.startswith("airframe") or not Quantity.of(scenario).is_rate
+    return sign if at_every_pose and scenario.array is None else 0.0
+
+
+def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOptions) -> Result | None:
+    """Return the certified result that results of freer points imply, or None.
+
+    Their least upper bound holds here, too; if one of their poses is allowed here and comes near to that
+    bound, nothing is left to solve. The bound has no certificate of its own.
+
+    Args:
+        scenario: the point.
+        freer: results of one scheme at points where every pose is as good or better.
+        options: with the gap that is asked for.
+    """
+    asked = options.of(scenario)
+    bounds = [(result.upper_bound, result) for result in freer if result.upper_bound is not None]
+    if not bounds:
+        return None
+    bound, best = min(bounds, key=lambda pair: pair[0])
+    airframe = scenario.airframe
+    if airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad:
+        return None
+    links = tuple(evaluate(scenario, best.pose))
+    quantity = Quantity.of(scenario)
+    value = quantity.least(links)
+    ratio_bound = 2.0**bound if quantity.is_rate else bound
+    objective = objective_of(scenario, value, ratio_bound, Rigour.FLOATING_POINT)
+    if objective.relative_gap is None or objective.relative_gap > asked.target:
+        return None
+    return replace(
+        best,
+        scenario=scenario,
+        status=Status.CERTIFIED,
+        reason="",
+        objective=objective,
+        links=links,
+        proofs=(),
+    )

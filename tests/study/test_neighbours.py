@@ -1,0 +1,46 @@
+"""Points of a sweep that bound each other give what single solves give."""
+
+import math
+
+import pytest
+
+from nullpose import Scenario, apply_overrides, load, solve, sweep
+from nullpose.study.neighbours import freedom
+
+FIELD = load("examples/airframe.toml")
+TILT = "airframe.tilt_max_deg"
+
+
+def test_tilt_limits_nest() -> None:
+    """Every row is certified, has an allowed pose, and is what a solve of its own finds."""
+    table = sweep(FIELD, TILT, [0.0, 20.0, 40.0, 60.0, 80.0, 90.0], schemes=["optimum"], gap=1e-4)
+    values = [row.objective.value for row in table.rows]
+    assert values == sorted(values)
+    for row in table.rows:
+        alone = solve(apply_overrides(FIELD, [f"{TILT}={row.value}"]), gap=1e-4)
+        assert row.status == "certified"
+        assert row.pose.tilt_rad <= math.radians(row.value) + 1e-9
+        assert row.objective.relative_gap <= 1e-4
+        assert row.objective.value == pytest.approx(alone.objective.value, rel=1e-4)
+        assert row.objective.upper_bound >= alone.objective.value
+    assert any(not row.proofs for row in table.rows)
+    assert all(row.proofs or row.rigour == "floating-point" for row in table.rows)
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "wanted"),
+    [
+        (TILT, "airframe", 1.0),
+        ("jammers.M.power_w", "paper", -1.0),
+        ("jammers[0].power_dbm", "paper", -1.0),
+        ("receiver.noise_dbm", "paper", -1.0),
+        ("jammers.M.position_m[0]", "paper", 0.0),
+        ("jammers[0].power_dbm", "eavesdropper", 0.0),
+        (TILT, "eavesdropper", 1.0),
+        (TILT, "array", 0.0),
+    ],
+)
+def test_where_the_direction_is_known(path: str, name: str, wanted: float) -> None:
+    """Less jamming helps every pose, but an eavesdropper too; positions have no direction."""
+    scenario: Scenario = load(f"examples/{name}.toml")
+    assert freedom(path, scenario) == wanted
