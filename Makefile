@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test test-studio check docs bench judges figures clean
+.PHONY: help demo test test-studio check docs package bench judges figures clean
 
 help: ## what can be made, a line each
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
@@ -32,6 +32,10 @@ check: .venv/.with-lint ## lint, format, types and the import contract
 docs: .venv/.with-docs ## the documentation, warnings being errors, into docs/_build/html
 	$(BIN)/sphinx-build -q -E -W --keep-going -n -b html docs docs/_build/html
 	@echo "Open docs/_build/html/index.html in a browser; it needs no network."
+
+package: .venv/.made ## a wheel and a source archive, tried outside the clone in an environment of their own
+	$(PIP) build
+	.ci/package $(BIN)/python out/package
 
 bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
 	$(BIN)/python -m benchmarks
