@@ -19,7 +19,7 @@ from nullpose.certificate.pose_value import (
     sine_cosine,
     smallest_ratio,
 )
-from nullpose.certificate.profile import ProfileField
+from nullpose.certificate.profile import profiles_of
 from nullpose.family import AxisField, Family
 from nullpose.objectives import Quantity
 from nullpose.scenario import Airframe, Scenario
@@ -77,8 +77,7 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     )
     if fault:
         return f"pose: {fault}"
-    profiles = [field.profile for field in fields.values() if isinstance(field, ProfileField)]
-    value = smallest_ratio(family, position, axis, *profiles)
+    value = smallest_ratio(family, position, axis, *profiles_of(fields))
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
         what = "ratio" if quantity.is_rate else quantity.noun

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
 from typing import TypeAlias
@@ -127,6 +128,15 @@ class ProfileField(AxisField):
             ("even", even),
         ):
             object.__setattr__(self, name, value)
+
+
+def profiles_of(fields: Mapping[str, AxisField]) -> list[Profile]:
+    """Return the gain of an antenna that is no dipole, alone in a list, or none.
+
+    Args:
+        fields: the axis fields of a scheme.
+    """
+    return [field.profile for field in fields.values() if isinstance(field, ProfileField)]
 
 
 def loudest(family: Family, field: AxisField) -> Family:

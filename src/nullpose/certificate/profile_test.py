@@ -29,7 +29,7 @@ from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
 _ROUNDS = 16  # of halving what is not excluded
-_MOST = 8  # pieces of a leaf at once, on average: a certificate that holds needs one or two
+_MOST = 4  # pieces of a leaf at once, on average: a certificate that holds needs one or two
 _PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
 _TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
 _CHUNK = 4096

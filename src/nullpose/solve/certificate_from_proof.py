@@ -10,6 +10,7 @@ import numpy as np
 from nullpose.antenna import PatternAntenna
 from nullpose.certificate import Certificate, Tree, claimed_axes, verify
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
+from nullpose.certificate.profile import profiles_of
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.scenario import Scenario
@@ -62,7 +63,7 @@ def certificate_of(solution: Result) -> Certificate:
             "--certificate and --verify"
         )
     pose = solution.pose
-    value, bound = _ratios(solution)
+    value, bound = _ratios(solution, fields)
     return Certificate(
         scenario=solution.scenario,
         scheme=str(solution.scheme),
@@ -103,7 +104,7 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
     )
 
 
-def _ratios(solution: Result) -> tuple[float, float]:
+def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, float]:
     """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
     objective = solution.objective
     if not objective.quantity.is_rate:
@@ -111,5 +112,6 @@ def _ratios(solution: Result) -> tuple[float, float]:
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
-    value = float(smallest_ratio(build_family(solution.scenario), exact(pose.position_m), axis))
+    family = build_family(solution.scenario, any_antenna=True)
+    value = float(smallest_ratio(family, exact(pose.position_m), axis, *profiles_of(fields)))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))
