@@ -33,8 +33,9 @@ class Poses:
 
     Example:
         >>> import nullpose
-        >>> poses = Poses(position_m=[-2.2, 23.8, 8.0], roll_rad=-0.3, pitch_rad=[-1.5, -1.4, -1.3])
-        >>> nullpose.min_sinr(nullpose.load("examples/paper.toml"), poses).round(3)  # one for each pose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> poses = nullpose.Poses([-2.2, 23.8, 8.0], roll_rad=-0.3, pitch_rad=[-1.5, -1.4, -1.3])
+        >>> nullpose.min_sinr(scenario, poses).round(3)
         array([1.2  , 1.248, 1.22 ])
     """
 
