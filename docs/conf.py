@@ -1,5 +1,6 @@
 """How the documentation is built: `make docs`."""
 
+import logging
 import sys
 from pathlib import Path
 
@@ -13,7 +14,7 @@ author = "The nullpose developers"
 release = nullpose.__version__
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "docstrings",
     "offline_math",
@@ -23,6 +24,11 @@ exclude_patterns = ["_build", "_ext"]
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300  # seconds for a cell, compiling included
+logging.getLogger("traitlets").setLevel(logging.WARNING)  # what the notebook's client is doing
 html_math_renderer = "mathml"
 math_eqref_format = "({number})"
 

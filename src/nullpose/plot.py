@@ -57,6 +57,12 @@ def pose(result: Result, ax: Any = None) -> Any:
 
     Raises:
         UsageError: the axes are not in 3-D, or the result is of an array.
+
+    Example:
+        >>> import nullpose
+        >>> axes = nullpose.plot.pose(nullpose.solve(nullpose.load("examples/paper.toml")))
+        >>> axes.name
+        '3d'
     """
     if hasattr(result.details, "weights"):
         raise UsageError("pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
@@ -75,6 +81,11 @@ def plan(result: Result, ax: Any = None) -> Any:
 
     Raises:
         UsageError: the axes are in 3-D.
+
+    Example:
+        >>> import nullpose
+        >>> nullpose.plot.plan(nullpose.solve(nullpose.load("examples/paper.toml"))).get_xlabel()
+        'x (east)  m'
     """
     with _axes(ax, (5.0, 5.0)) as axes:
         draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose)
@@ -91,6 +102,11 @@ def heat_map(result: Result, ax: Any = None, *, field: Field | None = None) -> A
 
     Raises:
         UsageError: the axes are in 3-D, or the result is of an array.
+
+    Example:
+        >>> import nullpose
+        >>> nullpose.plot.heat_map(nullpose.solve(nullpose.load("examples/paper.toml"))).get_ylabel()
+        'y (north)  m'
     """
     field = value_map(result, cells=_CELLS) if field is None else field
     with _axes(ax, (6.0, 6.0)) as axes:
@@ -108,6 +124,14 @@ def sweep(table: SweepTable, ax: Any = None, *, log: bool = False) -> Any:
 
     Raises:
         UsageError: the axes are in 3-D.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> table = nullpose.sweep(scenario, "jammers.M.power_w", [0.1, 1.0, 10.0])
+        >>> axes = nullpose.plot.sweep(table, log=True)
+        >>> axes.get_xscale()
+        'log'
     """
     with _axes(ax, (7.0, 4.2)) as axes:
         draw_sweep_axes(axes, table, log=log)
@@ -124,6 +148,12 @@ def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: An
 
     Raises:
         UsageError: the axes are in 3-D.
+
+    Example:
+        >>> import nullpose
+        >>> axes = nullpose.plot.comparison(nullpose.compare(nullpose.load("examples/paper.toml")))
+        >>> len(axes.patches)  # bars
+        4
     """
     with _axes(ax, (7.0, 3.6)) as axes:
         if isinstance(found, AirframeComparison):

@@ -65,6 +65,13 @@ def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
         pose: where the drone is and how it is turned; or many such.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> pose = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=0.0)
+        >>> [(link.node, round(link.sinr_db, 3)) for link in nullpose.evaluate(scenario, pose)]
+        [('S1', -4.084), ('S2', -4.084)]
     """
     require_scenario(scenario)
     if isinstance(pose, Poses):
@@ -121,6 +128,16 @@ def min_sinr(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
     Args:
         scenario: nodes, jammers and receiver.
         pose: where the drone is and how it is turned; or many such, for an array of shape ``(n,)``.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> pose = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=0.0)
+        >>> round(nullpose.min_sinr(scenario, pose), 4)
+        0.3905
+        >>> poses = nullpose.Poses([[0.0, 25.0, 8.0], [-2.0, 24.0, 8.0]], roll_rad=0.0, pitch_rad=[0.0, -1.4])
+        >>> nullpose.min_sinr(scenario, poses).round(4)
+        array([0.3905, 0.9535])
     """
     return _least(sinr, scenario, pose)
 
@@ -139,6 +156,15 @@ def min_margin(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
     Args:
         scenario: nodes, jammers and receiver.
         pose: where the drone is and how it is turned; or many such, for an array of shape ``(n,)``.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> required = ["nodes.S1.min_sinr_db=-3", "nodes.S2.min_sinr_db=-6"]
+        >>> demanding = nullpose.apply_overrides(scenario, required)
+        >>> pose = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=0.0)
+        >>> round(nullpose.min_margin(demanding, pose), 4)
+        0.7791
     """
     return _least(margin, scenario, pose)
 
@@ -160,6 +186,13 @@ def min_secrecy_rate(scenario: Scenario, pose: Pose | Poses) -> float | FloatArr
 
     Raises:
         ValueError: the scenario has no transmitter.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/eavesdropper.toml")
+        >>> pose = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=-1.4)
+        >>> round(nullpose.min_secrecy_rate(scenario, pose), 4)
+        0.5985
     """
     return _least(secrecy_rate, scenario, pose)
 

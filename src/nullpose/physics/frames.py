@@ -102,6 +102,14 @@ def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
     Args:
         scenario: for its origin.
         pose: position and attitude, world ENU, body forward-left-up.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> pose = nullpose.Pose(position_m=[2.0, 25.0, 8.0], roll_rad=0.1, pitch_rad=-0.2)
+        >>> ned = nullpose.pose_frames(scenario, pose).ned
+        >>> ned.position_m, round(ned.pitch_rad, 3), round(ned.yaw_rad, 3)
+        ((25.0, 2.0, -8.0), 0.2, 1.571)
     """
     east_north_up = _frame_pose(pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
     heading_rad = math.pi / 2.0 - pose.yaw_rad

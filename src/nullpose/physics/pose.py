@@ -59,6 +59,13 @@ class Pose:
 
     Raises:
         UsageError: a number is not finite, or the position has another shape.
+
+    Example:
+        >>> import math
+        >>> import nullpose
+        >>> pose = nullpose.Pose([0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=math.radians(-30.0))
+        >>> pose.antenna_axis.round(3) + 0.0
+        array([-0.5  ,  0.   ,  0.866])
     """
 
     position_m: FloatArray

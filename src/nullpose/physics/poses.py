@@ -21,8 +21,6 @@ _BLOCK = 8192  # poses worked out together: their arrays stay in the processor's
 class Poses:
     """Many positions and attitudes in the world frame (ENU), as arrays; ``poses[i]`` is one :class:`Pose`.
 
-    ``nullpose.min_sinr(scenario, Poses(positions_m, roll_rad, pitch_rad))`` is an array, (n,).
-
     Args:
         position_m: shape ``(n, 3)``, metres; or ``(3,)``, the same position for every attitude.
         roll_rad: roll of paper eq. 1.1, shape ``(n,)`` or one number for all, radians.
@@ -32,6 +30,13 @@ class Poses:
 
     Raises:
         UsageError: the shapes do not go together, or a number is not finite.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> poses = nullpose.Poses([-2.2, 23.8, 8.0], roll_rad=-0.3, pitch_rad=[-1.5, -1.4, -1.3])
+        >>> nullpose.min_sinr(scenario, poses).round(3)
+        array([1.2  , 1.248, 1.22 ])
     """
 
     position_m: FloatArray

@@ -17,6 +17,12 @@ def json_schema() -> dict[str, Any]:
     """Returns the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.
 
     It says what can be said key by key; faults between keys, such as a reversed range, are left to ``load``.
+
+    Example:
+        >>> import nullpose
+        >>> schema = nullpose.json_schema()
+        >>> schema["title"], "jammers" in schema["properties"]
+        ('nullpose scenario', True)
     """
     schema = Scenario.model_json_schema(schema_generator=_TomlSchema)
     heading = {

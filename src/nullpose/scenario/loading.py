@@ -35,6 +35,12 @@ def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenar
 
     Raises:
         ScenarioError: when the file cannot be read or is faulty; with every fault it has.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> scenario.node_names, scenario.jammers[0].power_w
+        (('S1', 'S2'), 1.0)
     """
     source = os.fspath(path)
     origins: dict[str, str] = {}

@@ -93,7 +93,8 @@ class Origin(Section):
             ``alt_msl_m`` over the sea [m].
 
         Example:
-            >>> Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0, alt_msl_m=185.0).place([0.0, 0.0, 20.0])
+            >>> origin = Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0, alt_msl_m=185.0)
+            >>> {key: round(value, 6) for key, value in origin.place([0.0, 0.0, 20.0]).items()}
             {'lat_deg': 50.0, 'lon_deg': 14.5, 'alt_m': 250.0, 'alt_msl_m': 205.0}
         """
         lat_deg, lon_deg, height_m = geodetic_from_enu(position_m, self.geodetic).tolist()

@@ -78,6 +78,13 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
 
     Raises:
         ScenarioError: with every path that does not exist and every fault of the result.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> strong = nullpose.apply_overrides(scenario, ["jammers.M.power_w=10", "receiver.noise_dbm=0"])
+        >>> strong.jammers[0].power_w, strong.receiver.noise_dbm
+        (10.0, 0.0)
     """
     # tables are frozen: those that no path leads into are taken as they are
     data = {key: value for key in Scenario.model_fields if (value := getattr(scenario, key)) is not None}

@@ -58,8 +58,8 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         scenario: any.
 
     Example:
-        >>> scenario = nullpose.load("examples/paper.toml")
-        >>> nullpose.scenario.doubts(scenario)
+        >>> import nullpose
+        >>> doubts(nullpose.load("examples/paper.toml"))
         ()
     """
     points = {

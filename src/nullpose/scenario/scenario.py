@@ -167,6 +167,13 @@ class Scenario(Section):
         Raises:
             UsageError: shapes that do not go together.
             ScenarioError: with every fault of the values.
+
+        Example:
+            >>> import nullpose
+            >>> nullpose.Scenario.from_arrays(
+            ...     [[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30), name="paper"
+            ... )
+            Scenario('paper': 2 nodes, 1 jammer, min-sinr, altitude 8 to 30 m)
         """
         points = {
             "nodes": rows_of_points("node", nodes_m, node_power_w),

@@ -52,6 +52,15 @@ def solve(
         WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
         SolveError: no pose reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> result = nullpose.solve(scenario)
+        >>> round(result.objective.value_db, 4), round(result.objective.upper_bound, 4), str(result.status)
+        (0.9837, 1.2542, 'certified')
+        >>> result.pose.position_m.round(2)
+        array([-2.24, 23.82,  8.  ])
     """
     require_scenario(scenario)
     scheme = as_scheme(scheme)
@@ -111,6 +120,16 @@ def compare(
         WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: an unknown scheme, a bad seed or limit.
         SolveError: no pose reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> for result in nullpose.compare(scenario):
+        ...     print(f"{result.label:<17} {result.objective.value_db:6.3f} dB")
+        Optimum            0.984 dB
+        Zero interference  0.812 dB
+        Maximum gain      -0.700 dB
+        Vertical          -2.160 dB
     """
     require_scenario(scenario)
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]

@@ -117,6 +117,15 @@ def solve_array(
         UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> result = nullpose.solve_array(
+        ...     scenario, elements=2, layout="linear", spacing_wavelengths=0.5, gap=1e-2
+        ... )
+        >>> round(result.objective.value_db, 2), result.weights.shape  # a row of weights for each node
+        (4.1, (2, 2))
     """
     require_scenario(scenario)
     if combining not in COMBININGS:

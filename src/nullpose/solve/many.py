@@ -115,6 +115,16 @@ def solve_many(
     Raises:
         UsageError: a scenario of another kind, no scenario, a bad seed or limit.
         KeyboardInterrupt: Ctrl-C; nothing is returned.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> strong = nullpose.apply_overrides(scenario, ["jammers.M.power_w=100"])
+        >>> vehicles = [None, nullpose.Airframe(preset="level")]
+        >>> many = nullpose.solve_many([scenario, strong], airframes=vehicles)
+        >>> many.value.round(3)  # a row for each scene, a column for each vehicle
+        array([[1.254, 0.608],
+               [1.206, 0.608]])
     """
     asked = SolveOptions(**options)
     _check(scenarios)

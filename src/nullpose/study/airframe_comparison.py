@@ -236,6 +236,13 @@ def compare_airframes(
     Raises:
         UsageError: a bad seed or limit.
         SolveError: no pose of the omnidirectional vehicle reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> found = nullpose.compare_airframes(scenario, certify=False)
+        >>> found.least_sufficient.case.name
+        'tilt-10'
     """
     asked = SolveOptions(**options).of(scenario)
     options["gap"] = asked.target

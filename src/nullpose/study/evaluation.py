@@ -85,6 +85,14 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
 
     Raises:
         UsageError: a pose is at a ground point, where the model has no value; or the result is of an array.
+
+    Example:
+        >>> import nullpose
+        >>> best = nullpose.solve(nullpose.load("examples/paper.toml"))
+        >>> upright = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=0.0)
+        >>> (result,) = nullpose.evaluate_against(best, [upright]).results
+        >>> round(result.objective.value_db, 2), round(result.below_bound, 2)  # dB
+        (-4.08, 5.07)
     """
     if best.scenario.array is not None:
         raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")

@@ -30,6 +30,16 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0) -> Poses:
 
     Raises:
         ScenarioError: with every fault of the file.
+
+    Example:
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import nullpose
+        >>> table = nullpose.sweep(nullpose.load("examples/paper.toml"), "jammers.M.power_w", [1.0, 10.0])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     poses = nullpose.poses_from_csv(table.write_csv(Path(folder) / "sweep.csv"))
+        >>> len(poses) == len(table.rows)
+        True
     """
     try:
         rows = csv.DictReader(io.StringIO(file_text(path, _KIND), newline=""), skipinitialspace=True)

@@ -47,6 +47,18 @@ def sweep(
         ScenarioError: the path does not exist, or a value makes no valid scenario.
         UsageError: no scheme applies, or a bad limit.
         KeyboardInterrupt: Ctrl-C ended a proof.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> cases = ["optimum", "maximum-gain"]
+        >>> table = nullpose.sweep(scenario, "jammers.M.power_w", [1.0, 100.0], schemes=cases)
+        >>> for row in table.rows:
+        ...     print(f"{row.value:5g} W  {row.scheme:<13} {row.min_sinr_db:6.3f} dB")
+            1 W  optimum        0.984 dB
+            1 W  maximum-gain  -0.700 dB
+          100 W  optimum        0.815 dB
+          100 W  maximum-gain  -1.116 dB
     """
     require_scenario(scenario)
     scenarios = _scenarios_along(scenario, path, values)

@@ -156,7 +156,12 @@ def value_map(
             is of an array.
 
     Example:
-        ``value_map(nullpose.solve(scenario)).best`` is the value and the position of the best pose.
+        >>> import nullpose
+        >>> field = nullpose.value_map(nullpose.solve(nullpose.load("examples/paper.toml")), cells=21)
+        >>> field.values.shape == (len(field.north_m), len(field.east_m))
+        True
+        >>> round(field.best[0], 4)  # dB, at the position of the best pose
+        0.9837
     """
     scenario, place_m = result.scenario, result.pose.position_m
     require_map(scenario, altitude_m, cells)

@@ -54,6 +54,14 @@ def solve_robust(
         WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: an array in place of the dipole, a bad seed or limit.
         SolveError: no pose reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> uncertain = nullpose.apply_overrides(scenario, ["jammers.M.uncertainty_m=1"])
+        >>> result = nullpose.solve_robust(uncertain, gap=0.1)
+        >>> result.objective.value < nullpose.solve(scenario).objective.value
+        True
     """
     require_scenario(scenario)
     limits = SolveOptions(**options, on_progress=on_progress).of(scenario, ROBUST_GAP)
