@@ -41,11 +41,14 @@ def _axes(ax: Any, size_inch: tuple[float, float], *, solid: bool = False) -> It
             raise UsageError(f"ax: given axes of the other kind; allowed: axes {wanted}")
         yield ax
         return
+    import matplotlib
     from matplotlib import pyplot
 
     with house_style():
         figure = pyplot.figure(figsize=size_inch, layout=None if solid else "constrained")
+        shows_by_itself = matplotlib.is_interactive()  # which a notebook turns on with its first figure
         yield figure.add_subplot(projection="3d" if solid else None)
+    matplotlib.interactive(shows_by_itself)
 
 
 def pose(result: Result, ax: Any = None) -> Any:

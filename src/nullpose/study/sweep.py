@@ -30,7 +30,7 @@ def sweep(
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
     Where the best value can only fall along the setting, a point takes the bound of a freer one if a pose of
-    that one reaches it (:mod:`nullpose.study.neighbours`); such a row has no certificate.
+    that one reaches it; such a row has no certificate.
 
     Schemes that have no meaning at some value are left out, with the reason in the table. Every value is
     checked before the first solve. An interrupt ends the sweep, during a proof as anywhere else.
