@@ -68,4 +68,7 @@ def draw_field(axes: Any, result: Result, field: Field) -> None:
     box_m = np.array([[east[0], north[0]], [east[-1], north[-1]]])
     draw_plan(axes, stage, result.pose, box_m)
     words = f"{begun(result.objective.quantity.smallest)} {field.altitude_m:.4g} m up  ({field.unit})"
-    axes.figure.colorbar(mesh, ax=axes, label=words, extend="min" if float(known.min()) < low else "neither")
+    beside = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
+    axes.figure.colorbar(
+        mesh, cax=beside, label=words, extend="min" if float(known.min()) < low else "neither"
+    )
