@@ -56,8 +56,9 @@ class Profile:
 
         Args:
             order: of the derivative, 0 to 2.
-            cosine: (b,).
+            cosine: (b,), of which what is beyond -1 and 1 does not count.
         """
+        cosine = Interval(np.clip(cosine.low, -1.0, 1.0), np.clip(cosine.high, -1.0, 1.0))
         middle = np.nan_to_num(cosine.middle())
         cell = np.clip(((middle + 1.0) * (0.5 * _CELLS)).astype(np.int64), 0, _CELLS - 1)
         return self._series(order, cell, cosine - self.middles[cell])

@@ -33,6 +33,7 @@ _MOST = 4  # pieces of a leaf at once, on average: a certificate that holds need
 _PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
 _TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
 _CHUNK = 4096
+_DEEPEST = 50  # halvings of a turn: with more its middle is no floating-point number
 _SQUARES = [n for n, (i, j) in enumerate(PAIRS) if i == j]
 
 
@@ -72,7 +73,7 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     cells = _Cells(own, leaves.cell[rows, 1:])
     most = _MOST * max(1, len(rows))
     for _ in range(_ROUNDS):
-        if not 0 < len(cells.boxes) <= most:
+        if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > _DEEPEST):
             break
         excluded, side = _excluded(family, field, leaves.chosen(cells.boxes.leaf), cells)
         cells = _halved(cells.chosen(~excluded), side[~excluded])
