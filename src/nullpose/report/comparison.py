@@ -76,7 +76,7 @@ def comparison_view(comparison: Comparison) -> View:
     rows: list[Mapping[str, str]] = []
     for cells in (_value_cells, _pose_cells, _link_cells):
         rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
-    others = "Each case has one dipole on the file's vehicle. Other vehicles, and arrays: compare --airframes"
+    others = "Each case has one dipole on the file's vehicle. Other vehicles and arrays: compare --airframes"
     return document(
         head(scenario.name),
         table("", rows, bold=[f"smallest {quantity.short} ({quantity.unit})"]),
@@ -108,7 +108,7 @@ def _value_cells(solution: Result, best: float) -> dict[str, str]:
     value, smallest = quantity.in_unit(objective.value), f"smallest {quantity.short}"
     return {
         f"{smallest} ({quantity.unit})": f"{value:.7f}",
-        f"at most ({quantity.unit})": bound_text(objective, 7),
+        f"upper bound ({quantity.unit})": bound_text(objective, 7),
         **({} if quantity.is_rate else {smallest: f"{objective.value:.7g}"}),
         f"gap to the best ({quantity.unit})": fixed(best - value, 4),
     }

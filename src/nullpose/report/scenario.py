@@ -92,7 +92,7 @@ def scenario_view(scenario: Scenario) -> View:
     """
     numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
-        "At best: as close as the airspace's box and the keep-out allow (zones and fence not counted), the "
+        "At best: the drone as close as airspace and keep-out radius allow (zones and fence ignored), the "
         f"dipole broadside{'' if rate else ', no jamming'}."
     )
     notes = [
@@ -101,7 +101,7 @@ def scenario_view(scenario: Scenario) -> View:
         if node.min_sinr_db is not None and node.min_sinr_db > told["best_power_to_noise_db"]
     ]
     if scenario.is_uncertain:
-        notes.append("Errors and uncertainty count where a guaranteed value is asked for, not otherwise.")
+        notes.append("Errors and uncertainty are used for guaranteed values only.")
     zones = [_zone_row(zone) for zone in scenario.airspace.no_fly]
     return document(
         head(scenario.name),

@@ -107,7 +107,7 @@ def draw_sweep(table: SweepTable, *, log: bool = False) -> Figure:
         figure = Figure(figsize=(7.0, 4.6), layout="constrained")
         axes = figure.add_subplot()
         if draw_curves(axes, table):
-            lines.append("Bands reach up to the bound, a small triangle above which no pose is.")
+            lines.append("Each band ends at the upper bound, a small triangle.")
         _keep_curves_large(axes, table)
         axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
         axes.set_ylabel(f"{quantity.smallest} over the nodes  ({quantity.unit})")
