@@ -195,7 +195,7 @@ class Result:
 
     @property
     def binding_node(self) -> str:
-        """Name of the node that decides: least SINR, margin or rate (the first, if several share it)."""
+        """Name of the node with the smallest SINR, margin or rate (the first, if several share it)."""
         return min(self.links, key=self.objective.quantity.at).node
 
     @property

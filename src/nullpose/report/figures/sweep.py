@@ -27,7 +27,7 @@ _MARKERS = 13  # at most so many markers on a curve, so that they do not merge i
 
 
 def quantity_of(table: SweepTable) -> Quantity:
-    """Return what a sweep made as large as it can be.
+    """Return the quantity that a sweep maximised.
 
     Args:
         table: the sweep, with at least one row.

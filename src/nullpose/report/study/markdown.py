@@ -27,7 +27,7 @@ Rows = Sequence[Mapping[str, str]]
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A part of a report, which is told if it has a figure or a table.
+    """A part of a report, which is written if it has a figure or a table.
 
     Args:
         heading: above it.
