@@ -150,7 +150,7 @@ def _settings(fresh: Collection[Told], old: Collection[Told]) -> str:
 
 def _limitations(sections: Sequence[Section]) -> str:
     every = [sentence for section in sections for sentence in section.limitations]
-    every.append("All times are from one machine, the one above; the ratios travel better than the times.")
+    every.append("All times are from the machine above. Ratios of times depend less on the machine.")
     return "\n".join(f"- {sentence}" for sentence in every)
 
 

@@ -1,6 +1,6 @@
-"""Bring the pictures and the page of the paper's claims up to date: `make figures`.
+"""Update the pictures and the page of the paper's claims: `make figures`.
 
-They are what `nullpose reproduce` and `nullpose solve --figure` write: pages show what the program says.
+`nullpose reproduce` and `nullpose solve --figure` write the same files.
 """
 
 import shutil
@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import nullpose
 from nullpose.paper.reproduce import reproduce
-from nullpose.report.figures.poses import draw_array, draw_robust
+from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import write_figure_file
 from nullpose.solve import solve_array
 from nullpose.solve.robust import solve_robust
@@ -20,11 +20,13 @@ EXAMPLES = DOCS.parent / "examples"
 
 
 def draw_examples() -> None:
-    """Draw what the examples with errors and with an array come to."""
-    robust = solve_robust(nullpose.load(EXAMPLES / "robust.toml"))
-    write_figure_file(draw_robust(robust), IMAGES / "robust.png")
-    array = solve_array(nullpose.load(EXAMPLES / "array.toml"), "digital")
-    write_figure_file(draw_array(array), IMAGES / "array.png")
+    """Draw the poses of the examples that pages show, as ``nullpose solve --figure`` does."""
+    plain = ("eavesdropper", "geodetic", "no-fly")
+    results = {name: nullpose.solve(nullpose.load(EXAMPLES / f"{name}.toml")) for name in plain}
+    results["robust"] = solve_robust(nullpose.load(EXAMPLES / "robust.toml"))
+    results["array"] = solve_array(nullpose.load(EXAMPLES / "array.toml"), "digital")
+    for name, result in results.items():
+        write_figure_file(draw_result(result), IMAGES / f"{name}.png")
 
 
 def main() -> None:

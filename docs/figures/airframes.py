@@ -130,7 +130,7 @@ def draw_tilt() -> None:
 
 
 def draw_arrays() -> None:
-    """Draw how many elements a tilted dipole is worth: in the paper's scene, and over the random fields."""
+    """Draw arrays against a tilted dipole: in the paper's scene, and over the random fields."""
     table = read("arrays")
     figure = Figure(figsize=(7.6, 3.9), layout="constrained")
     axes, *panels = figure.subplots(1, 3, width_ratios=[1.1, 1.0, 1.0])
@@ -163,7 +163,7 @@ def draw_arrays() -> None:
 
 
 def draw_array_shares(panels: list[Axes]) -> None:
-    """Draw in how many random fields an array gains so much, or less, over the omnidirectional dipole.
+    """Draw the CDF over the random fields of an array's gain over the omnidirectional dipole.
 
     Args:
         panels: one for each number of jammers.
@@ -186,7 +186,7 @@ def draw_array_shares(panels: list[Axes]) -> None:
         axes.set_xlim(left=-0.06 * axes.get_xlim()[1])  # the dipole's line stands off the axis
         axes.set_ylim(0.0, 1.02)
         axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
-    panels[0].set_ylabel("fields with no more")
+    panels[0].set_ylabel("CDF over fields")
 
 
 def field_names(table: Table) -> list[tuple[float, ...]]:
@@ -199,7 +199,7 @@ def field_names(table: Table) -> list[tuple[float, ...]]:
 
 
 def steps(axes: Axes, values: FloatArray, **style: object) -> list[Line2D]:
-    """Return the line drawn of the share of values that are no more than so much.
+    """Return the line of the empirical distribution function (CDF) of some values.
 
     Args:
         axes: where to draw.
@@ -290,7 +290,7 @@ def draw_fields() -> None:
     axes.set_xticks([-12, -9, -6, -3, 0], [f"{MINUS}12\nor less", f"{MINUS}9", f"{MINUS}6", f"{MINUS}3", "0"])
     axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
     figure.supxlabel("against the omnidirectional vehicle  (dB)", fontsize=9.5)
-    figure.supylabel("fields with no more", fontsize=9.5)
+    figure.supylabel("CDF over fields", fontsize=9.5)
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False, handlelength=3.4)
     write(figure, "fields")

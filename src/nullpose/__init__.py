@@ -3,8 +3,8 @@
 The drone carries one short dipole, whose null it can turn towards a jammer. Given ground nodes, jammers and
 an airspace, nullpose finds the position and the attitude that maximise the smallest SINR over the nodes.
 
-The names below are the whole public face; each is imported when it is first used, so that importing the
-package costs nothing.
+The names below are the public interface. Each is imported at its first use, so the import of the package is
+fast.
 """
 
 from __future__ import annotations

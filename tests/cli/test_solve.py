@@ -84,7 +84,7 @@ def test_every_scheme_prints_tables(run: Run, paper: str, scheme: Scheme) -> Non
     status = "certified" if proved else "not proved"
     for words in ("smallest SINR", "position", "roll", "deg from vertical", "Links", "Jammers", status):
         assert words in result.stdout
-    assert ("\nat most " in result.stdout) is proved
+    assert ("\nupper bound " in result.stdout) is proved
 
 
 def test_null_jammer(run: Run, paper: str) -> None:
@@ -129,7 +129,7 @@ def test_the_bound_is_printed_below_the_value(run: Run, paper: str) -> None:
     objective = _solve_json(run, paper)["objective"]
     assert objective["value"] <= objective["upper_bound"] <= objective["value"] * (1.0 + 1e-6)
     lines = run("solve", paper).stdout.splitlines()
-    assert lines[2] == "at most 0.9837041 dB (relative gap 1.0e-06)"
+    assert lines[2] == "upper bound 0.9837041 dB (relative gap 1.0e-06)"
     assert 10.0 * math.log10(objective["upper_bound"]) <= 0.9837041
 
 
@@ -142,7 +142,7 @@ def test_fast_proves_nothing(run: Run, paper: str) -> None:
     assert fast["stats"]["boxes"] == 0 < answer["stats"]["boxes"]
     shown = run("solve", paper, "--fast").stdout
     assert "not proved" in shown
-    assert "at most" not in shown
+    assert "upper bound" not in shown
 
 
 def test_the_gap_can_be_asked_for(run: Run, paper: str) -> None:
@@ -169,8 +169,8 @@ def test_a_limit_is_no_failure(run: Run, paper: str, limit: tuple[str, str], rea
     best = _solve_json(run, field, "--fast")["objective"]["value"]
     assert answer["objective"]["upper_bound"] >= best
     shown = run("solve", field, *limit).stdout
-    assert f"the gap asked for was not reached: {reason}" in shown
-    assert "\nat most " in shown
+    assert f"the requested gap was not reached: {reason}" in shown
+    assert "\nupper bound " in shown
 
 
 def test_an_interrupted_proof_prints_its_result(
@@ -184,8 +184,8 @@ def test_an_interrupted_proof_prints_its_result(
     monkeypatch.setattr(GapBar, "__call__", interrupt)
     result = run("solve", paper.replace("paper.toml", "field.toml"))
     assert result.exit_code == INTERRUPTED
-    assert "the gap asked for was not reached: an interrupt" in result.stdout
-    assert "\nat most " in result.stdout
+    assert "the requested gap was not reached: an interrupt" in result.stdout
+    assert "\nupper bound " in result.stdout
     result = run("solve", paper.replace("paper.toml", "field.toml"), "--json")
     assert result.exit_code == INTERRUPTED
     answer = json.loads(result.stdout)

@@ -41,11 +41,11 @@ def test_tables_say_what_is_guaranteed(run: Run) -> None:
     assert result.exit_code == 0
     for words in (
         "guaranteed: smallest SINR",
-        "at most ",
+        "upper bound ",
         "errors: axis 2 deg, M up to 3 m",
         "best pose as stated",
         "worst for the robust pose: axis 2 deg off",
-        "dB more than the best as stated",
+        "dB more than the best pose as stated",
     ):
         assert words in result.stdout
 

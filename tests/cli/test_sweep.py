@@ -31,7 +31,7 @@ def test_files_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
         assert 0.0 <= float(row["relative_gap"]) <= 1e-6
         assert float(row["upper_bound_db"]) > float(row["min_sinr_db"])
     assert "0.9837" in result.stdout
-    assert "Certified to 1e-6" in result.stdout
+    assert "Each point is certified optimal within 1e-6" in result.stdout
     assert str(out / "sweep.png") in result.stdout
 
 

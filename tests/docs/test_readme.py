@@ -1,18 +1,22 @@
-"""The README's promises: its example prints what it says, its links lead somewhere, and it stays short."""
+"""The README's promises: its example prints what it says, its commands and links work, and it stays short."""
 
 import contextlib
 import io
 import re
+import shutil
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+import nullpose
 from nullpose.cli.app import app
+from nullpose.study.monte_carlo import load_spec
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 EXAMPLE = re.search(r"```python\n(.*?)```.*?```text\n(.*?)```", README, flags=re.DOTALL)
+GALLERY = re.findall(r"^\| <img .*\| `(nullpose .*)` \|$", README, flags=re.MULTILINE)
 SCREEN = re.search(r"```console\n(\$ nullpose solve .*?)```", README, flags=re.DOTALL)
 
 
@@ -60,7 +64,21 @@ def test_readme_is_short() -> None:
     assert len(README.splitlines()) <= 120
 
 
-@pytest.mark.parametrize("target", re.findall(r"\]\(([^):]+)\)", README))
+@pytest.mark.parametrize("command", GALLERY)
+def test_gallery_command_works(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every command of the gallery ends well; a study and the studio only read their file."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    _, verb, *rest = command.split()
+    if verb == "study":
+        load_spec(rest[1])
+    elif verb == "studio":
+        nullpose.load(rest[0])
+    else:
+        assert CliRunner().invoke(app, [verb, *rest]).exit_code == 0
+
+
+@pytest.mark.parametrize("target", re.findall(r"(?:\]\(|src=\")([^):\"]+)[)\"]", README))
 def test_link_leads_somewhere(target: str) -> None:
     """Every link to a file of the repository, pictures included, finds it."""
     assert (ROOT / target).is_file()

@@ -103,8 +103,8 @@ def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
     """The four curves have their bands, and small text says that every point is certified, or how many."""
     figure = draw_figure2(reproduction.table)
     assert sum(isinstance(one, PolyCollection) for one in figure.axes[0].collections) == 4
-    assert "certified to 1e-6" in figure.get_supxlabel()
-    assert "as printed: best found by searching" in figure.get_supxlabel()
+    assert "certified optimal within 1e-6" in figure.get_supxlabel()
+    assert "as printed: best found by search" in figure.get_supxlabel()
     first, *others = reproduction.table.rows
     doubtful = replace(first, status="gap-not-reached")
     figure = draw_figure2(SweepTable(reproduction.table.path, (doubtful, *others)))

@@ -50,7 +50,7 @@ def test_claims_json(reproduction: Reproduction) -> None:
     assert {name: found["certified"] for name, found in data["figure2"].items()} == dict.fromkeys(
         ("optimum", "zero-interference", "maximum-gain", "vertical"), 19
     )
-    assert "certified to 1e-6" in data["note"]
+    assert "certified optimal within 1e-6" in data["note"]
     assert "proved only where a claim says so" in data["note"]
 
 
@@ -79,6 +79,6 @@ def test_view(reproduction: Reproduction) -> None:
     text = console.file.getvalue()
     assert text.count("holds ") == 7
     assert text.count("fails ") == 1
-    assert "Vertical: certified to 1e-6 (relative)" in text
-    assert "as printed: best found by searching, nothing is proved" in text
+    assert "Vertical: each point is certified optimal within 1e-6 (relative)" in text
+    assert "as printed: best found by search, no upper bound" in text
     assert all(str(path) in text for path in reproduction.files)

@@ -64,26 +64,26 @@ def test_the_example_of_the_question(plain: AirframeComparison) -> None:
     """At strong jamming ten degrees with a horizontal dipole give 99.3 %, and are the least that suffices."""
     first, digital, _ = answer_lines(plain)
     assert first == (
-        "A 10 degree tilt with a horizontal dipole gives 99.3 % of what an omnidirectional vehicle gives "
-        "here: the least of its kind that gives 99 % or more."
+        "A 10 degree tilt with a horizontal dipole reaches 99.3 % of the omnidirectional vehicle's value "
+        "in this scene. It is the simplest of its kind that reaches 99 % or more."
     )
-    assert digital.startswith("A level vehicle with an array of 2 with digital combining gives 213 % of")
+    assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 % of")
 
 
 def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     """Were the tilted ones worse, it would take the omnidirectional one; who comes nearest is told."""
     worse = with_value(with_value(plain, "tilt-10", 0.5), "tilt-30", 0.9 * plain.omnidirectional.value)
     first, nearest, *_ = answer_lines(worse)
-    assert first == "It takes an omnidirectional vehicle here."
-    assert nearest.startswith("A 30 degree tilt with a horizontal dipole gives 90 %")
-    assert nearest.endswith("none of its kind gives 99 % or more.")
+    assert first == "This scene needs an omnidirectional vehicle."
+    assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 90 %")
+    assert nearest.endswith("No vehicle of its kind reaches 99 % or more.")
 
 
 def test_the_least_of_all_suffices(plain: AirframeComparison) -> None:
     """Were a level vehicle as good, no tilt is said to be needed."""
     value = 0.995 * plain.omnidirectional.value
     first = answer_lines(with_value(plain, "level-vertical", value))[0]
-    assert first.startswith("A level vehicle with a vertical dipole gives 99.5 %")
+    assert first.startswith("A level vehicle with a vertical dipole reaches 99.5 %")
 
 
 def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
@@ -92,24 +92,24 @@ def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     for size in (2, 4, 8):
         poor = with_value(poor, f"array-{size}-analogue", 0.1 * size * plain.omnidirectional.value)
     digital, analogue = answer_lines(poor)[1:]
-    assert digital.startswith("A level vehicle with an array of 2 with digital combining gives 213 %")
-    assert analogue.startswith("A level vehicle with an array of 8 with one analogue beam gives 80 %")
-    assert analogue.endswith("none of its kind gives 99 % or more.")
+    assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 %")
+    assert analogue.startswith("A level vehicle with an array of 8 with one analogue beam reaches 80 %")
+    assert analogue.endswith("No vehicle of its kind reaches 99 % or more.")
 
 
 def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:
     """The file's vehicle is judged, and what is left under the file's errors."""
     lines = answer_lines(robust)
     assert any(line.startswith("The file's vehicle (a 5 degree tilt") for line in lines)
-    assert "does not suffice: it gives" in " ".join(lines)
+    assert "does not suffice: it reaches" in " ".join(lines)
     assert lines[-1].startswith(
-        "Under the file's errors an omnidirectional vehicle guarantees 20.1 % of its value"
+        "Under the stated errors an omnidirectional vehicle guarantees 20.1 % of its value"
     )
-    assert "guarantees 100 % of that: the least of its kind" in lines[-1]
+    assert "guarantees 100 % of that: the simplest of its kind" in lines[-1]
     text = text_of(robust)
     assert "Guaranteed under the file's errors (dB)" in text
     assert "file: tilt 5, mount 90" in text
-    assert "Nothing is guaranteed of arrays." in text
+    assert "No guarantee is computed for arrays." in text
 
 
 def test_nothing_to_give() -> None:
@@ -117,7 +117,7 @@ def test_nothing_to_give() -> None:
     zero = compared("eavesdropper", certify=False)
     for result in zero.results:
         zero = with_value(zero, result.case.name, 0.0)
-    assert answer_lines(zero) == ["No vehicle with one dipole gives every node anything here."]
+    assert answer_lines(zero) == ["No vehicle with one dipole gives every node a signal in this scene."]
     assert "nan" not in text_of(zero)
     draw_airframes(zero)
 
@@ -125,7 +125,7 @@ def test_nothing_to_give() -> None:
 def test_what_is_proved_is_told(plain: AirframeComparison) -> None:
     """Certified dipoles, arrays that are not, and nothing where nothing was proved."""
     lines = proof_lines(plain)
-    assert any(line.startswith("certified: no pose exceeds the bound") for line in lines)
+    assert any(line.startswith("certified optimal within the requested gap") for line in lines)
     arrays = "; ".join(one.case.label for one in plain.arrays if one.case.combining == "analogue")
     assert any(line.startswith(f"{arrays}: the bound is that of digital combining") for line in lines)
     gap = max(one.objective.relative_gap for one in plain.results)
@@ -181,7 +181,7 @@ def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
     assert [text.get_text() for text in axes.get_yticklabels()] == [one.case.label for one in robust.results]
     assert "99.3 %" in figure.get_supxlabel()
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert set(legend) == {"no pose is above this", "guaranteed, robust pose", "guaranteed, pose shown"}
+    assert set(legend) == {"upper bound", "guaranteed, robust pose", "guaranteed, pose shown"}
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in axes.texts]
     assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[i + 1 :])

@@ -38,8 +38,8 @@ def test_statuses_are_counted() -> None:
     assert found.to_dict()["largest_relative_gap"] == 0.25
     assert not found.complete
     words = found.words()
-    assert words.startswith("4 values: 2 certified, 1 with a bound farther off")
-    assert words.endswith("1 best found, with no bound; largest relative gap 0.25")
+    assert words.startswith("4 values: 2 certified, 1 with a bound outside the requested gap")
+    assert words.endswith("1 best found without a bound; largest relative gap 0.25")
 
 
 def test_complete_is_said_only_of_what_is() -> None:
@@ -48,20 +48,20 @@ def test_complete_is_said_only_of_what_is() -> None:
     assert Certainty.of([PROVED]).words().startswith("1 value: 1 certified, 0 with")
     assert not Certainty.of([]).complete
     assert not Certainty.of([PROVED, SEARCHED]).complete
-    assert "1 best found, with no bound" in Certainty.of([SEARCHED]).words()
+    assert "1 best found without a bound" in Certainty.of([SEARCHED]).words()
 
 
 def test_lines_name_the_curves_that_are_not_proved() -> None:
     """One line when all is proved; otherwise each curve is named with what is proved of it."""
     (line,) = certainty_lines(SweepTable("x", (PROVED,)))
-    assert line.startswith("Certified to 9e-7 (relative)")
+    assert line.startswith("Each point is certified optimal within 9e-7 (relative)")
     vertical, gain = replace(OPEN, scheme="vertical"), replace(SEARCHED, scheme="maximum-gain")
     lines = certainty_lines(SweepTable("x", (PROVED, vertical, gain)))
-    assert lines[0].startswith("Optimum: certified to 9e-7")
-    assert "Vertical: no pose exceeds the bound" in lines[1]
+    assert lines[0].startswith("Optimum: each point is certified optimal within 9e-7")
+    assert "Vertical: all bounds are valid" in lines[1]
     assert "not reached at 1 of 1 points; relative gap up to 0.25" in lines[1]
-    assert lines[2] == "Maximum gain: best found by searching, nothing is proved"
-    assert certainty_lines(SweepTable("x", (SEARCHED,))) == ["Best found by searching, nothing is proved"]
+    assert lines[2] == "Maximum gain: best found by search, no upper bound"
+    assert certainty_lines(SweepTable("x", (SEARCHED,))) == ["Best found by search, no upper bound"]
 
 
 def test_one_point_that_is_not_proved_opens_the_curve() -> None:

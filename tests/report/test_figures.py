@@ -44,14 +44,14 @@ def test_visible_bounds_are_drawn(paper: Scenario) -> None:
     """A bound farther off than the width of a line is a mark above its value, and the caption explains it."""
     near = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"]))
     assert [len(near.axes[0].lines), len(bands_of(near))] == [1, 1]
-    assert near.get_supxlabel().startswith("Certified to 1e-6")
+    assert near.get_supxlabel().startswith("Each point is certified optimal within 1e-6")
     far = sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"], gap=0.5)
     assert all(row.relative_gap > 0.1 for row in far.rows)
     figure = draw_sweep(far)
     _, marks = figure.axes[0].lines
     assert list(marks.get_ydata()) == pytest.approx([row.upper_bound_db for row in far.rows])
     assert figure.axes[0].get_ylim()[1] > max(row.upper_bound_db for row in far.rows)
-    assert "Bands reach" in figure.get_supxlabel()
+    assert "Each band ends" in figure.get_supxlabel()
     (legend,) = figure.legends
     assert len(legend.get_texts()) == 1
 
@@ -73,7 +73,7 @@ def test_nothing_proved_is_said_below_the_figure(paper: Scenario) -> None:
     """Without proofs there are no bands, and the caption does not call anything certified."""
     figure = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0], certify=False))
     assert bands_of(figure) == []
-    assert figure.get_supxlabel() == "Best found by searching, nothing is proved."
+    assert figure.get_supxlabel() == "Best found by search, no upper bound."
 
 
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (-0.9, 0.4, 0.2)])

@@ -30,7 +30,7 @@ def _elements(solution: ArraySolution) -> np.ndarray:
 def _drawn_elements(solution: ArraySolution) -> np.ndarray:
     axes = draw_array(solution).axes[0]
     (dots,) = [
-        each for each in axes.collections if str(each.get_label()).startswith("elements, larger than life")
+        each for each in axes.collections if str(each.get_label()).startswith("elements, not to scale")
     ]
     return np.transpose(dots._offsets3d) - solution.position_m
 

@@ -31,7 +31,7 @@ def test_an_isotropic_table_without_frequency() -> None:
     assert "x.csv (csv)" in text.splitlines()[0]
     assert "deepest null    none" in text
     assert "polarisation    not known" in text
-    assert "degree needed   0; up to 11 can be told" in text
+    assert "degree needed   0; the grid resolves 11" in text
     assert "MHz" not in text
     assert "fine enough" not in text
     assert text.rstrip().endswith("A note.")

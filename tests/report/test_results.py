@@ -54,13 +54,13 @@ def test_status_is_told_in_words(optimum: Solution, paper: Scenario) -> None:
     assert "not proved" in fast
     assert "box" not in fast
     short = solve(paper, node_limit=5)
-    assert "the gap asked for was not reached: the node limit of 5" in text_of(solution_view(short))
+    assert "the requested gap was not reached: the node limit of 5" in text_of(solution_view(short))
 
 
 def test_the_bound_is_told_with_its_gap(optimum: Solution, paper: Scenario) -> None:
     """The bound stands below the value, never rounded below what is proved; without one there is no line."""
     words = bound_words(optimum.objective)
-    found = re.fullmatch(r"at most (-?\d+\.\d+) dB \(relative gap (.*)\)", words)
+    found = re.fullmatch(r"upper bound (-?\d+\.\d+) dB \(relative gap (.*)\)", words)
     assert found is not None
     bound_db = 10.0 * math.log10(optimum.objective.upper_bound)
     assert bound_db <= float(found[1]) < bound_db + 1e-6
@@ -68,7 +68,7 @@ def test_the_bound_is_told_with_its_gap(optimum: Solution, paper: Scenario) -> N
     assert words in text_of(solution_view(optimum))
     fast = solve(paper, certify=False)
     assert bound_words(fast.objective) == ""
-    assert "at most" not in text_of(solution_view(fast))
+    assert "upper bound" not in text_of(solution_view(fast))
 
 
 @pytest.mark.parametrize("gap", [1e-8, 1e-6, 1e-3, 0.5])
@@ -83,15 +83,15 @@ def test_bound_and_value_look_different(paper: Scenario, gap: float) -> None:
 def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: Scenario) -> None:
     """Bounds have a row of their own; statuses name their cases unless all share one."""
     text = text_of(comparison_view(compare_all(paper)))
-    (row,) = [line for line in text.splitlines() if "at most (dB)" in line]
+    (row,) = [line for line in text.splitlines() if "upper bound (dB)" in line]
     assert row.split()[3:] == ["0.9837041", "0.8123593", "-0.6998429", "-2.1602567"]
-    assert text.count("certified:") == 1
+    assert text.count("certified optimal") == 1
     text = text_of(comparison_view(compare_all(field)))
     assert "Optimum; Zero interference; Vertical: certified" in text
-    assert "Maximum gain: no pose exceeds the bound, but the gap asked for was not reached" in text
+    assert "Maximum gain: the upper bound is valid, but the requested gap was not reached" in text
     assert "the bound is that of the optimum" in text
     fast = text_of(comparison_view(compare_all(paper, certify=False)))
-    (row,) = [line for line in fast.splitlines() if "at most (dB)" in line]
+    (row,) = [line for line in fast.splitlines() if "upper bound (dB)" in line]
     assert row.split()[3:] == ["-"] * 4
     assert "not proved" in fast
 

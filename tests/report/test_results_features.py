@@ -68,7 +68,7 @@ def test_jamming_in_a_downlink_is_noise() -> None:
     text = text_of(solution_view(solve(Scenario.from_dict(data), certify=False)))
     assert "noise (dBm)" in text
     assert "Jammers" not in text
-    assert "counted in the noise of the nodes" in text
+    assert "part of the nodes' noise" in text
 
 
 def test_a_margin_is_called_so() -> None:
@@ -118,7 +118,7 @@ def test_zones_and_fence_are_in_the_summary() -> None:
         assert words in text
     assert "mast" in text
     assert "polygon of 4" in text
-    assert "zones and fence not counted" in text
+    assert "zones and fence ignored" in text
 
 
 def test_errors_are_in_the_summary() -> None:

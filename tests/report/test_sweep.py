@@ -21,18 +21,18 @@ def test_what_is_proved_is_shown(paper: Scenario) -> None:
     """One line says that all is certified, or which case is not and why, with its bounds in the table."""
     power, values = "jammers.M.power_w", [0.1, 10.0]
     text = shown(sweep(paper, power, values))
-    assert "Certified to 1e-6 (relative)" in text
-    assert "at most" not in text
-    assert "nothing is proved" in shown(sweep(paper, power, values, certify=False))
+    assert "Each point is certified optimal within 1e-6 (relative)" in text
+    assert "upper bound" not in text
+    assert "no upper bound" in shown(sweep(paper, power, values, certify=False))
     proved = sweep(paper, power, values, schemes=["vertical"])
     short = sweep(paper, power, values, schemes=["optimum"], node_limit=5)
     text = shown(proved.joined(short))
-    assert text.count("at most") == 2
-    assert "Vertical: certified to 1e-6" in text
-    assert "Optimum: no pose exceeds the bound, but the gap asked for is not reached at 2 of 2" in text
+    assert text.count("upper bound") == 2
+    assert "Vertical: each point is certified optimal within 1e-6" in text
+    assert "Optimum: all bounds are valid, but the requested gap is not reached at 2 of 2" in text
     assert "Optimum: the node limit of 5" in text
     for row in short.rows:
-        bound = [float(words.split()[0]) for words in text.split("at most ")[1:]]
+        bound = [float(words.split()[0]) for words in text.split("upper bound ")[1:]]
         assert any(row.upper_bound_db <= number < row.upper_bound_db + 0.01 for number in bound)
 
 

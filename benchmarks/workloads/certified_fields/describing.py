@@ -53,7 +53,7 @@ def section(records: Sequence[Record], memory: Memory, images: Path) -> Section:
         _growth(fields),
         "### One jammer, ten times closer",
         _tight(of(records, Purpose.TIGHT)),
-        "### In a hurry",
+        "### Short time limit",
         _hurried(records),
         "### Memory",
         _memory(memory),

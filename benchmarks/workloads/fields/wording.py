@@ -20,8 +20,7 @@ LIMITATIONS = (
     "The searches that see values only are held to roll and pitch within 90 degrees, as the paper states the "
     "problem; with the axis as a unit vector some of them do better.",
     "Every peer ends with a local search that uses nullpose's compiled slopes and knows that the problem "
-    "is a max-min. Someone who writes the problem down for SciPy has neither: the rows *search* show what "
-    "that gives.",
+    "is a max-min. A plain SciPy program has neither: the rows *search* show its results.",
     "The scenes are of one kind: nodes of equal power, on flat ground, all jammers of a scene equally "
     "strong.",
 )

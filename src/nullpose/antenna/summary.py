@@ -21,7 +21,7 @@ _SPEED = 299792458.0  # m/s
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatternSummary:
-    """What is told of a pattern.
+    """The summary of a pattern.
 
     Args:
         table: the pattern.
@@ -68,7 +68,7 @@ class PatternSummary:
 
 
 def summary_of(table: PatternTable) -> PatternSummary:
-    """Return what is told of a pattern.
+    """Return the summary of a pattern.
 
     Args:
         table: any.

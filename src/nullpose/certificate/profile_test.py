@@ -1,6 +1,6 @@
 """Leaves of an antenna that is the same all round: a weighted sum, negative whatever position and axis.
 
-With r the way from a position to the leaf's anchor, a ground point, an axis is told by the angle u from r to
+With r the way from a position to the leaf's anchor, a ground point, an axis is given by the angle u from r to
 it and a spin s about r. With ``w_j = r + d_j`` the way to point j and x, y, z the coordinates of r in cyclic
 order from the leaf's chart on, the cosine between axis and w_j is
 

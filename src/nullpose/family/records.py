@@ -70,7 +70,7 @@ class Reach(NamedTuple):
 
 
 class ArrayProblem(NamedTuple):
-    """What an array on a level vehicle hears; m points, the nodes first, and k elements."""
+    """What an array on a level vehicle receives; m points, the nodes first, and k elements."""
 
     points_m: FloatArray  # (m, 3)
     strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires

@@ -1,4 +1,4 @@
-"""The objectives, one file each: what a scenario may ask to be made as large as it can be.
+"""The objectives that a scenario can maximise, one file each.
 
 Everything that depends on the objective asks its record. A new objective is a record in a file, and its name
 in the list below.

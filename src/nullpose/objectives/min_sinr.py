@@ -1,4 +1,4 @@
-"""The smallest SINR over the nodes that the drone hears (paper eq. 2.2), or the smallest margin."""
+"""The smallest SINR over the nodes that the drone receives (paper eq. 2.2), or the smallest margin."""
 
 from __future__ import annotations
 

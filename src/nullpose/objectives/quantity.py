@@ -1,4 +1,4 @@
-"""What is made as large as it can be, the smallest over the nodes: its name, its unit, its words."""
+"""The maximised quantity, the smallest over the nodes: its name, its unit, its words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST_RATE_BPS_HZ = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a node has that is made as large as it can be.
+    """The quantity of a node that is maximised.
 
     Args:
         name: as in results: ``min_`` and the noun, as in ``"min_sinr"``.

@@ -15,7 +15,7 @@ def _receiver_noise_w(scenario: Scenario) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ObjectiveRecord:
-    """One thing that a scenario may ask to be made as large as it can be.
+    """An objective that a scenario can maximise.
 
     Args:
         name: as in a scenario file.

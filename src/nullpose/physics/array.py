@@ -66,7 +66,7 @@ def steering_vectors(
 ) -> ComplexArray:
     """Return the phases with which a plane wave from each point arrives at the elements.
 
-    ``a_n = exp(j 2 pi <d_n, e>)`` with ``e = (q - p) / |q - p|``: an element nearer to the point hears the
+    ``a_n = exp(j 2 pi <d_n, e>)`` with ``e = (q - p) / |q - p|``: an element nearer to the point receives the
     wave earlier.
 
     Source: Van Trees, chapter 2, with the direction pointing to the source.

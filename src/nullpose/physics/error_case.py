@@ -147,7 +147,7 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
 def objective_under(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase
 ) -> FloatArray:
-    """Return what the scenario asks to be made as large as it can be, when an error case comes true.
+    """Return the scenario's objective under an error case.
 
     The smallest margin over the nodes, or the smallest secrecy rate, ``max(0, log2)`` of the smallest ratio.
 

@@ -1,4 +1,4 @@
-"""What a scenario asks to be made as large as it can be."""
+"""The objective of a scenario, which is maximised."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def margin(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatA
 
 
 def objective_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return what the scenario asks to be made as large as it can be, at every pose.
+    """Return the scenario's objective at every pose.
 
     The smallest margin over the nodes, which is the smallest SINR (paper eq. 2.2) where no node states a
     weight or a requirement; or the smallest secrecy rate if that is asked for.

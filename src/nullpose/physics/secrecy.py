@@ -71,7 +71,7 @@ def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
 
 
 def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return the secrecy rate of every node: what it hears beyond what the best eavesdropper does.
+    """Return the secrecy rate of every node: its rate minus that of the best eavesdropper, at least 0.
 
     ``C_k = max(0, log2(1 + SNR_k) - max_e log2(1 + SNR_e))``, evaluated as the logarithm of
     ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number, which keeps its digits where signals are weak.

@@ -40,7 +40,7 @@ def airframes_view(comparison: AirframeComparison) -> View:
             "vehicle, dipole": labels,
             "ratio": [None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives],
             "value": _told(value, 4),
-            "at most": [None if of is None else bound_text(of, 4) for of in objectives],
+            "bound": [None if of is None else bound_text(of, 4) for of in objectives],
             "difference": _told(value - value[whole], 3),
             "status": [_STATUS[result.status] for result in results],
         }
@@ -50,7 +50,7 @@ def airframes_view(comparison: AirframeComparison) -> View:
             "vehicle, dipole": labels[:dipoles],
             "pose above": _told(nominal[:dipoles], 3),
             "robust pose": _told(robust[:dipoles], 3),
-            "at most": _told(most[:dipoles], 3),
+            "bound": _told(most[:dipoles], 3),
             "difference": _told((robust - robust[whole])[:dipoles], 3),
         }
     )
@@ -107,7 +107,8 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     lines += rigour_lines((label, each.objective.rigour) for label, each in labelled if each.objective)
     if comparison.scenario.is_uncertain:
         lines.append(
-            "Guaranteed: proved to be reached whatever the errors do. Nothing is guaranteed of arrays."
+            "Guaranteed: proved for every error within the stated limits. "
+            "No guarantee is computed for arrays."
         )
     return lines
 
@@ -123,14 +124,14 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
     """
     least, own, arrays = comparison.least_sufficient, comparison.stated, comparison.arrays
     if least is None:
-        return ["No vehicle with one dipole gives every node anything here."]
+        return ["No vehicle with one dipole gives every node a signal in this scene."]
     lesser = [result for result in comparison.dipoles if result is not comparison.omnidirectional]
     lines = [_least_line(comparison, lesser)] if lesser else []
     if least is comparison.omnidirectional:
-        lines.insert(0, "It takes an omnidirectional vehicle here.")
+        lines.insert(0, "This scene needs an omnidirectional vehicle.")
     if own is not None and own is not least:
         verdict = "suffices too" if comparison.suffices(own) else "does not suffice"
-        lines.append(f"{begun(own.case.phrase)} {verdict}: it gives {_share(comparison, own)}.")
+        lines.append(f"{begun(own.case.phrase)} {verdict}: it reaches {_share(comparison, own)}.")
     for combining in dict.fromkeys(result.case.combining for result in arrays):
         alike = [result for result in arrays if result.case.combining == combining]
         lines.append(_least_line(comparison, alike))
@@ -141,13 +142,13 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
 
 def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
     """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
-    best, verdict = max(results, key=lambda result: result.value), "none of its kind gives"
+    best, verdict = max(results, key=lambda result: result.value), "No vehicle of its kind reaches"
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
-        best, verdict = least, "the least of its kind that gives"
-    share = _share(comparison, best, "what an omnidirectional vehicle gives")
+        best, verdict = least, "It is the simplest of its kind that reaches"
+    share = _share(comparison, best, "the omnidirectional vehicle's value")
     return (
-        f"{begun(best.case.phrase)} gives {share} here: {verdict} "
+        f"{begun(best.case.phrase)} reaches {share} in this scene. {verdict} "
         f"{share_text(1.0 - comparison.tolerance)} or more."
     )
 
@@ -163,7 +164,7 @@ def _errors_line(comparison: AirframeComparison) -> str:
     """Return what of the answer is left under the errors that the scenario states."""
     whole = comparison.omnidirectional.guaranteed
     if whole is None or not whole.robust_pose:
-        return "Under the file's errors nothing is guaranteed, whatever the vehicle."
+        return "Under the stated errors no vehicle has a guaranteed value above zero."
     shares = [
         (result, result.guaranteed.robust_pose / whole.robust_pose)
         for result in comparison.dipoles
@@ -172,7 +173,7 @@ def _errors_line(comparison: AirframeComparison) -> str:
     least, share = next(one for one in shares if one[1] >= 1.0 - comparison.tolerance)
     kept = whole.robust_pose / comparison.omnidirectional.value
     return (
-        f"Under the file's errors an omnidirectional vehicle guarantees {share_text(kept)} of its value, at "
-        f"its robust pose; {least.case.phrase} guarantees {share_of(share, 'that')}: the least of its kind "
-        f"that guarantees {share_text(1.0 - comparison.tolerance)} or more."
+        f"Under the stated errors an omnidirectional vehicle guarantees {share_text(kept)} of its value at "
+        f"its robust pose. {begun(least.case.phrase)} guarantees {share_of(share, 'that')}: the simplest "
+        f"of its kind that guarantees {share_text(1.0 - comparison.tolerance)} or more."
     )

@@ -17,7 +17,7 @@ from nullpose.study import AntennaComparison
 
 
 def antennas_view(comparison: AntennaComparison) -> View:
-    """Return what was promised, received and is possible, both poses side by side, and the answer in words.
+    """Return the values with the paper's and the stated antennas, both poses side by side, and the answer.
 
     Args:
         comparison: of the paper's antennas with those of a scenario.
@@ -25,19 +25,19 @@ def antennas_view(comparison: AntennaComparison) -> View:
     scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
     promised, possible = comparison.promised, comparison.possible
     values = {
-        "promised: the paper's antennas": promised.objective.value,
-        "received: that pose, antennas as stated": comparison.received,
+        "best pose for the paper's antennas": promised.objective.value,
+        "that pose, stated antennas": comparison.received,
     }
     if scenario.antenna is not None and scenario.antenna_record.leak > 0.0:
         values["  the same, ground as in the paper"] = comparison.with_null
-        values["  the same, null perfect"] = comparison.with_ground
-    values["possible: the best pose for them"] = possible.objective.value
+        values["  the same, perfect null"] = comparison.with_ground
+    values["best pose for the stated antennas"] = possible.objective.value
     numbers = [quantity.in_unit(value) for value in values.values()]
     whole, none = numbers[0], [None] * (len(numbers) - 2)
     columns: dict[str, Sequence[str | None]] = {
         "what": list(values),
         "value": [_told(number, 4) for number in numbers],
-        "at most": [bound_text(promised.objective, 4), *none, bound_text(possible.objective, 4)],
+        "bound": [bound_text(promised.objective, 4), *none, bound_text(possible.objective, 4)],
         "difference": [_told(number - whole, 3) for number in numbers],
     }
     poses = {"paper's antennas": _pose_cells(promised), "antennas as stated": _pose_cells(possible)}
@@ -47,7 +47,7 @@ def antennas_view(comparison: AntennaComparison) -> View:
         "",
         table(f"{begun(quantity.smallest)} over the nodes ({quantity.unit})", rows(columns), left=["what"]),
         table("Best poses", beside(poses)),
-        "Difference: from what is promised.",
+        "Difference: from the best pose for the paper's antennas.",
         *dict.fromkeys(result.status.message for _, result in both),
         *grouped((label, result.reason) for label, result in both),
         *rigour_lines((label, result.objective.rigour) for label, result in both),
@@ -57,23 +57,23 @@ def antennas_view(comparison: AntennaComparison) -> View:
 
 
 def answer(comparison: AntennaComparison) -> str:
-    """Return in a sentence or two what the antennas cost and what the best pose for them gets back.
+    """Return in two sentences what the stated antennas cost and what the best pose for them recovers.
 
     Args:
         comparison: of the paper's antennas with those of a scenario.
     """
     quantity = Quantity.of(comparison.scenario)
-    flown = "Flown with the antennas stated, the best pose for the paper's"
+    flown = "With the stated antennas, the best pose for the paper's antennas"
     received, possible = (
         quantity.in_unit(x) for x in (comparison.received, comparison.possible.objective.value)
     )
     if not math.isfinite(received):
         best = with_unit(possible, quantity)
-        return f"{flown} leaves a node without any signal. The best pose for them reaches {best}."
+        return f"{flown} leaves a node without signal. The best pose for the stated antennas reaches {best}."
     lost = quantity.in_unit(comparison.promised.objective.value) - received
     gained = with_unit(abs(possible - received), quantity)
     less = f"{with_unit(abs(lost), quantity)} {'less' if lost >= 0.0 else 'more'}"
-    return f"{flown} gives {less} than it promises. The best pose for them gives {gained} more than that."
+    return f"{flown} gives {less}. The best pose for the stated antennas gives {gained} more than that."
 
 
 def _told(number: float, digits: int) -> str:

@@ -62,7 +62,7 @@ class Certainty:
         gap = "none" if self.largest_relative_gap is None else short(self.largest_relative_gap)
         return (
             f"{count_of(self.values, 'value')}: {self.certified} certified, {self.gap_not_reached} with a "
-            f"bound farther off than asked for, {self.best_found} best found, with no bound; largest "
+            f"bound outside the requested gap, {self.best_found} best found without a bound; largest "
             f"relative gap {gap}"
         )
 
@@ -79,11 +79,10 @@ class Certainty:
         gap = self.largest_relative_gap
         widest = "none" if gap is None else short(gap)
         sentences = {
-            Status.CERTIFIED: f"certified to {widest} (relative): each point is proved so close to its "
-            "case's global optimum",
-            Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for is not reached at "
+            Status.CERTIFIED: f"each point is certified optimal within {widest} (relative)",
+            Status.GAP_NOT_REACHED: "all bounds are valid, but the requested gap is not reached at "
             f"{self.gap_not_reached} of {self.values} points; relative gap up to {widest}",
-            Status.BEST_FOUND: "best found by searching, nothing is proved",
+            Status.BEST_FOUND: "best found by search, no upper bound",
         }
         return sentences[self.weakest]
 

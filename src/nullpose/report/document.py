@@ -1,4 +1,4 @@
-"""What is told: a head, tables of rows, pairs of names and words, notes.
+"""A result as a document: a head, tables of rows, pairs of names and words, notes.
 
 Every text is shown as it is given: what looks like markup is none.
 """

@@ -241,7 +241,7 @@ def bound_words(objective: Objective) -> str:
     if objective.upper_bound is None or objective.relative_gap is None:
         return ""
     unit = objective.quantity.unit
-    return f"at most {bound_text(objective)} {unit} (relative gap {objective.relative_gap:.1e})"
+    return f"upper bound {bound_text(objective)} {unit} (relative gap {objective.relative_gap:.1e})"
 
 
 def bound_text(objective: Objective, digits: int = 0) -> str:

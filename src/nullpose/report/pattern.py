@@ -32,7 +32,7 @@ def pattern_view(summary: PatternSummary) -> View:
         ("grid", f"steps of {summary.step_deg:g} degrees, {known}"),
         (
             "",
-            None if largest_m is None else f"fine enough for what is within {largest_m:.2g} m of the origin",
+            None if largest_m is None else f"fine enough for antennas within {largest_m:.2g} m of the origin",
         ),
     ]
     return document(head(table.source), pairs("", rows), *table.notes)
@@ -47,7 +47,7 @@ def _null_text(summary: PatternSummary) -> str:
 
 def _degree_text(summary: PatternSummary) -> str:
     most = summary.supported_degree
-    return f"more than {most}" if summary.degree is None else f"{summary.degree}; up to {most} can be told"
+    return f"more than {most}" if summary.degree is None else f"{summary.degree}; the grid resolves {most}"
 
 
 def _place(angles_deg: tuple[float, float]) -> str:

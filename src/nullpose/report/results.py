@@ -105,7 +105,7 @@ def solution_view(solution: Result) -> View:
         ("antenna axis", f"{degrees_text(tilt_rad(pose), 3)} deg from vertical, {leaning}"),
         ("", _in_brackets(pose.antenna_axis)),
     ]
-    note = "Jamming does not depend on the pose; it is counted in the noise of the nodes."
+    note = "Jamming does not depend on the pose. It is part of the nodes' noise."
     return document(
         _head(solution, solution.label, requirement_words(solution), solution.note),
         pairs("", _pose_rows(scenario, pose, own)),
@@ -156,7 +156,7 @@ def robust_view(solution: Result) -> View:
     objective, quantity = solution.objective, solution.objective.quantity
     cells = {"robust pose": robust, "best pose as stated": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
-    unbounded = "no bound on what another pose could guarantee" if solution.upper_bound is None else ""
+    unbounded = "no upper bound on the guaranteed value" if solution.upper_bound is None else ""
     errors = f"{count_of(solution.cases, 'error case')}; errors: {error_words(solution.scenario)}"
     return document(
         _head(solution, "Robust, guaranteed", unbounded, errors),
@@ -171,7 +171,7 @@ def robust_view(solution: Result) -> View:
             for name, one in cells.items()
             if solution.scenario.origin is not None
         ),
-        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best as stated.",
+        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose as stated.",
     )
 
 
@@ -184,7 +184,7 @@ def _guarded_cells(objective: Objective, one: GuardedPose) -> dict[str, str]:
         "position (m)": ", ".join(fixed(float(x), 3) for x in pose.position_m),
         "roll, pitch, yaw (deg)": ", ".join(map(degrees_text, (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))),
         "azimuth of the axis (deg)": azimuth_text(pose),
-        "worst off": one.binding_node,
+        "binding node": one.binding_node,
     }
 
 

@@ -32,7 +32,7 @@ def summarise(scenario: Scenario) -> dict[str, Any]:
 
     The best a link can do is the drone as close as the airspace's box and the keep-out allow, the dipole
     broadside: ``g0 P / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. A point with a noise
-    of its own hears the drone, any other is heard by it.
+    of its own receives from the drone; any other point transmits to it.
 
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and airspace.
@@ -77,7 +77,7 @@ def _dbm(power_w: float) -> float:
 def _points(
     scenario: Scenario, points: Sequence[_Point], own_noise_w: FloatArray | None
 ) -> list[dict[str, Any]]:
-    """Return each point with what it transmits, its noise where it hears the drone, and its best link."""
+    """Return each point with its power, its noise if it receives from the drone, and its best link."""
     receiver, transmitter, told = scenario.receiver, scenario.transmitter, []
     for i, point in enumerate(points):
         power_w = getattr(point, "transmit_power_w", None) or None
@@ -118,7 +118,7 @@ def scenario_view(scenario: Scenario) -> View:
     """
     numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
-        "At best: as close as the airspace's box and the keep-out allow (zones and fence not counted), the "
+        "At best: the drone as close as airspace and keep-out radius allow (zones and fence ignored), the "
         f"dipole broadside{'' if rate else ', no jamming'}."
     )
     notes = [
@@ -127,7 +127,7 @@ def scenario_view(scenario: Scenario) -> View:
         if node.min_sinr_db is not None and node.min_sinr_db > told["best_power_to_noise_db"]
     ]
     if scenario.is_uncertain:
-        notes.append("Errors and uncertainty count where a guaranteed value is asked for, not otherwise.")
+        notes.append("Errors and uncertainty are used for guaranteed values only.")
     zones = [_zone_row(zone) for zone in scenario.airspace.no_fly]
     return document(
         head(scenario.name),

@@ -77,4 +77,4 @@ def _cell(row: SweepRow) -> str:
     value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
     if row.status != Status.GAP_NOT_REACHED:
         return value
-    return f"{value}\nat most {bound_text(row.objective, 2)}"
+    return f"{value}\nupper bound {bound_text(row.objective, 2)}"

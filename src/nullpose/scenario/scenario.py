@@ -43,7 +43,7 @@ class Scenario(Section):
 
     Args:
         name: a title for tables and figures; may be empty.
-        objective: what is made as large as it can be: the name of a record in :mod:`nullpose.objectives`.
+        objective: the maximised objective: the name of a record in :mod:`nullpose.objectives`.
         origin: where on the Earth the frame's zero is, or None.
         airspace: where the vehicle may be.
         airframe: which antenna axes it reaches; None for all of them.
@@ -71,7 +71,7 @@ class Scenario(Section):
     )
     objective: _Objective = Field(
         default=USUAL,
-        description="What is made as large as it can be: "
+        description="The objective to maximise: "
         + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
         + ".",
         examples=list(RECORDS),

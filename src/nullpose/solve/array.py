@@ -33,7 +33,7 @@ COMBININGS = "digital", "analogue"
 """The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""
 
 _SHORT = {
-    "digital": "the most boxes of positions and yaws that are looked at",
+    "digital": "box limit reached",
     "analogue": "the bound is that of digital combining, which a shared beam does not reach",
 }  # why a gap was not reached
 _WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for

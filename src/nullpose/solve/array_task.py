@@ -23,7 +23,7 @@ class ArrayTask:
 
     Args:
         family: one dipole's ratios in the same scene, and the domain.
-        problem: what the array hears, as the kernels take it.
+        problem: what the array receives, in the form of the kernels.
         symmetry: by how many equal rotations the elements come to lie on each other.
     """
 

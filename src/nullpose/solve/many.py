@@ -43,7 +43,7 @@ class ManySolutions:
         roll_rad: radians, as yaw and pitch.
         pitch_rad: likewise.
         yaw_rad: likewise.
-        binding_node: index of the node that decides.
+        binding_node: index of the node with the smallest value.
         boxes: boxes of positions that the proof examined; 0 where a vehicle with more freedom had shown it.
     """
 

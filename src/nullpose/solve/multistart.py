@@ -72,7 +72,7 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     Over the points' centre and over each interferer: the vertical case under strong jamming is a needle
     straight
     above the jammer, which begins at its keep-out ball. On the line of each two interferers, beside their
-    balls: there one axis is deaf to both.
+    balls: there one axis has its null on both.
 
     Args:
         family: the ratios and their domain.

@@ -173,7 +173,7 @@ class _Run:
                 if self.nodes >= until:
                     return none, f"the node limit of {self.limits.node_limit}"
                 if workers.filled > _MOST_LEAVES:
-                    return none, f"{_MOST_LEAVES} boxes kept, the most that memory is given to"
+                    return none, f"memory limit reached: {_MOST_LEAVES:,} boxes"
 
     def _excluding(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
@@ -253,7 +253,7 @@ def prove(
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
                 if len(start) > _MOST_REFINED:
-                    reason = f"{_MOST_REFINED} boxes to be refined, the most that memory is given to"
+                    reason = f"memory limit reached: {_MOST_REFINED:,} boxes to refine"
                     break
                 most, threads = run.node_limit - run.nodes, run.threads
                 done, reason = run.work_off(WorkerPool(start, threads), gap, most, run.deadline, threads)

@@ -46,9 +46,9 @@ class Status(StrEnum):
 
 
 _MESSAGES = {
-    Status.CERTIFIED: "certified: no pose exceeds the bound, and the gap asked for is reached",
-    Status.GAP_NOT_REACHED: "no pose exceeds the bound, but the gap asked for was not reached",
-    Status.BEST_FOUND: "the best of many local optima; not proved to be the global one",
+    Status.CERTIFIED: "certified optimal within the requested gap",
+    Status.GAP_NOT_REACHED: "the upper bound is valid, but the requested gap was not reached",
+    Status.BEST_FOUND: "best of many local optima, not proved to be global",
     Status.GIVEN: "the pose was given, not searched for",
 }
 
@@ -198,7 +198,7 @@ class Result:
 
     @property
     def binding_node(self) -> str:
-        """Name of the node that decides: least SINR, margin or rate (the first, if several share it)."""
+        """Name of the node with the smallest SINR, margin or rate (the first, if several share it)."""
         return min(self.links, key=self.objective.quantity.at).node
 
     @property

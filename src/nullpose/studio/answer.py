@@ -18,7 +18,7 @@ class Answer:
         version: the version of the scene that it belongs to.
         case: the case it answers.
         result: what the solver returned; the value of a robust one is what its pose guarantees.
-        binding_node: the node that decides.
+        binding_node: the node with the smallest value.
         note: a sentence on it; may be empty.
     """
 

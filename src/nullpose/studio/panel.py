@@ -51,7 +51,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "pattern": (
             "checkbox",
             "Radiation pattern",
-            "Show what the antenna hears, as a doughnut about it.",
+            "Show the antenna's radiation pattern.",
             {"initial_value": True},
         ),
         "freed": (

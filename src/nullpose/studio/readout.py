@@ -28,14 +28,14 @@ _TONES = {
 _MOST_NULLS = 4
 _STYLE = "font-size:13px;line-height:1.35;padding:2px 10px 8px;font-variant-numeric:tabular-nums"
 
-_ABOUT = """<b>A drone listens to ground nodes while jammers drown them.</b> Its antenna, a short dipole,
-hears nothing along its own axis: the <b>null</b>. nullpose finds where to hover and how to tilt so that the
-worst-off node is heard best, and proves that no other pose does better.
+_ABOUT = """<b>A drone receives from ground nodes while jammers transmit.</b> Its antenna, a short dipole,
+receives nothing along its own axis: the <b>null</b>. nullpose finds the position and the attitude with the
+largest smallest SINR over the nodes, and proves an upper bound for all other poses.
 <ul style="margin:4px 0 4px 16px;padding:0">
 <li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
-<li>Doughnut: what the antenna hears; orange line: the null.</li>
-<li>Lines: brighter is a better SINR; the thick one decides.</li>
-<li>Carpet: the best that each place at this altitude could give.</li></ul>"""
+<li>Doughnut: the antenna's pattern; orange line: the null.</li>
+<li>Lines: brighter is a higher SINR; the thick one is the binding node.</li>
+<li>Coloured plane: the best value at each position of this altitude.</li></ul>"""
 
 
 def about_html() -> str:

@@ -182,7 +182,7 @@ def _scaled(table: PatternTable) -> PatternTable:
 
 
 def _misleading(table: PatternTable) -> Iterable[str]:
-    """Yield what would mislead whoever took the table for an antenna."""
+    """Yield the faults of a table that is not a valid antenna pattern."""
     peak, mean = float(np.max(table.gain)), mean_gain(table)
     floor = float(np.sum(solid_angles(table)[table.gain <= _FLOOR * peak]))
     if floor > _MOST_FLOOR:

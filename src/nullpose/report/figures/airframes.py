@@ -84,7 +84,7 @@ def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, p
     bars: dict[str, Any] = {"color": colours, "hatch": hatches, "edgecolor": "white", "linewidth": 0.0}
     axes.barh(places, lengths[0], left=low, height=0.62, zorder=2.0, **bars)
     axes.hlines(places, low + lengths[0], bounds, color=INK, linewidth=1.0, zorder=3.0)
-    axes.plot(bounds, places, "|", color=INK, markersize=7.0, zorder=3.0, label="no pose is above this")
+    axes.plot(bounds, places, "|", color=INK, markersize=7.0, zorder=3.0, label="upper bound")
     if comparison.scenario.is_uncertain:
         label = "guaranteed, robust pose"
         axes.barh(places, lengths[3], left=low, height=0.22, color=INK, zorder=2.2, label=label)

@@ -54,7 +54,7 @@ def draw_cases(axes: Axes, results: Sequence[Result]) -> None:
     axes.barh(
         places, np.nan_to_num(values - low, neginf=0.0), left=low, height=0.6, color=colours, zorder=2.0
     )
-    axes.plot(bounds, places, "|", color=INK, markersize=11.0, zorder=3.0, label="no pose is above this")
+    axes.plot(bounds, places, "|", color=INK, markersize=11.0, zorder=3.0, label="upper bound")
     look: dict[str, Any] = {"xytext": (6, 0), "textcoords": "offset points", "va": "center"}
     for place, value, bound in zip(places, values, bounds, strict=True):
         axes.annotate(number(float(value), quantity), (float(np.fmax(max(value, low), bound)), place), **look)

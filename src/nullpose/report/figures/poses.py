@@ -145,7 +145,7 @@ def draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
 
 
 def draw_array(solution: Result, width: str | None = None) -> Figure:
-    """Return the figure of an array: the scene, its elements larger than life, its heading and its beam.
+    """Return the figure of an array: the scene, its elements not to scale, its heading and its beam.
 
     Digital combining has a beam for each node; the one drawn is that of the node with the smallest value.
 
@@ -192,4 +192,4 @@ def _draw_array(
     for place in places:
         draw_line(axes, place - up, place + up, color=DRONE, linewidth=1.4, zorder=7.2)
     dots = {"edgecolors": "white", "linewidths": 0.5, "s": 22, "zorder": 7.3, "depthshade": False}
-    axes.scatter(*places.T, color=DRONE, label="elements, larger than life", **dots)
+    axes.scatter(*places.T, color=DRONE, label="elements, not to scale", **dots)

@@ -27,7 +27,7 @@ _MARKERS = 13  # at most so many markers on a curve, so that they do not merge i
 
 
 def quantity_of(table: SweepTable) -> Quantity:
-    """Return what a sweep made as large as it can be.
+    """Return the quantity that a sweep maximised.
 
     Args:
         table: the sweep, with at least one row.
@@ -111,7 +111,7 @@ def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None
         size = inches((7.0, 4.6), width, 0.8 if width == "column" else 0.5)
         figure = Figure(figsize=size, layout="constrained")
         if draw_sweep_axes(figure.add_subplot(), table, log=log):
-            lines.append("Bands reach up to the bound, a small triangle above which no pose is.")
+            lines.append("Each band ends at the upper bound, a small triangle.")
         columns = 2 if width == "column" else 4
         figure.legend(
             loc="outside upper center", ncols=columns, frameon=False, handlelength=3.2, columnspacing=1.4

@@ -18,16 +18,16 @@ _GAINS = (("gain_median", "in the median"), ("shift_worst_tenth", "in the worst 
 
 
 def answer_of(summary: Summary) -> str:
-    """Return the first paragraph: what each case gains, and which tilt buys most of all that there is.
+    """Return the first paragraph: what each case gains, and the smallest tilt that reaches most of the gain.
 
     Args:
         summary: of a study.
     """
     counts, rows = summary.values.counts(), summary.values.status.size
     if not rows:
-        return "No scene is done yet, so there is nothing to say."
+        return "No scene is solved yet."
     if counts["failed"] == rows:
-        return "Every row of this study is a failure, so there is nothing to compare; the reasons are below."
+        return "Every row of this study failed. The reasons are below."
     groups = ([case for case in summary.cases if case.robust is robust] for robust in (False, True))
     return " ".join(_of_group(summary, group) for group in groups if group)
 
@@ -83,15 +83,15 @@ def _shares(row: Any) -> tuple[float, float]:
 
 
 def _least_tilt_words(summary: Summary, point: int, cases: Sequence[ReportCase]) -> str:
-    """Return which of the tilts that were tried is the least that buys most of the gain."""
+    """Return which of the tilts that were tried is the smallest that reaches most of the gain."""
     tilts = [case for case in cases if case.tilt_deg is not None and case.place != case.whole]
     shares = {case: min(_shares(summary.row(point, case))) for case in tilts}
     if not shares or any(map(math.isnan, shares.values())):
         return ""
     enough = [case for case in tilts if shares[case] >= MOST_OF_IT]
     least = min(enough, key=lambda case: (case.tilt_deg, case.place), default=None)
-    which = "None of these" if least is None else f"Of these {least.phrase} is the least tilt that"
-    return f"{which} buys most of it ({percent(MOST_OF_IT)} or more of both)."
+    which = "None of these" if least is None else f"Of these {least.phrase} is the smallest tilt that"
+    return f"{which} reaches {percent(MOST_OF_IT)} or more of both gains."
 
 
 def _missing_words(reference: ReportCase) -> str:
@@ -126,7 +126,7 @@ def unfinished_note(summary: Summary) -> str:
     done, whole = summary.values.scenes, summary.spec.n_scenes
     return (
         f"This study is not finished: {done:,} of {count_of(whole, 'scene')} ({percent(done / whole)}) are "
-        "done, and everything below is of these."
+        "done. Everything below is about these."
     )
 
 
@@ -160,11 +160,11 @@ def certainty_of(summary: Summary) -> str:
     sentences = [f"Of {count_of(rows, 'row')}: {listed(kinds)}."]
     if counts["certified"] < rows:
         sentences.append(
-            "Rows that are not certified enter by what their pose reaches, a lower bound of the best; those "
-            "that failed have no pose and are left out."
+            "Rows that are not certified count with the value of their pose, a lower bound of the optimum. "
+            "Rows that failed have no pose and are left out."
         )
     if scenes < FEW_SCENES:
         tenth = count_of(max(1, scenes // 10), "scene")
-        few = f"With {count_of(scenes, 'scene')} the worst tenth is {tenth}: take it as an indication only."
+        few = f"With {count_of(scenes, 'scene')} the worst tenth is {tenth}, so its statistics are rough."
         sentences.append(few)
     return " ".join(sentences)

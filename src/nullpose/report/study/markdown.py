@@ -27,7 +27,7 @@ Rows = Sequence[Mapping[str, str]]
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A part of a report, which is told if it has a figure or a table.
+    """A part of a report, which is written if it has a figure or a table.
 
     Args:
         heading: above it.
@@ -96,7 +96,7 @@ def _definitions(summary: Summary) -> str:
     return (
         f"*Median gain*: the median over scenes of the difference in {quantity.smallest} "
         f"({quantity.unit}) on the same scene. *Gain in the worst tenth*: the difference between the two "
-        "cases' 10th percentiles, which nine scenes in ten reach or exceed, each over its own worst scenes. "
+        "cases' 10th percentiles. Nine scenes in ten reach or exceed a 10th percentile. "
         f"Numbers in brackets are {_SURE} confidence intervals."
     )
 
@@ -104,17 +104,17 @@ def _definitions(summary: Summary) -> str:
 def _reached(summary: Summary) -> _Part:
     quantity = summary.quantity
     shown, count = len(summary.points.shown), len(summary.spec.points)
-    words = f"The {quantity.smallest} over the nodes at each case's pose, as it is distributed over scenes."
+    words = f"The distribution over scenes of the {quantity.smallest} over the nodes at each case's pose."
     if summary.has_robust:
-        words += " Of robust cases it is what is guaranteed under the errors stated."
+        words += " For robust cases it is the guaranteed value under the stated errors."
     if shown < count:
         words += f" {shown} of {count:,} combinations of swept values are shown; `summary.csv` has all."
     return _Part(
         begun(quantity.smallest),
         words,
         "distribution",
-        f"Share of scenes whose {quantity.smallest} is no more than what is across. Each band holds a whole "
-        f"true curve with {_SURE} confidence; it is drawn as far as there are numbers.",
+        f"CDF of the {quantity.smallest} over scenes. Each band contains the whole true curve with "
+        f"{_SURE} confidence. It is drawn as far as there are values.",
         {
             f"Median, {quantity.unit}": _intervals(summary, summary.cases, "median"),
             f"Worst tenth (10th percentile), {quantity.unit}": _intervals(
@@ -128,7 +128,7 @@ def _gained(summary: Summary) -> _Part:
     first = summary.cases[summary.cases[0].reference]
     references = {case.robust: summary.cases[case.reference] for case in summary.cases}
     words = [
-        f"{'What is guaranteed' if robust else 'Each case'} is measured against "
+        f"{'The guaranteed value' if robust else 'Each case'} is compared with "
         f"{escaped(f'{reference.phrase} ({reference.name})')} on the same scenes."
         for robust, reference in references.items()
     ]
@@ -137,7 +137,7 @@ def _gained(summary: Summary) -> _Part:
         " ".join(words),
         "gain",
         "Disc: median of the gains on the same scenes; diamond: gain of the worst tenth; lines: their "
-        f"{_SURE} confidence intervals; bar: from what nine scenes in ten gain to what one in ten does.",
+        f"{_SURE} confidence intervals; bar: 10th to 90th percentile of the gains.",
         gain_tables(summary),
     )
 
@@ -168,11 +168,11 @@ def _best(summary: Summary) -> _Part:
     cases = summary.cases if len(summary.cases) > 1 else ()
     return _Part(
         "How often each case is the best",
-        "A case counts in a scene if no other reaches more than its own bound: it is the best as far as its "
-        "certified gap tells. Without a certificate its value alone counts. Cases that tie count each, so "
-        f"that shares add up to more than 100 %.{robust}",
+        "A case is the best in a scene if no other case exceeds its upper bound. Without a certificate "
+        "its value takes the place of the bound. Each case of a tie counts, so "
+        f"shares can add up to more than 100 %.{robust}",
         "best",
-        "Share of scenes in which no other case is better; ties count for each.",
+        "Share of scenes in which no other case is better. Each case of a tie counts.",
         {"Share of scenes, %": _shares(summary, cases, "best_share", 1)},
     )
 
@@ -183,8 +183,8 @@ def _outage(summary: Summary) -> _Part:
     cases = () if summary.requirement is None else summary.cases
     return _Part(
         "Outage",
-        f"The share of scenes whose {quantity.smallest} falls short of what is required. A requirement is "
-        f"set by `nullpose study report {option}`.",
+        f"The share of scenes whose {quantity.smallest} is below the requirement. Set a requirement "
+        f"with `nullpose study report {option}`.",
         "outage",
         f"Outage probability against the required {quantity.noun}.",
         {"Share of scenes that miss the requirement, %": _shares(summary, cases, "outage", 1)},
@@ -196,13 +196,13 @@ def _robustness(summary: Summary) -> _Part:
         worst = number(float(row["cost_worst_tenth"]), summary.quantity)
         return f"{with_interval(*three_of(row, 'cost_median'), summary.quantity)}; {worst}"
 
-    title = f"Median; what one scene in ten exceeds, {summary.quantity.unit}"
+    title = f"Median; 90th percentile, {summary.quantity.unit}"
     return _Part(
         "Cost of robustness",
-        f"The {summary.quantity.smallest} of the same vehicle's best pose if everything is as stated, less "
-        "what its robust pose guarantees under the errors, on the same scene.",
+        f"The {summary.quantity.smallest} of the same vehicle's best pose without errors, minus "
+        "the guaranteed value of its robust pose, on the same scene.",
         "robustness",
-        "What robust cases give up of what the same vehicle reaches if everything is as stated.",
+        "Loss of robust cases against the same vehicle's best pose without errors.",
         {title: _by_point(summary, summary.paired, cell)},
     )
 
@@ -210,8 +210,8 @@ def _robustness(summary: Summary) -> _Part:
 def _proofs(summary: Summary) -> _Part:
     return _Part(
         "Proofs, gaps and time",
-        "*Certified*: no pose exceeds the value by more than the gap asked for. *Gap not reached*: a limit "
-        "ended the proof. *Best found*: nothing is proved. *Failed*: there is no pose, and the row is in no "
+        "*Certified*: optimal within the requested gap. *Gap not reached*: a limit "
+        "ended the proof. *Best found*: no upper bound. *Failed*: no pose, and the row is in no "
         "distribution. The rigour of all bounds is *floating-point*: a study keeps no certificates.",
         "effort",
         "Time of a solve, and relative gap between bound and value.",
@@ -300,8 +300,8 @@ def _data(summary: Summary) -> list[str]:
         "functions after Dvoretzky, Kiefer and Wolfowitz, intervals of quantiles by order statistics, of "
         "shares after Clopper and Pearson, and of differences and ratios of quantiles by a bootstrap over "
         f"scenes ({replicates_of(summary.values.scenes):,} replicates, seeded; with fewer than {FEW_SCENES} "
-        "scenes none is given). Quantiles are numbers that occur: the smallest that the share of scenes does "
-        "not exceed.",
+        "scenes none is given). Quantiles are values that occur: the smallest value with at least that "
+        "share of scenes at or below it.",
         "`study.csv` has a row for each scene, combination and case; `summary.csv` one for each combination "
         "and case, with every number above. In one line each, in the study's folder:",
         '```python\nframe = nullpose.study.monte_carlo.read_study(".").frame()    # pandas\n'

@@ -45,7 +45,7 @@ class Summary:
     Args:
         spec: the study.
         values: of all rows that are done.
-        quantity: what was made as large as it can be.
+        quantity: the maximised quantity.
         cases: in the spec's order.
         points: the combinations of swept values.
         requirement: the smallest number that will do, in the quantity's unit; None if none is set.

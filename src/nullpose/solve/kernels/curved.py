@@ -185,7 +185,7 @@ def excludes_allowed(domain, row, total):
             return False
         row[NU] = nu[0]
     if alternatives > 0 and int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
-        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
+        row[NU] = 1.0  # a zone's multipliers are found again by the verifier
     return alternatives > 0
 
 

@@ -322,7 +322,7 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
             return False
         row[NU] = nu[0]
     if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
-        row[NU] = 1.0  # a zone's multipliers are found again by whoever checks
+        row[NU] = 1.0  # a zone's multipliers are found again by the verifier
     return True
 
 

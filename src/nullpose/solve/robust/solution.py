@@ -47,7 +47,7 @@ class GuardedPose:
 
     @property
     def binding_node(self) -> str:
-        """Name of the node that is worst off in the worst case found."""
+        """Name of the node with the smallest value in the worst case found."""
         return self.guarantee.binding.node
 
     @property

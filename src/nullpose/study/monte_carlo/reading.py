@@ -39,7 +39,7 @@ class StudyTable:
         self.spec = StudySpec.from_dict(self.manifest["spec"], str(store.folder))
         """The study's spec."""
         self.quantity = QUANTITIES[self.manifest["objective"]]
-        """What was made as large as it can be."""
+        """The maximised quantity."""
 
     @property
     def scenes_done(self) -> int:

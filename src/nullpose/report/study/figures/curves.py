@@ -46,7 +46,7 @@ def draw_distributions(summary: Summary) -> Figure | None:
     quantity = summary.quantity
     note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
     across = f"{quantity.smallest} over the nodes  ({quantity.unit})"
-    return _distributions(summary, dress, across, "scenes with no more", note, banded=True)
+    return _distributions(summary, dress, across, "CDF over scenes", note, banded=True)
 
 
 def draw_outage(summary: Summary) -> Figure | None:
@@ -63,7 +63,7 @@ def draw_outage(summary: Summary) -> Figure | None:
         if required is not None:
             axes.axvline(required, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=1.8)
 
-    note = "" if required is None else "Dashed upright: the requirement."
+    note = "" if required is None else "Dashed: the requirement."
     across = f"required {summary.quantity.noun}  ({summary.quantity.unit})"
     return _distributions(summary, dress, across, "outage probability", note, banded=False)
 
@@ -200,5 +200,5 @@ def draw_effort(summary: Summary) -> Figure | None:
         axes.set(xscale="log", xlabel=drawn[place], ylim=(0.0, 1.02))
         axes.set_yticks(*QUARTERS)
 
-    titles, handles, up = [""] * len(drawn), handles_of(summary.cases), "solves with no more"
+    titles, handles, up = [""] * len(drawn), handles_of(summary.cases), "CDF over solves"
     return side_by_side(titles, draw, handles, up=up, height=1.9, share_x=False)
