@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
-from nullpose.studio.colours import KIND_COLOURS, css, scale_colours, scale_range
+from nullpose.studio.colours import KIND_COLOURS, css, linear_colours, scale_colours, scale_range
 
 
 def test_brightness_grows_along_the_scale() -> None:
@@ -42,3 +42,14 @@ def test_one_value_has_one_colour() -> None:
     assert (
         scale_colours([-np.inf, np.inf, 1e300], 0.0, 1.0).tolist() == scale_colours([0, 1, 1], 0, 1).tolist()
     )
+
+
+def test_a_link_has_the_colour_of_the_scale() -> None:
+    """A colour in linear light, shown as a screen shows light, is that of the scale but for rounding."""
+    scale = scale_colours(np.linspace(0.0, 1.0, 50), 0.0, 1.0)
+    light = linear_colours(scale) / 255.0
+    shown = 255.0 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1.0 / 2.4) - 0.055)
+    assert np.max(np.abs(shown - scale)) <= 7.0  # dark parts have few steps of linear light
+    bright = scale >= 60
+    assert np.max(np.abs(shown - scale)[bright]) <= 2.0
+    assert linear_colours([0, 255, 128]).tolist() == [0, 255, 55]

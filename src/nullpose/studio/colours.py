@@ -61,6 +61,19 @@ def scale_range(values: ArrayLike) -> tuple[float, float]:
     return min(high - _LEAST_SPAN, max(low, high - _MOST_SPAN)), high
 
 
+def linear_colours(colours: ArrayLike) -> NDArray[np.uint8]:
+    """Return colours in linear light, 0 to 255, as viser takes those of single vertices.
+
+    What has one colour is given in sRGB. The conversion is that of IEC 61966-2-1.
+
+    Args:
+        colours: (..., 3) red, green, blue in sRGB, 0 to 255.
+    """
+    share = np.asarray(colours, dtype=float) / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return np.round(255.0 * linear).astype(np.uint8)
+
+
 def round_steps(low: float, high: float, most: int) -> NDArray[np.float64]:
     """Return round numbers at even steps of 1, 2 or 5 times a power of ten, just beyond both ends too.
 
