@@ -1,6 +1,7 @@
 """Colours and scales."""
 
 import numpy as np
+import pytest
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
@@ -24,6 +25,16 @@ def test_a_scale_spans_a_readable_range(values: list[float]) -> None:
     assert high == round(high)
     assert 6.0 <= high - low <= 30.0
     assert low <= max(values) <= high
+
+
+@seed(0)
+@given(values=st.lists(st.floats(-1.0, 12.0), min_size=1, max_size=30))
+def test_a_scale_of_rates_shows_small_differences(values: list[float]) -> None:
+    """Its ends are tenths of a bit/s/Hz about the largest value, and no further apart than they must be."""
+    low, high = scale_range(values, is_rate=True)
+    assert 0.5 - 1e-9 <= high - low <= max(0.5, max(values) - min(values) + 0.2) + 1e-9
+    assert low - 1e-9 <= max(values) <= high + 1e-9
+    assert [10.0 * low, 10.0 * high] == pytest.approx([round(10.0 * low), round(10.0 * high)], abs=1e-9)
 
 
 def test_nothing_finite_has_a_scale_too() -> None:
