@@ -143,6 +143,10 @@ class Page:
         given = (file.content, file.name)
         if self._change(lambda view: view.with_scenario(scenario_from_text(*given)), name=file.name):
             self._aim()
+        else:  # viser has said by now that the file has arrived
+            told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
+            title = f"{file.name} was not taken"
+            self._client.add_notification(title, told, color="red", auto_close_seconds=8.0)
 
     def _send(self, name: str, make: Callable[[], bytes]) -> None:
         try:

@@ -213,6 +213,7 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     broken.write_text("[airspace]\naltitude_m = [30.0, 8.0]\n[[nodes]]\npower_w = -1\n")
     _upload(page, broken)
     page.wait_for_function("document.querySelector('[data-np=faults]').innerText.includes('broken.toml')")
+    page.locator(".mantine-Notification-root", has_text="broken.toml was not taken").wait_for()
     told = page.locator("[data-np=faults]").inner_text()
     assert "airspace.altitude_m" in told
     assert "nodes[0].power_w" in told
