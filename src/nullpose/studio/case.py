@@ -83,6 +83,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     traits = (
         scenario.objective,
         scenario.airframe,
+        scenario.antenna,
         scenario.is_uncertain,
         scenario.has_margins,
         bool(scenario.jammers),
