@@ -1,5 +1,8 @@
 """The cases on offer."""
 
+from pathlib import Path
+
+from nullpose import load
 from nullpose.scenario import Scenario
 from nullpose.studio.case import CASES, OPTIMUM, case_named, cases_of
 
@@ -29,6 +32,13 @@ def test_a_secrecy_rate_leaves_few_cases(secret: Scenario) -> None:
     labels = [case.label for case in cases_of(secret)]
     assert "Zero interference" not in labels
     assert "Optimum pose" in labels
+
+
+def test_every_case_that_is_offered_has_a_meaning(paper: Scenario) -> None:
+    """A file that is loaded after another, with another antenna, has the cases of its own."""
+    cases_of(paper)
+    frame = load(Path(__file__).parents[2] / "examples" / "frame.toml")
+    assert [case.label for case in cases_of(frame) if case.missing(frame) is not None] == []
 
 
 def test_a_vehicle_takes_the_place_of_the_scenarios_own(paper: Scenario) -> None:

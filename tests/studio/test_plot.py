@@ -1,5 +1,6 @@
 """The drawing of the power curve."""
 
+from dataclasses import replace
 from html import unescape
 from xml.etree import ElementTree
 
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Scenario
+from nullpose.studio.events import PowerCurve
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.steps import power_curves
-from nullpose.studio.view import View
+from nullpose.studio.view import POWER_DB, View
 
 
 def _drawn(text: str) -> ElementTree.Element:
@@ -39,6 +41,32 @@ def test_the_ring_is_on_the_curve(paper: Scenario) -> None:
     (ring,) = drawn.iter("circle")
     at = np.array([ring.get("cx"), ring.get("cy")], dtype=float)
     assert np.min(np.linalg.norm(points - at, axis=1)) < 0.2
+
+
+def test_a_curve_is_drawn_where_its_values_are(paper: Scenario) -> None:
+    """Values far below the top are cut off by the view and never drawn as a plateau at its edge."""
+    wide = [(POWER_DB[0], 1e3), (POWER_DB[0] + 7.0, 10.0), (23.0, 1e-2), (POWER_DB[1], 1e-4)]
+    table = next(iter(power_curves(1, View(scenario=paper)))).table
+    row = table.of("optimum")[0]
+    rows = tuple(replace(row, value=x, objective=replace(row.objective, value=y)) for x, y in wide)
+    curve = PowerCurve(version=1, table=replace(table, rows=rows), complete=True)
+    drawn = _drawn(power_plot_svg(curve, version=1, power_db=23.0, value=-20.0, unit="dB"))
+    (line,) = drawn.iter("polyline")
+    _, down = np.array([pair.split(",") for pair in line.get("points", "").split()], dtype=float).T
+    assert np.diff(down) / 20.0 == pytest.approx(
+        (down[1] - down[0]) / 20.0 * np.array([1.0, 1.5, 1.0]), abs=0.01
+    )
+    assert down[-1] > 180.0  # below the lower edge, where it is not seen
+    (ring,) = drawn.iter("circle")
+    assert float(ring.get("cy", "nan")) == pytest.approx(down[2], abs=0.1)
+    assert down[2] < 180.0  # the present value is always in view
+
+
+def test_a_power_beyond_the_plot_has_no_ring(paper: Scenario) -> None:
+    """A scene whose jammers are weaker than the plot reaches has no ring at its edge."""
+    curve = next(iter(power_curves(1, View(scenario=paper))))
+    drawn = _drawn(power_plot_svg(curve, version=1, power_db=-99.0, value=1.0, unit="dB"))
+    assert not list(drawn.iter("circle"))
 
 
 def test_an_old_curve_is_marked(paper: Scenario) -> None:

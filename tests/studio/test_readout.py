@@ -1,13 +1,19 @@
 """The panel's numbers."""
 
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
+from nullpose import load
 from nullpose.errors import ScenarioError
+from nullpose.report.numbers import MINUS, fixed
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
+from nullpose.solve.robust import solve_robust
+from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.readout import about_html, failure_html, readout_html
 from nullpose.studio.session import Session
@@ -49,20 +55,67 @@ def test_without_an_answer_there_are_no_numbers(idle: Session) -> None:
     assert idle.close()
 
 
-def test_two_cases_differ_by_what_is_known_of_both(idle: Session) -> None:
+@pytest.fixture
+def unsure(paper: Scenario) -> Scenario:
+    """The paper's scene with a jammer that is known up to two metres."""
+    jammer = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
+    return paper.model_copy(update={"jammers": (jammer,)})
+
+
+def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenario) -> None:
     """A robust case counts with what it guarantees, once that is known, and it is said that it does."""
     robust = case_named("Robust pose")
-    idle.change(lambda view: view.with_compared(robust))
+    idle.change(lambda view: view.with_scenario(unsure).with_compared(robust))
     (first,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    objective = first.result.objective
-    half = replace(objective, value=0.5 * objective.value)
-    second = replace(first, case=robust, result=replace(first.result, objective=half))
     idle._take(first)
-    idle._take(second)
+    idle._take(replace(first, case=robust))
     assert 'data-np="difference"' not in readout_html(idle)
-    known = replace(half, upper_bound=0.6 * objective.value)
-    idle._take(replace(second, result=replace(first.result, objective=known)))
-    assert "A over B: 3.01 dB (B guaranteed, A without errors)" in _Text(readout_html(idle)).text
+    known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
+    idle._take(known)
+    difference = fixed(first.shown_value - known.shown_value, 2)
+    text = _Text(readout_html(idle)).text
+    assert f"A over B: {difference} dB (B guaranteed, A without errors)" in text
+    assert idle.close()
+
+
+def test_the_node_that_decides_has_the_smallest_number(idle: Session, unsure: Scenario) -> None:
+    """Beside each node of a robust case stands what it is guaranteed, and the smallest is the value."""
+    robust = case_named("Robust pose")
+    idle.change(lambda view: view.with_scenario(unsure).with_case(robust))
+    known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
+    idle._take(known)
+    (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
+    found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
+    numbers = {row[0]: float(row[2].replace("&minus;", "-")) for row in found}
+    (decides,) = (row[0] for row in found if "decides" in row[3])
+    assert list(numbers) == [link.node for link in known.result.links]
+    assert numbers[decides] == min(numbers.values()) == pytest.approx(known.shown_value, abs=0.006)
+    assert "guaranteed SINR" in _Text(readout_html(idle)).text
+    assert idle.close()
+
+
+def test_a_margin_stands_beside_the_node_that_it_decides(idle: Session, paper: Scenario) -> None:
+    """Where nodes require an SINR, each has its margin shown, of which the smallest decides."""
+    nodes = (paper.nodes[0].model_copy(update={"min_sinr_db": 3.0}), paper.nodes[1])
+    idle.change(lambda view: view.with_scenario(paper.model_copy(update={"nodes": nodes})))
+    (answer,) = quick_answers(idle.version, idle.view, OPTIMUM)
+    idle._take(answer)
+    text = _Text(readout_html(idle)).text
+    for link in answer.result.links:
+        assert link.margin_db is not None
+        assert f"margin {fixed(link.margin_db, 2)} dB".replace("-", MINUS) in text
+    assert idle.close()
+
+
+def test_what_is_left_out_is_said(idle: Session, unsure: Scenario) -> None:
+    """The optimum of a scene with errors says that they are left out; a robust pose does not."""
+    idle.change(lambda view: view.with_scenario(unsure))
+    assert "errors of the file are left out" in _Text(readout_html(idle)).text
+    idle.change(lambda view: view.with_case(case_named("Robust pose")))
+    assert "left out" not in _Text(readout_html(idle)).text
+    array = load(Path(__file__).parents[2] / "examples" / "array.toml")
+    idle.change(lambda view: view.with_scenario(array))
+    assert "array of the file is not shown" in _Text(readout_html(idle)).text
     assert idle.close()
 
 

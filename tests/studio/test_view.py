@@ -41,6 +41,27 @@ def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
     assert louder.with_power_db(0.0).scenario == both.scenario
 
 
+@pytest.mark.parametrize(("text", "power_db"), [("12.3456", 12.3456), (" 1e1 ", 10.0), ("\u221230", -30.0)])
+def test_a_typed_power_holds_as_typed(paper: Scenario, text: str, power_db: float) -> None:
+    """What is typed in the range is the power to the last digit, and is shown so."""
+    view = View(scenario=paper).with_power_text(text)
+    assert view.power_db == pytest.approx(power_db, abs=1e-9)
+    assert view.power_text == f"{power_db:g}"
+    assert view.with_power_text(view.power_text) is view
+
+
+@pytest.mark.parametrize("text", ["-99", "1e3", "12,5", "nan", "inf", "-", ""])
+def test_a_typed_power_out_of_range_is_refused(paper: Scenario, text: str) -> None:
+    """It is said what was given, what is allowed, and what holds."""
+    with pytest.raises(ScenarioError, match=rf"given {text or 'nothing'}; .*-30 to 40.* stays at 0"):
+        View(scenario=paper).with_power_text(text)
+
+
+def test_a_power_beyond_the_slider_is_shown_as_it_is(paper: Scenario) -> None:
+    """A file may state a power that the page does not offer."""
+    assert View(scenario=paper).with_power_db(-99.0).power_text == "-99"
+
+
 def test_a_power_in_dbm_is_replaced_by_one_in_watts(paper: Scenario) -> None:
     """A jammer stated in dBm can be scaled too."""
     jammer = paper.jammers[0].model_copy(update={"power_w": None, "power_dbm": 30.0})

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from nullpose.report.numbers import short
 from nullpose.solve import Result, Status
+from nullpose.solve.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
 
 
@@ -18,7 +19,7 @@ class Answer:
         version: the version of the scene that it belongs to.
         case: the case it answers.
         result: what the solver returned; the value of a robust one is what its pose guarantees.
-        binding_node: the node with the smallest value.
+        binding_node: the node with the smallest value; of a robust pose, with the smallest guarantee.
         note: a sentence on it; may be empty.
     """
 
@@ -27,6 +28,12 @@ class Answer:
     result: Result
     binding_node: str
     note: str
+
+    @property
+    def guarded(self) -> GuardedPose | None:
+        """What the pose guarantees, node by node; None of a case without errors, or while it is not known."""
+        details = self.result.details
+        return details.robust if self.case.robust and isinstance(details, RobustDetails) else None
 
     @property
     def shown_value(self) -> float:
@@ -44,8 +51,12 @@ def answer_of(version: int, case: Case, result: Result) -> Answer:
         result: what the solver returned.
     """
     node, note = result.binding_node, result.note
-    if case.robust and result.details is not None:
-        node, note = result.details.robust.binding_node, f"Worst case: {result.details.robust.worst_case}"
+    if case.robust and isinstance(result.details, RobustDetails):
+        robust = result.details.robust
+        node = min(
+            robust.guarantee.ratios, key=lambda ratio: ratio.lower
+        ).node  # whose guarantee is the value
+        note = f"Worst case: {robust.worst_case}"
     stopped = f"The proof stopped: {result.reason}" if result.reason else ""
     said = ". ".join(filter(None, (note, stopped)))
     return Answer(version=version, case=case, result=result, binding_node=node, note=said)

@@ -9,6 +9,8 @@ import numpy as np
 from nullpose.scenario import Scenario
 from nullpose.studio.scene import scene_size_m
 
+_FAR = 100.0  # sizes of the scene that the camera sees, which leaves room to move away from it
+
 
 def aim(camera: Any, scenario: Scenario) -> None:
     """Let a camera look at the whole of a scene.
@@ -25,3 +27,4 @@ def aim(camera: Any, scenario: Scenario) -> None:
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     camera.near = 0.02 * size_m
+    camera.far = _FAR * size_m

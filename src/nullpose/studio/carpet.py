@@ -39,7 +39,7 @@ class Carpet:
             field: what to draw, a little above its altitude.
         """
         self.hide()
-        low, high = scale_range(field.values)
+        low, high = scale_range(field.values, is_rate=field.unit != "dB")
         east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
         width = float(east[-1] + east[1] - 2.0 * east[0])
         height = float(north[-1] - north[0] + east[1] - east[0])

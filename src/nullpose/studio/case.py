@@ -45,6 +45,19 @@ class Case:
             return "the scenario states no errors to guard against"
         return self.scheme.not_applicable(self.on(scenario))
 
+    def left_out(self, scenario: Scenario) -> str:
+        """Return what of a scenario the case leaves out, in sentences; empty if it takes all of it.
+
+        Args:
+            scenario: as stated.
+        """
+        said = []
+        if scenario.array is not None:
+            said.append("The array of the file is not shown: this is the pose of one antenna.")
+        if scenario.is_uncertain and not self.robust:
+            said.append("The errors of the file are left out; the case Robust pose guards against them.")
+        return " ".join(said)
+
 
 OPTIMUM = Case(label="Optimum pose")
 """The case that the studio opens with."""
@@ -70,6 +83,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     traits = (
         scenario.objective,
         scenario.airframe,
+        scenario.antenna,
         scenario.is_uncertain,
         scenario.has_margins,
         bool(scenario.jammers),

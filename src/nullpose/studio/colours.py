@@ -19,6 +19,7 @@ SLOTS: tuple[Rgb, Rgb] = ((30, 60, 200), (0, 0, 0))
 """The drone of the chosen case, and that of the compared one."""
 
 _LEAST_SPAN = 6.0
+_LEAST_RATE_SPAN = 0.5
 _MOST_SPAN = 30.0
 
 
@@ -46,19 +47,36 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
     return np.asarray(colormaps["viridis"](held, bytes=True))[..., :3]
 
 
-def scale_range(values: ArrayLike) -> tuple[float, float]:
-    """Return the ends of a scale for values: round numbers around most of them, 6 to 30 apart.
+def scale_range(values: ArrayLike, *, is_rate: bool = False) -> tuple[float, float]:
+    """Return the ends of a scale for values: round numbers around most of them and all of the largest.
+
+    Those of decibels are whole and 6 to 30 apart, those of rates tenths and half a bit/s/Hz or more apart.
 
     Args:
         values: any shape; what is not finite is left out.
+        is_rate: whether they are rates, bits/s/Hz.
     """
+    per_unit, least = (10.0, _LEAST_RATE_SPAN) if is_rate else (1.0, _LEAST_SPAN)
     finite = np.asarray(values, dtype=float).ravel()
     finite = finite[np.isfinite(finite)]
     if finite.size == 0:
-        return -_LEAST_SPAN, 0.0
-    high = float(np.ceil(finite.max()))
-    low = float(np.floor(np.percentile(finite, 5.0)))
-    return min(high - _LEAST_SPAN, max(low, high - _MOST_SPAN)), high
+        return -least, 0.0
+    high = float(np.ceil(per_unit * finite.max())) / per_unit + 0.0  # no minus before a nought
+    low = float(np.floor(per_unit * np.percentile(finite, 5.0))) / per_unit
+    return min(high - least, max(low, high - _MOST_SPAN)) + 0.0, high
+
+
+def linear_colours(colours: ArrayLike) -> NDArray[np.uint8]:
+    """Return colours in linear light, 0 to 255, as viser takes those of single vertices.
+
+    What has one colour is given in sRGB. The conversion is that of IEC 61966-2-1.
+
+    Args:
+        colours: (..., 3) red, green, blue in sRGB, 0 to 255.
+    """
+    share = np.asarray(colours, dtype=float) / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return np.round(255.0 * linear).astype(np.uint8)
 
 
 def round_steps(low: float, high: float, most: int) -> NDArray[np.float64]:

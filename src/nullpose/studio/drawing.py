@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.studio.colours import linear_colours
 from nullpose.studio.meshes import Mesh
 
 if TYPE_CHECKING:
@@ -39,11 +40,11 @@ def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike
         scene: the page's scene.
         name: its place in the scene's tree.
         mesh: vertices and triangles.
-        colours: (n, 3) red, green, blue.
+        colours: (n, 3) red, green, blue in sRGB.
     """
     import trimesh
 
-    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, vertex_colors=np.asarray(colours))
+    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, vertex_colors=linear_colours(colours))
     return scene.add_mesh_trimesh(name, solid, **FLAT)
 
 
@@ -54,7 +55,7 @@ def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLi
         scene: the page's scene.
         name: its place in the scene's tree.
         segments_m: (n, 2, 3) their ends, metres.
-        colour: (3,) red, green, blue; or (n, 2, 3), that of each end.
+        colour: (3,) red, green, blue; or (n, 2, 3), that of each end, which is in linear light.
         thickness: on the screen, pixels.
     """
     points = np.asarray(segments_m, dtype=np.float32)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.studio.answer import Answer
-from nullpose.studio.colours import KIND_COLOURS, SLOTS, scale_colours
+from nullpose.studio.colours import KIND_COLOURS, SLOTS, linear_colours, scale_colours
 from nullpose.studio.drawing import add_coloured_mesh, add_label, add_lines, add_mesh
 from nullpose.studio.meshes import (
     body_mesh,
@@ -83,7 +83,7 @@ class Drone:
         nodes = result.scenario.node_positions_m
         ends = np.stack([np.broadcast_to(here, nodes.shape), nodes], axis=1)
         decides = np.array([link.node == answer.binding_node for link in result.links])
-        colours = scale_colours([link.sinr_db for link in result.links], *link_range_db)
+        colours = linear_colours(scale_colours([link.sinr_db for link in result.links], *link_range_db))
         lines = {
             "null": null_line_m(pose, 0.16 * size_m, most_m=1.5 * size_m)[None],
             "drop": np.array([[here, [*here[:2], 0.0]]]),

@@ -59,5 +59,6 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
         title="gain over path loss on the ground, 0 straight below at full gain",
         name="footprint_db",
     )
-    best = replace(best, title=f"{best.title}; lines to nodes")
+    unlike = " without errors" if answer.case.robust else ""
+    best = replace(best, title=f"{best.title}{unlike}; lines to nodes")
     return FieldMap(version=answer.version, best=best, footprint=footprint)

@@ -102,6 +102,7 @@ class Page:
             control.on_update(_by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
+        panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
         panel.upload.on_upload(lambda event: self._load(event.target.value))
 
     def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
@@ -118,11 +119,16 @@ class Page:
         case = None if label == NO_CASE else case_named(label)
         self._change(lambda view: view.with_compared(case))
 
-    def _slid(self, value: float) -> None:
+    def _typed(self, text: str) -> None:
+        self._change(lambda view: view.with_power_text(text), name="The jamming power")
+        with self._lock, self._client.atomic():
+            self.panel.show_power(self.session.view)
+
+    def _slid(self, values: tuple[float]) -> None:
         now = time.monotonic()
         self._gesture += now - self._slid_at > _GESTURE_S
         self._slid_at = now
-        self._change(lambda view: view.with_power_db(float(value)), f"power {self._gesture}")
+        self._change(lambda view: view.with_power_db(float(values[0])), f"power {self._gesture}")
 
     def _dragged(self, key: PointKey, position_m: NDArray[np.float64], phase: str) -> None:
         if phase == "start":
@@ -137,6 +143,10 @@ class Page:
         given = (file.content, file.name)
         if self._change(lambda view: view.with_scenario(scenario_from_text(*given)), name=file.name):
             self._aim()
+        else:  # viser has said by now that the file has arrived
+            told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
+            title = f"{file.name} was not taken"
+            self._client.add_notification(title, told, color="red", auto_close_seconds=8.0)
 
     def _send(self, name: str, make: Callable[[], bytes]) -> None:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -19,10 +20,16 @@ NO_CASE = "nothing"
 _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
     "Scene": {
         "power": (
-            "slider",
+            "multi_slider",  # of one handle: viser's other one has a field that takes every keystroke
             "Jamming (dB)",
             "Power of the strongest jammer over the nodes' (P_M/P); all jammers change alike.",
-            {"min": POWER_DB[0], "max": POWER_DB[1], "step": 0.5, "initial_value": 0.0},
+            {"min": POWER_DB[0], "max": POWER_DB[1], "step": 0.5, "initial_value": (0.0,)},
+        ),
+        "power_text": (
+            "text",
+            "as a number",
+            "The jamming power in dB; Enter takes it.",
+            {"initial_value": ""},
         ),
         "case": (
             "dropdown",
@@ -86,12 +93,15 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
+    A text is in a form of its own, ``form``, that is submitted with Enter.
+
     Args:
         gui: the page's interface.
     """
 
     def __init__(self, gui: GuiApi) -> None:
         super().__init__()
+        self._shown: View | None = None
         gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
@@ -107,7 +117,10 @@ class Panel(SimpleNamespace):
             with tabs.add_tab(tab):
                 for name, (kind, label, hint, more) in controls.items():
                     given = more | ({"hint": hint} if hint else {})
-                    setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
+                    if kind == "text":
+                        self.form = gui.add_form(None)
+                    with self.form if kind == "text" else nullcontext():
+                        setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
 
     def show(self, view: View) -> None:
         """Offer the cases that have a meaning for a view, and show those chosen, and the jamming power.
@@ -119,9 +132,20 @@ class Panel(SimpleNamespace):
         others = (NO_CASE, *(label for label in labels if label != view.case.label))
         _put(self.case, options=labels, value=view.case.label)
         _put(self.compared, options=others, value=NO_CASE if view.compared is None else view.compared.label)
+        if view is not self._shown:  # what is being typed stays while the answers to a view come in
+            self.show_power(view)
+        self._shown = view
+
+    def show_power(self, view: View) -> None:
+        """Show the jamming power that holds, in place of one that was typed and not taken.
+
+        Args:
+            view: the view now.
+        """
         _put(self.power, disabled=view.power_db is None)
+        _put(self.power_text, disabled=view.power_db is None, value=view.power_text)
         if view.power_db is not None:
-            _put(self.power, value=round(2.0 * min(max(view.power_db, POWER_DB[0]), POWER_DB[1])) / 2.0)
+            _put(self.power, value=(round(min(max(view.power_db, POWER_DB[0]), POWER_DB[1]), 6),))
 
 
 def _put(control: Any, **values: object) -> None:

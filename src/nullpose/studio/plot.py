@@ -16,6 +16,10 @@ from nullpose.studio.view import POWER_DB
 _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
 _MOST_SPAN = 30.0
+_INSIDE = (  # a drawing of its own, which cuts off what leaves it
+    f'x="{_LEFT}" y="{_TOP}" width="{_RIGHT - _LEFT}" height="{_BOTTOM - _TOP}" '
+    f'viewBox="{_LEFT} {_TOP} {_RIGHT - _LEFT} {_BOTTOM - _TOP}"'
+)
 
 
 class _Frame(NamedTuple):
@@ -25,10 +29,10 @@ class _Frame(NamedTuple):
     high: float
 
     def at(self, power_db: float, value: float) -> tuple[float, float]:
-        """Return where a power and a value are drawn, those beyond an edge on it."""
+        """Return where a power and a value are drawn, which is outside the drawing if they are beyond it."""
         low_db, high_db = POWER_DB
-        across = (min(max(power_db, low_db), high_db) - low_db) / (high_db - low_db)
-        up = (min(max(value, self.low), self.high) - self.low) / (self.high - self.low)
+        across = (power_db - low_db) / (high_db - low_db)
+        up = (value - self.low) / (self.high - self.low)
         return _LEFT + across * (_RIGHT - _LEFT), _BOTTOM - up * (_BOTTOM - _TOP)
 
 
@@ -36,6 +40,9 @@ def power_plot_svg(
     curve: PowerCurve | None, *, version: int, power_db: float | None, value: float | None, unit: str
 ) -> str:
     """Return the drawing, with a ring at the present power and value; greyed while it is of an older scene.
+
+    The view reaches 30 below the largest value, or down to the present one. Curves below it are cut off.
+    Where the present power is beyond the drawing there is no ring.
 
     Args:
         curve: what is known of the schemes, or None.
@@ -49,22 +56,17 @@ def power_plot_svg(
         return f'<div data-np="plot" style="{style}">No jammer has a power to vary.</div>'
     lines = {} if curve is None else _lines(curve)
     here = [] if value is None or not math.isfinite(value) else [value]
-    frame = _frame_around([y for points in lines.values() for _, y in points] + here)
+    frame = _frame_around([y for points in lines.values() for _, y in points], here)
     stale = curve is None or curve.version != version
     state = "outdated" if stale else "current" if curve is not None and curve.complete else "growing"
     drawn = "".join(_polyline(CURVES[scheme], points, frame) for scheme, points in lines.items())
-    x, top = frame.at(power_db, frame.high)
-    now = f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{_BOTTOM}" stroke="#888" stroke-dasharray="1 3"/>'
-    for height in here:
-        now += (
-            f'<circle data-np="now" cx="{x:.1f}" cy="{frame.at(power_db, height)[1]:.1f}" r="5" fill="#fff" '
-            'fill-opacity=".6" stroke="#d55e00" stroke-width="2.5"/>'
-        )
+    now = _now(frame, power_db, here) if POWER_DB[0] <= power_db <= POWER_DB[1] else ""
     return (
         f'<div data-np="plot" data-state="{state}" style="padding:0 6px">'
         f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="100%" font-family="sans-serif" font-size="10.5" '
         f'role="img" aria-label="value against jamming power">{"".join(_axes(frame, unit))}'
-        f'<g opacity="{0.35 if stale else 1.0}">{drawn}</g>{"".join(_legend(lines))}{now}</svg></div>'
+        f'<g opacity="{0.35 if stale else 1.0}"><svg {_INSIDE}>{drawn}</svg></g>'
+        f"{''.join(_legend(lines))}{now}</svg></div>"
     )
 
 
@@ -77,9 +79,22 @@ def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
     return {scheme: lines[scheme] for scheme in CURVES if scheme in lines}
 
 
-def _frame_around(values: list[float]) -> _Frame:
+def _now(frame: _Frame, power_db: float, here: list[float]) -> str:
+    """Return a line at the present power, and a ring on it at the present value if there is one."""
+    x, top = frame.at(power_db, frame.high)
+    now = f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{_BOTTOM}" stroke="#888" stroke-dasharray="1 3"/>'
+    for height in here:
+        now += (
+            f'<circle data-np="now" cx="{x:.1f}" cy="{frame.at(power_db, height)[1]:.1f}" r="5" fill="#fff" '
+            'fill-opacity=".6" stroke="#d55e00" stroke-width="2.5"/>'
+        )
+    return now
+
+
+def _frame_around(curves: list[float], here: list[float]) -> _Frame:
+    values = curves + here
     high = max(values, default=5.0)
-    low = max(min(values, default=-5.0), high - _MOST_SPAN)
+    low = min([max(min(values, default=-5.0), high - _MOST_SPAN), *here])
     margin = max(0.5, 0.08 * (high - low))
     return _Frame(low - margin, high + margin)
 

@@ -12,6 +12,7 @@ from nullpose.errors import ScenarioError
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS, fixed
 from nullpose.solve import Result
+from nullpose.solve.robust import GuardedPose
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import SLOTS, css
 from nullpose.studio.session import Session
@@ -65,14 +66,18 @@ def _case_html(session: Session, slot: int) -> str:
         f"{escape(case.label)}</div>"
         f'<div data-np="status-{slot}" style="color:{colour};font-weight:600">{mark} {escape(status)}</div>'
     )
+    head += _note(case.left_out(session.view.scenario))
     if answer is None or status.startswith(_FAILED):
         return head
     shade = "" if answer is current else "opacity:.4;"
-    note = f'<div style="color:#555;font-size:12px">{escape(answer.note)}</div>' if answer.note else ""
     return (
         f'{head}<div data-np="numbers-{slot}" data-version="{answer.version}" style="{shade}">'
-        f"{_value(answer, slot)}{_nodes(answer)}{_pose(answer.result, slot)}{note}</div>"
+        f"{_value(answer, slot)}{_nodes(answer)}{_pose(answer.result, slot)}{_note(answer.note)}</div>"
     )
+
+
+def _note(text: str) -> str:
+    return f'<div style="color:#555;font-size:12px">{escape(text)}</div>' if text else ""
 
 
 def _letter(session: Session, slot: int) -> str:
@@ -81,9 +86,9 @@ def _letter(session: Session, slot: int) -> str:
 
 def _value(answer: Answer, slot: int) -> str:
     objective, quantity = answer.result.objective, answer.result.objective.quantity
-    words, proved = quantity.smallest, ""
+    words = quantity.smallest if answer.guarded is None else f"guaranteed {quantity.noun}"
+    proved = ""
     if objective.upper_bound is not None:
-        words = f"guaranteed {quantity.noun}" if answer.case.robust else words
         proved = f" &le; {_signed(quantity.in_unit(objective.upper_bound), 4)}"
     return (
         f'<div>{escape(words)} <b data-np="value-{slot}" data-value="{objective.value!r}">'
@@ -92,14 +97,38 @@ def _value(answer: Answer, slot: int) -> str:
 
 
 def _nodes(answer: Answer) -> str:
+    if answer.guarded is not None:
+        return _guaranteed_nodes(answer, answer.guarded)
     rows = []
     for link in answer.result.links:
-        rate = link.secrecy_rate_bps_hz
-        own = f"{_signed(link.sinr_db)} dB" + ("" if rate is None else f", {rate:.3f} bits/s/Hz")
-        weight, mark = (600, " &#9664; decides") if link.node == answer.binding_node else (400, "")
+        own = f"{_signed(link.sinr_db)} dB"
+        if link.margin_db is not None:
+            own += f", margin {_signed(link.margin_db)} dB"
+        if link.secrecy_rate_bps_hz is not None:
+            own += f", {link.secrecy_rate_bps_hz:.3f} bits/s/Hz"
+        weight, mark = _decides(answer, link.node)
         style = f"font-weight:{weight};white-space:nowrap"
         rows.append(f'<span style="{style}">{escape(link.node)} {own}{mark}</span>')
     return f'<div style="display:flex;flex-wrap:wrap;gap:0 12px">{"".join(rows)}</div>'
+
+
+def _guaranteed_nodes(answer: Answer, guarded: GuardedPose) -> str:
+    """Return a table of what each node has without errors and what it is guaranteed."""
+    quantity, rows = answer.result.objective.quantity, ""
+    for link in answer.result.links:
+        lower = min(ratio.lower for ratio in guarded.guarantee.ratios if ratio.node == link.node)
+        numbers = (quantity.in_unit(number) for number in (quantity.at(link), quantity.of_ratio(lower)))
+        cells = "".join(f'<td style="text-align:right">{_signed(number)}</td>' for number in numbers)
+        weight, mark = _decides(answer, link.node)
+        rows += f'<tr style="font-weight:{weight}"><td>{escape(link.node)}</td>{cells}<td>{mark}</td></tr>'
+    heads = "".join(f'<th style="font-weight:400">{head}</th>' for head in ("without errors", "guaranteed"))
+    head = f"<tr><th></th>{heads}<th>{quantity.unit}</th></tr>"
+    return f'<table data-np="guaranteed" style="border-spacing:12px 0;margin-left:-12px">{head}{rows}</table>'
+
+
+def _decides(answer: Answer, node: str) -> tuple[int, str]:
+    """Return the weight of a node's letters and the mark behind it."""
+    return (600, " &#9664; decides") if node == answer.binding_node else (400, "")
 
 
 def _pose(result: Result, slot: int) -> str:
@@ -124,7 +153,7 @@ def _difference_html(session: Session) -> str:
     first, second = map(session.current, session.view.cases)
     if first is None or second is None:
         return ""
-    if any(one.case.robust and one.result.objective.upper_bound is None for one in (first, second)):
+    if any(one.case.robust and one.guarded is None for one in (first, second)):
         return ""  # what it guarantees is not known yet
     unlike = ""
     if first.case.robust != second.case.robust:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.errors import Fault, ScenarioError
 from nullpose.physics import from_db, to_db
+from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, Scenario
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 
@@ -98,6 +101,31 @@ class View:
             for one, power_w in zip(self.scenario.jammers, powers_w, strict=True)
         )
         return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
+
+    @property
+    def power_text(self) -> str:
+        """The power of the strongest jammer in dB as a text, to a millionth; empty without one."""
+        return "" if self.power_db is None else f"{round(self.power_db, 6) + 0.0:.9g}"
+
+    def with_power_text(self, text: str) -> View:
+        """Return the view with the jamming power that was typed; see :meth:`with_power_db`.
+
+        Args:
+            text: a number of decibels, in the range that a page offers.
+
+        Raises:
+            ScenarioError: it is no number, or out of that range.
+        """
+        typed, (low_db, high_db) = text.strip().replace(MINUS, "-"), POWER_DB
+        if typed == self.power_text:
+            return self
+        with suppress(ValueError):
+            power_db = float(typed)
+            if low_db <= power_db <= high_db:
+                return self.with_power_db(power_db)
+        allowed = f"allowed: a number from {low_db:g} to {high_db:g}, as in 12.5 or 1e1"
+        told = f"given {typed or 'nothing'}; {allowed}; it stays at {self.power_text or 'none'}"
+        raise ScenarioError([Fault("jamming power, dB", told)])
 
     def with_scenario(self, scenario: Scenario) -> View:
         """Return the view of another scenario, the cases kept where they have a meaning for it.

@@ -37,7 +37,7 @@ def _settled(page: Page, before: int) -> None:
 
 def _type_power(page: Page, decibel: str) -> None:
     """Type key by key: of a text put in at once, the field drops what comes first after the server set it."""
-    field = page.locator("input.mantine-NumberInput-input").first
+    field = page.locator("form input.mantine-TextInput-input").first
     field.click()
     field.press("Control+A")
     field.press_sequentially(decibel, delay=120)
@@ -86,7 +86,7 @@ def test_the_scene_is_drawn(page: Page) -> None:
 def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Session) -> None:
     """After the jamming power is slid and then typed, the value shown is the solver's for the same scene."""
     before, version = _value(page), _version(page)
-    track = page.locator(".mantine-Slider-root").first.bounding_box()
+    track = page.locator(".multi-slider-track-container").first.bounding_box()
     assert track is not None
     x, y = track["x"] + 0.43 * track["width"], track["y"] + 0.5 * track["height"]
     page.mouse.move(x, y)
@@ -107,6 +107,31 @@ def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Sessio
     assert scenario.jammers[0].transmit_power_w == pytest.approx(100.0)
     assert _value(page) == pytest.approx(solve(scenario).objective.value, rel=1e-9)
     assert _value(page) != pytest.approx(before, rel=1e-3)
+
+
+def test_a_typed_power_is_taken_with_enter(page: Page, session: Session) -> None:
+    """No keystroke changes the scene; Enter takes a number as it is, and refuses one out of range."""
+    field = page.locator("form input.mantine-TextInput-input").first
+    version = _version(page)
+    field.click()
+    field.press("Control+A")
+    field.press_sequentially("12.3456", delay=120)
+    page.wait_for_timeout(500)
+    assert _version(page) == version
+    field.press("Enter")
+    _settled(page, version)
+    assert session.view.power_db == pytest.approx(12.3456, abs=1e-9)
+    assert field.input_value() == "12.3456"
+    version = _version(page)
+    for refused in ("-99", "1e3"):
+        _type_power(page, refused)
+        page.wait_for_function(
+            f"document.querySelector('[data-np=faults]').innerText.includes('given {refused}')"
+        )
+        page.wait_for_function(
+            "document.querySelector('form input.mantine-TextInput-input').value == '12.3456'"
+        )
+    assert _version(page) == version
 
 
 def _with_arrows(ours: Any) -> set[Any]:
@@ -188,6 +213,7 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     broken.write_text("[airspace]\naltitude_m = [30.0, 8.0]\n[[nodes]]\npower_w = -1\n")
     _upload(page, broken)
     page.wait_for_function("document.querySelector('[data-np=faults]').innerText.includes('broken.toml')")
+    page.locator(".mantine-Notification-root", has_text="broken.toml was not taken").wait_for()
     told = page.locator("[data-np=faults]").inner_text()
     assert "airspace.altitude_m" in told
     assert "nodes[0].power_w" in told
