@@ -32,7 +32,9 @@ def best_map(
     scheme: Annotated[Scheme, typer.Option("--scheme", help="How the axis is chosen.")] = Scheme.OPTIMUM,
     altitude: Annotated[
         float | None,
-        typer.Option("--altitude", metavar="M", help="Of the map, metres.", show_default="the best pose's"),
+        typer.Option(
+            "--altitude", metavar="M", help="Altitude of the map, metres.", show_default="the best pose's"
+        ),
     ] = None,
     cells: Annotated[int, typer.Option("--cells", metavar="N", help="Points along the longer side.")] = 181,
     overrides: Overrides = None,
@@ -45,7 +47,7 @@ def best_map(
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Map what each place gives with the best axis there.
+    """Draw the smallest SINR over positions, with the best axis at each.
 
     A table (CSV) and a figure (PNG, PDF) are written.
     """

@@ -39,7 +39,7 @@ ScenarioFile = Annotated[
 
 AllowOutside = Annotated[
     bool,
-    typer.Option("--allow-outside", help="Let a file name others outside its folder, as by nodes_from."),
+    typer.Option("--allow-outside", help="Allow a file to name others outside its own folder (nodes_from)."),
 ]
 
 Overrides = Annotated[
@@ -59,7 +59,7 @@ Gap = Annotated[
     typer.Option(
         "--gap",
         metavar="G",
-        help="Relative gap between bound and value at which the proof is done.",
+        help="Relative gap between bound and value at which the proof stops.",
         show_default="1e-6 to 3 nodes, 1e-4 to 20, else 1e-3",
     ),
 ]

@@ -66,7 +66,7 @@ def solve(
 ) -> None:
     """Find the best pose, and prove how good it is.
 
-    The proof bounds how far from the best of all it can be.
+    The proof says how far the pose can be from the true optimum.
 
     \b
     Schemes:

@@ -58,7 +58,7 @@ def run(
 ) -> None:
     """Solve the scenes of a study that its folder does not hold yet.
 
-    It runs on this machine or a cluster. Ended in any way, the same command goes on.
+    It runs on this machine or a cluster. If it is interrupted, run the same command again to resume.
     """
     from nullpose.study.monte_carlo.extra import require_extra
 

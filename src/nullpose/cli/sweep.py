@@ -33,7 +33,7 @@ def sweep(
         typer.Option(
             "--set",
             metavar="PATH",
-            help="The value to vary, as in jammers.M.power_w. Repeated as PATH=VALUE it fixes another.",
+            help="PATH alone is varied, as in jammers.M.power_w; further PATH=VALUE fix other values.",
             show_default=False,
         ),
     ],

@@ -83,7 +83,9 @@ def comparison_view(comparison: Comparison) -> View:
         comparison: what each scheme makes of a scenario.
     """
     scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
-    others = "Each case has one dipole on the file's vehicle. Other vehicles and arrays: compare --airframes"
+    others = (
+        "All cases use one dipole on the vehicle in this file. Other vehicles and arrays: compare --airframes"
+    )
     return document(
         head(scenario.name),
         table("", _rows(comparison), bold=[f"smallest {quantity.short} ({quantity.unit})"]),
@@ -136,7 +138,7 @@ def _value_cells(solution: Result, best: float) -> dict[str, str]:
         f"{smallest} ({quantity.unit})": f"{value:.7f}",
         f"upper bound ({quantity.unit})": bound_text(objective, 7),
         **({} if quantity.is_rate else {smallest: f"{objective.value:.7g}"}),
-        f"gap to the best ({quantity.unit})": fixed(best - value, 4),
+        f"below the best ({quantity.unit})": fixed(best - value, 4),
     }
 
 

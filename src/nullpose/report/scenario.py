@@ -135,10 +135,10 @@ def scenario_view(scenario: Scenario) -> View:
         pairs("Airspace", _airspace_rows(scenario).items()),
         table("No-fly zones", zones, left=("shape", "where (m)", "altitude (m)")),
         pairs("Vehicle and receiver", _vehicle_rows(scenario).items()),
-        table("On the Earth", _place_rows(numbers.get("on_earth", ()))),
-        _points_table("node", scenario.nodes, numbers["nodes"], "SNR at best (dB)"),
-        _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "JNR at best (dB)"),
-        _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "SNR at best (dB)"),
+        table("Latitude and longitude", _place_rows(numbers.get("on_earth", ()))),
+        _points_table("node", scenario.nodes, numbers["nodes"], "highest SNR (dB)"),
+        _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "highest JNR (dB)"),
+        _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "highest SNR (dB)"),
         "\n".join([best, *notes]),
     )
 
