@@ -42,10 +42,7 @@ class Profile:
         self.rest = _upwards(_most(weights, _ORDER + 1) / math.factorial(_ORDER + 1))
         whole = Interval(np.full(_CELLS, -1.0 / _CELLS), np.full(_CELLS, 1.0 / _CELLS))
         self.spans = [_spans(self._series(order, np.arange(_CELLS), whole)) for order in range(3)]
-        least, most = self.within(0, Interval([-1.0], [1.0])).ends
-        self.lift = max(0.0, -float(least[0]))
-        """What makes the polynomial positive everywhere."""
-        self.peak = float(most[0]) + self.lift
+        self.peak = float(self.within(0, Interval([-1.0], [1.0])).high[0])
 
     def exact(self, cosine: Fraction) -> Fraction:
         """Return the gain at a cosine, which is zero where the polynomial is negative."""

@@ -166,14 +166,15 @@ def _largest(
     at_centre, over = identity, identity
     slopes, bends = Interval(np.zeros((5, len(leaves)))), Interval(np.zeros((len(PAIRS), len(leaves))))
     for (cosine, near), (wide, near_wide), gain, loss in zip(*links, gains, losses, strict=True):
-        # a gain is positive with the lift, which costs those nothing that are taken away
-        weight, lift = gain - loss, gain * profile.lift
+        reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
+        c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
+        ranges = [profile.within(n, c) for n in range(3)]
+        # a negative gain counts as 0: with the lift none is, and those that are taken away need none
+        weight, lift = gain - loss, gain * np.maximum(0.0, -ranges[0].low)
         link = cosine.of(*(profile.near(n, cosine.value) for n in range(3))) * near
         at_centre = at_centre + link.value * weight + near.value * lift
         slopes = slopes + link.slopes * weight + near.slopes * lift
-        reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
-        c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
-        link = wide.of(*(profile.within(n, c) for n in range(3))) * near_wide
+        link = wide.of(*ranges) * near_wide
         over = over + link.value * weight + near_wide.value * lift
         bends = bends + link.bends * weight + near_wide.bends * lift
     return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high))
