@@ -25,6 +25,7 @@ def test_tilt_limits_nest() -> None:
         assert row.objective.upper_bound >= alone.objective.value
     assert any(not row.proofs for row in table.rows)
     assert all(row.proofs or row.rigour == "floating-point" for row in table.rows)
+    assert all(row.proofs or row.stats.boxes == 0 for row in table.rows)
 
 
 @pytest.mark.parametrize(

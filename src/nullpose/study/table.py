@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
@@ -10,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from nullpose.files import replacing
+from nullpose.files import write_csv
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL, Quantity
 from nullpose.solve import Result
@@ -145,13 +144,9 @@ class SweepTable:
         Raises:
             OutputError: the file cannot be written.
         """
-        with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            records = self._records()
-            writer.writerow(records[0] if records else [self.path])
-            for record in records:
-                writer.writerow(_text(cell) for cell in record.values())
-        return path
+        records = self._records()
+        heading = list(records[0]) if records else [self.path]
+        return write_csv(path, [heading, *([_text(cell) for cell in record.values()] for record in records)])
 
     def frame(self) -> Any:
         """Return the table as a data frame of pandas with the columns of the CSV file.

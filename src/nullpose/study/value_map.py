@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.family import build_family
-from nullpose.files import replacing
+from nullpose.files import write_csv
 from nullpose.notebook import imported
 from nullpose.physics import link_gain, objective_value, to_db
 from nullpose.scenario import Scenario
@@ -103,14 +103,13 @@ class Field:
         Raises:
             OutputError: the file cannot be written.
         """
-        with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["x_m", "y_m", "z_m", self.name])
-            for north, row in zip(self.north_m.tolist(), self.values.tolist(), strict=True):
-                for east, value in zip(self.east_m.tolist(), row, strict=True):
-                    cells = (east, north, self.altitude_m, value)
-                    writer.writerow(["" if cell != cell else repr(cell) for cell in cells])
-        return path
+        cells = (
+            (east, north, self.altitude_m, value)
+            for north, row in zip(self.north_m.tolist(), self.values.tolist(), strict=True)
+            for east, value in zip(self.east_m.tolist(), row, strict=True)
+        )
+        lines = (["" if cell != cell else repr(cell) for cell in line] for line in cells)
+        return write_csv(path, chain([["x_m", "y_m", "z_m", self.name]], lines))
 
 
 def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
