@@ -257,7 +257,7 @@ def draw_errors() -> None:
                 linestyle=(0, (4, 2)),
                 marker=look.marker,
                 markersize=3.4,
-                label=f"{look.label}, best pose as stated",
+                label=f"{look.label}, best pose without errors",
             )
         axes.set_xlabel(words)
         axes.margins(x=0.02)

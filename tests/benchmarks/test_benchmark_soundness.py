@@ -41,3 +41,9 @@ def test_the_search_would_notice() -> None:
     searched = best_value(scene.scenario, scene.scheme, starts=60, seed=5, near=near)
     assert searched >= outcome.value * (1.0 - 1e-2)
     assert outcome.searched >= outcome.value * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("number", [5059, 5135, 5143])
+def test_a_bound_that_is_met_exactly_has_a_certificate(number: int) -> None:
+    """Where multipliers bound a position by the level itself, leaves stay as large as the verifier takes."""
+    assert check_scene(make_feature_scene("antennas", number), starts=5).faults == ()

@@ -14,7 +14,7 @@ def test_table_and_answer(run: Run, paper: str) -> None:
     assert result.exit_code == 0
     for words in (
         "best pose for the paper's antennas",
-        "that pose, stated antennas",
+        "pose 1 with the stated antennas",
         "best pose for the stated antennas",
     ):
         assert words in result.stdout

@@ -68,7 +68,7 @@ def test_help_lists_every_verb(run: Run) -> None:
     result = run("--help")
     assert result.exit_code == 0
     assert all(f" {verb} " in result.stdout for verb in VERBS)
-    assert "Exit codes: 0 fine, 2 bad input or usage" in result.stdout
+    assert "Exit codes: 0 success, 2 bad input or usage" in result.stdout
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -76,7 +76,7 @@ def test_help_of_a_verb_lists_its_options(run: Run, verb: str) -> None:
     """A verb's help names each of its options and no other."""
     result = run(verb, "--help")
     words = (word.rstrip(",") for word in result.stdout.replace("│", " ").split())
-    named = {word for word in words if word.startswith("--") and word[-1] != "."}  # which ends a sentence
+    named = {word for word in words if word.startswith("--") and word[-1] not in ".:"}  # which end a sentence
     assert result.exit_code == 0
     assert named - {"--help"} == VERBS[verb]
 
@@ -119,7 +119,7 @@ def test_help_keeps_words_whole(run: Run, width: str, monkeypatch: pytest.Monkey
     lines = run("solve", "--help").stdout.splitlines()
     for name in Scheme:
         assert any(line.split()[:1] == [name.value] for line in lines)
-    assert "With an [array]" in " ".join(" ".join(lines).split())
+    assert "For an [array]" in " ".join(" ".join(lines).split())
 
 
 def test_the_shell_completes(process: Process) -> None:

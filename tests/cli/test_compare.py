@@ -50,10 +50,10 @@ def test_json_states_the_scenario_once(run: Run, paper: str) -> None:
 
 
 def test_table_has_a_column_for_each_case(run: Run, paper: str) -> None:
-    """The cases stand side by side, binding nodes marked."""
+    """The cases stand side by side, worst nodes marked."""
     result = run("compare", paper)
     assert result.exit_code == 0
-    for words in ("Optimum", "Zero interference", "Maximum gain", "Vertical", "axis to M (deg)", "binding"):
+    for words in ("Optimum", "Zero interference", "Maximum gain", "Vertical", "axis to M (deg)", "worst"):
         assert words in result.stdout
     assert "0.9836997" in result.stdout
     (bounds,) = [line for line in result.stdout.splitlines() if "upper bound (dB)" in line]

@@ -87,7 +87,7 @@ def test_combining_needs_an_array(run: Run, paper: str) -> None:
 
 def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: Path) -> None:
     """Cases of one dipole are solved without the array, and it is said."""
-    assert "one dipole on the vehicle" in run("compare", array, "--fast").stdout
+    assert "All cases use one dipole" in run("compare", array, "--fast").stdout
     settings = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--points", 2, "--scheme", "vertical")
     result = run("sweep", array, *settings, "--out", tmp_path / "out")
     assert result.exit_code == 0

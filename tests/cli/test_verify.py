@@ -55,7 +55,16 @@ def test_what_was_proved_is_about_something(run: Run, proof: Path) -> None:
     """The text names case, scenario and digest, nodes, jammer, powers, airspace and antenna; so does JSON."""
     text = run("verify", proof).stdout
     digest = json.loads(proof.read_text())["scenario_sha256"]
-    for word in ("case optimum", digest, "S1", "S2", " M ", "8 to 30", "short dipole, every axis", "power"):
+    for word in (
+        "scheme optimum",
+        digest,
+        "S1",
+        "S2",
+        " M ",
+        "8 to 30",
+        "short dipole, any axis direction",
+        "power",
+    ):
         assert word in text
     answer = json.loads(run("verify", proof, "--json").stdout)
     assert (answer["scheme"], answer["antenna"], answer["scenario_sha256"]) == (

@@ -65,7 +65,7 @@ def test_the_example_of_the_question(plain: AirframeComparison) -> None:
     first, digital, _ = answer_lines(plain)
     assert first == (
         "A 10 degree tilt with a horizontal dipole reaches 99.3 % of the omnidirectional vehicle's value "
-        "in this scene. It is the simplest of its kind that reaches 99 % or more."
+        "in this scene. It is the simplest vehicle with one dipole that reaches 99 % or more."
     )
     assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 % of")
 
@@ -76,7 +76,7 @@ def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     first, nearest, *_ = answer_lines(worse)
     assert first == "This scene needs an omnidirectional vehicle."
     assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 90 %")
-    assert nearest.endswith("No vehicle of its kind reaches 99 % or more.")
+    assert nearest.endswith("No simpler vehicle with one dipole reaches 99 % or more.")
 
 
 def test_the_least_of_all_suffices(plain: AirframeComparison) -> None:
@@ -94,7 +94,7 @@ def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     digital, analogue = answer_lines(poor)[1:]
     assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 %")
     assert analogue.startswith("A level vehicle with an array of 8 with one analogue beam reaches 80 %")
-    assert analogue.endswith("No vehicle of its kind reaches 99 % or more.")
+    assert analogue.endswith("No vehicle with an array and analogue combining reaches 99 % or more.")
 
 
 def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:
@@ -105,7 +105,7 @@ def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> No
     assert lines[-1].startswith(
         "Under the stated errors an omnidirectional vehicle guarantees 20.1 % of its value"
     )
-    assert "guarantees 100 % of that: the simplest of its kind" in lines[-1]
+    assert "guarantees 100 % of that: the simplest vehicle" in lines[-1]
     text = text_of(robust)
     assert "Guaranteed under the file's errors (dB)" in text
     assert "file: tilt 5, mount 90" in text

@@ -33,7 +33,10 @@ def test_both_poses_with_what_they_guarantee(solution: RobustSolution) -> None:
     """A panel for each, with its values in dB; the errors above them."""
     figure = draw_robust(solution)
     for axes, one, name in zip(
-        figure.axes, (solution.robust, solution.nominal), ("robust pose", "best pose as stated"), strict=True
+        figure.axes,
+        (solution.robust, solution.nominal),
+        ("robust pose", "best pose without errors"),
+        strict=True,
     ):
         title = axes.get_title().replace("\N{MINUS SIGN}", "-")
         assert title.startswith(name)

@@ -37,7 +37,7 @@ def test_numbers_of_a_solution(optimum: Solution) -> None:
 def test_both_nodes_bind_on_the_kink(optimum: Solution) -> None:
     """At the optimum both nodes have the smallest SINR, and both are marked."""
     assert binding_nodes(optimum) == {"S1", "S2"}
-    assert text_of(solution_view(optimum)).count("binding") == 2
+    assert text_of(solution_view(optimum)).count("worst") == 2
 
 
 def test_one_node_binds_above_the_jammer(paper: Scenario) -> None:
@@ -49,7 +49,7 @@ def test_status_is_told_in_words(optimum: Solution, paper: Scenario) -> None:
     """The status says what is proved, and how many searches and boxes there were."""
     words = text_of(solution_view(optimum))
     assert "certified" in words
-    assert f"{optimum.stats.starts} starts, {optimum.stats.boxes} boxes" in words
+    assert f"search: {optimum.stats.starts} starts; proof: {optimum.stats.boxes} boxes" in words
     fast = text_of(solution_view(solve(paper, certify=False)))
     assert "not proved" in fast
     assert "box" not in fast

@@ -31,7 +31,7 @@ def test_presets_keep_their_names() -> None:
         (10.0, 90.0, "axes 80 to 90 deg from the vertical"),
         (20.0, 45.0, "axes 25 to 65 deg from the vertical"),
         (0.0, 0.0, "axes 0 to 0 deg from the vertical"),
-        (90.0, 0.0, "every axis"),
+        (90.0, 0.0, "any axis direction"),
     ],
 )
 def test_reach(tilt_deg: float, mount_deg: float, words: str) -> None:
@@ -41,7 +41,7 @@ def test_reach(tilt_deg: float, mount_deg: float, words: str) -> None:
 
 def test_no_airframe_reaches_all() -> None:
     """Without an airframe every axis is reached."""
-    assert reach_words(None) == "every axis"
+    assert reach_words(None) == "any axis direction"
 
 
 def test_arrays() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
@@ -50,14 +50,19 @@ def _numbers(certificate: Certificate) -> tuple[str, ...]:
     if Quantity.of(certificate.scenario).is_rate:
         most_rate, least_rate = max(0.0, math.log2(bound) + 1e-12), max(0.0, math.log2(least) - 1e-12)
         ends = _rounded(most_rate, ROUND_CEILING), _rounded(least_rate, ROUND_FLOOR)
-        return tuple(f"{text} bits/s/Hz" for text in (*ends, f"{most_rate - least_rate:.2e}"))
+        return tuple(f"{text} bits/s/Hz" for text in (*ends, _apart(most_rate - least_rate)))
     most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
     least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
     return (
         f"{_rounded(bound, ROUND_CEILING)} ({most_db} dB)",
         f"{_rounded(least, ROUND_FLOOR)} ({least_db} dB)",
-        f"{bound / value - 1.0:.2e}",
+        _apart(bound / least - 1.0),
     )
+
+
+def _apart(number: float) -> str:
+    """Return a distance between bound and value with three digits, rounded up."""
+    return f"{float(Context(prec=3, rounding=ROUND_CEILING).create_decimal(number)):.2e}"
 
 
 def _rounded(number: float, direction: str, digits: int = 9) -> str:

@@ -36,6 +36,7 @@ from nullpose.family import AxisField, Family, build_family
 _CHUNK = 4096
 _CUT_AT_ONCE = 128
 _CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times
+_MORE_CUTS = 6  # or as often as that, while few of the pieces fail
 _DEEPEST = 50
 
 
@@ -196,7 +197,9 @@ def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
         return int(failed.leaf.min())
     for start in range(0, len(failed), _CUT_AT_ONCE):
         left = failed.chosen(slice(start, start + _CUT_AT_ONCE))
-        for _ in range(_CUTS):
+        for cut in range(_MORE_CUTS):
+            if not len(left) or (cut >= _CUTS and len(left) > _CUT_AT_ONCE):
+                break
             pieces = parts(left)
             left = pieces.chosen(~_holds(family, field, leaves, pieces))
         if len(left):

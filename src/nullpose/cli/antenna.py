@@ -39,7 +39,7 @@ class _FileOrVerb(TyperGroup):
 antenna = typer.Typer(
     name="antenna",
     cls=_FileOrVerb,
-    help="Read a pattern file, or compare antennas: nullpose antenna FILE, nullpose antenna compare FILE.",
+    help="Read a pattern file (antenna FILE), or compare antennas.",
     subcommand_metavar="FILE | compare FILE",
     no_args_is_help=True,
 )
@@ -66,7 +66,7 @@ def show(
     figure: FigureFile = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Say what a file of a radiation pattern holds.
+    """Show what a pattern file contains.
 
     The word show may be left out: nullpose antenna FILE.
     """

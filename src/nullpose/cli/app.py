@@ -51,10 +51,11 @@ def nullpose(
 ) -> None:
     """Find the best pose for a drone's antenna under jamming.
 
-    A scenario file (TOML) states nodes, jammers, receiver and airspace. Start with
-    nullpose compare examples/paper.toml.
+    A scenario file (TOML) states nodes, jammers, receiver and airspace. A first
+    example: nullpose compare examples/paper.toml
 
-    Exit codes: 0 fine, 2 bad input or usage, 1 anything else (a rejected certificate, say), 130 interrupted.
+    Exit codes: 0 success, 2 bad input or usage, 1 another failure (such as a
+    rejected certificate), 130 interrupted.
     """
 
 

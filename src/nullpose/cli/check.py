@@ -14,7 +14,7 @@ def check(
     allow_outside: AllowOutside = False,
     json_output: JsonOutput = False,
 ) -> None:
-    """Check a scenario file and show the values that it results in, without solving."""
+    """Check a scenario file and show its values, without solving."""
     from nullpose.report.scenario import scenario_view, summarise
 
     scenario = read_scenario(file, overrides, allow_outside)

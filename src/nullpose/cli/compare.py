@@ -54,7 +54,7 @@ def compare(
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve under all four schemes, or with several vehicles."""
+    """Solve under the paper's four schemes, or with several vehicles."""
     scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)

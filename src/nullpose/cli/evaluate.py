@@ -31,14 +31,14 @@ def evaluate(
     file: ScenarioFile,
     pose: Annotated[
         str | None,
-        typer.Option("--pose", metavar="X,Y,Z", help="Position of the drone, metres.", show_default=False),
+        typer.Option("--pose", metavar="X,Y,Z", help="The drone's position in metres.", show_default=False),
     ] = None,
     attitude: Annotated[
         str | None,
         typer.Option(
             "--attitude",
             metavar="ROLL,PITCH,YAW",
-            help="Attitude of the drone, degrees.",
+            help="The drone's attitude in degrees: ENU, body x forward, y left, z up; yaw first.",
             show_default="0,0,0",
         ),
     ] = None,
@@ -47,7 +47,7 @@ def evaluate(
         typer.Option(
             "--poses",
             metavar="CSV",
-            help="File of poses in place of one: x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg.",
+            help="File of many poses, in place of --pose: x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg.",
             show_default=False,
         ),
     ] = None,
@@ -59,7 +59,7 @@ def evaluate(
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
-    """Show what a pose of your own gives, and how far it is below the proved bound."""
+    """Evaluate poses of your own against the upper bound."""
     from nullpose.errors import UsageError
     from nullpose.physics import Pose, Poses
     from nullpose.report.evaluation import evaluation_view

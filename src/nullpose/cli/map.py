@@ -29,14 +29,18 @@ from nullpose.schemes import Scheme
 def best_map(
     file: ScenarioFile,
     out: OutFolder,
-    scheme: Annotated[Scheme, typer.Option("--scheme", help="How the axis is chosen.")] = Scheme.OPTIMUM,
+    scheme: Annotated[
+        Scheme, typer.Option("--scheme", help="Scheme that chooses the axis.")
+    ] = Scheme.OPTIMUM,
     altitude: Annotated[
         float | None,
         typer.Option(
             "--altitude", metavar="M", help="Altitude of the map, metres.", show_default="the best pose's"
         ),
     ] = None,
-    cells: Annotated[int, typer.Option("--cells", metavar="N", help="Points along the longer side.")] = 181,
+    cells: Annotated[
+        int, typer.Option("--cells", metavar="N", help="Number of points along the longer side.")
+    ] = 181,
     overrides: Overrides = None,
     allow_outside: AllowOutside = False,
     gap: Gap = None,
@@ -47,9 +51,11 @@ def best_map(
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Draw the smallest SINR over positions, with the best axis at each.
+    """Draw the smallest SINR over positions.
 
-    A table (CSV) and a figure (PNG, PDF) are written.
+    At each position the axis is the best one that the scheme allows.
+
+    It writes a table (CSV) and a figure (PNG, PDF).
     """
     from nullpose.files import check_outputs, prepare_folder
     from nullpose.report.value_map import map_view, write_map

@@ -39,7 +39,7 @@ ScenarioFile = Annotated[
 
 AllowOutside = Annotated[
     bool,
-    typer.Option("--allow-outside", help="Allow a file to name others outside its own folder (nodes_from)."),
+    typer.Option("--allow-outside", help="Allow the scenario to read files of other folders (nodes_from)."),
 ]
 
 Overrides = Annotated[
@@ -59,22 +59,26 @@ Gap = Annotated[
     typer.Option(
         "--gap",
         metavar="G",
-        help="Relative gap between bound and value at which the proof stops.",
-        show_default="1e-6 to 3 nodes, 1e-4 to 20, else 1e-3",
+        help="Stop the proof at this relative gap: (bound - value) / value, as power ratios.",
+        show_default="1e-6 for 1 to 3 nodes, 1e-4 for 4 to 20, 1e-3 for more",
     ),
 ]
 
 TimeLimit = Annotated[
-    float, typer.Option("--time-limit", metavar="S", help="Seconds after which a proof stops.")
+    float, typer.Option("--time-limit", metavar="S", help="Stop each proof after S seconds.")
 ]
 
-NodeLimit = Annotated[int, typer.Option("--node-limit", metavar="N", help="Boxes after which a proof stops.")]
+NodeLimit = Annotated[
+    int, typer.Option("--node-limit", metavar="N", help="Stop each proof after N branch-and-bound boxes.")
+]
 
-Fast = Annotated[bool, typer.Option("--fast", help="Search only, more thoroughly, and prove nothing.")]
+Fast = Annotated[bool, typer.Option("--fast", help="No proof, only a search from more starts.")]
 
 Robust = Annotated[
     bool,
-    typer.Option("--robust", help="Maximise what is guaranteed under the errors that the scenario states."),
+    typer.Option(
+        "--robust", help="Maximise the value guaranteed under the scenario's errors, to a gap of 1e-2."
+    ),
 ]
 
 NullJammer = Annotated[
@@ -82,7 +86,7 @@ NullJammer = Annotated[
     typer.Option(
         "--null-jammer",
         metavar="NAME",
-        help="Zero interference: the jammer to point the null at. Without it each is tried.",
+        help="For zero-interference: the jammer to point the null at. Default: each is tried.",
         show_default=False,
     ),
 ]
@@ -92,13 +96,13 @@ CertificateFile = Annotated[
     typer.Option(
         "--certificate",
         metavar="FILE",
-        help="Write the proof here, for `nullpose verify`; compressed if the name ends in .gz.",
+        help="Check the proof and write it to FILE, for nullpose verify. FILE.gz is compressed.",
         show_default=False,
     ),
 ]
 
 Verified = Annotated[
-    bool, typer.Option("--verify", help="Check the proof in outward-rounded arithmetic, as `verify` does.")
+    bool, typer.Option("--verify", help="Check the proof in interval arithmetic, as nullpose verify does.")
 ]
 
 GeoJsonFile = Annotated[
@@ -106,7 +110,7 @@ GeoJsonFile = Annotated[
     typer.Option(
         "--geojson",
         metavar="FILE",
-        help="Write the pose, the nodes and the airspace here, for a map, as GeoJSON; needs an origin.",
+        help="Write pose, nodes and airspace to FILE as GeoJSON. The scenario needs an origin.",
         show_default=False,
     ),
 ]
@@ -115,7 +119,7 @@ Combining = Annotated[
     CombiningName | None,
     typer.Option(
         "--combining",
-        help="With an [array]: weights for each node, or one beam for all.",
+        help="For an [array]: weights for each node (digital), or one beam for all (analogue).",
         show_default="digital",
     ),
 ]
@@ -125,7 +129,7 @@ FigureFile = Annotated[
     typer.Option(
         "--figure",
         metavar="FILE",
-        help="Draw what was found into a file named .png, .svg, .pdf or .pgf.",
+        help="Write a figure to FILE: .png, .svg, .pdf or .pgf.",
         show_default=False,
     ),
 ]
@@ -134,21 +138,19 @@ Width = Annotated[
     FigureWidth | None,
     typer.Option(
         "--width",
-        help="Size the figure for print: a column of 88 mm, or a page of 181 mm.",
-        show_default="for a screen",
+        help="Size of the figure in print: a column (88 mm) or a page (181 mm).",
+        show_default="a size for screens",
     ),
 ]
 
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 
-Table = Annotated[
-    TableKind, typer.Option("--table", help="Print the table for a screen, or for a LaTeX document.")
-]
+Table = Annotated[TableKind, typer.Option("--table", help="Print the table as text or as LaTeX.")]
 
 OutFolder = Annotated[
     Path,
     typer.Option(
-        "--out", metavar="DIR", help="Folder for the files; made if it is missing.", show_default=False
+        "--out", metavar="DIR", help="Folder for the files. It is created if necessary.", show_default=False
     ),
 ]
 

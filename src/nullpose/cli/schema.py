@@ -8,7 +8,7 @@ from nullpose.cli.output import show_json
 def schema() -> None:
     """Print the JSON Schema of scenario files.
 
-    Editors complete and check them by it.
+    Text editors use it to complete and check scenario files.
     """
     from nullpose.scenario import json_schema
 

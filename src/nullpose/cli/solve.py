@@ -45,7 +45,7 @@ _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario
 def solve(
     file: ScenarioFile,
     scheme: Annotated[
-        Scheme, typer.Option("--scheme", metavar="NAME", help="How the pose is chosen: one of those above.")
+        Scheme, typer.Option("--scheme", metavar="NAME", help="One of the schemes above.")
     ] = Scheme.OPTIMUM,
     overrides: Overrides = None,
     allow_outside: AllowOutside = False,
@@ -71,7 +71,7 @@ def solve(
     \b
     Schemes:
       optimum               the best pose of all
-      zero-interference     the null on a jammer
+      zero-interference     the null points at a jammer
       maximum-gain          the antenna broadside to the nodes
       vertical              the antenna upright
       maximum-gain-printed  as the paper prints maximum gain, for comparison

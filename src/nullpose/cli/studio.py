@@ -24,7 +24,7 @@ def studio(
 ) -> None:
     """Open a scenario in the browser.
 
-    Drag what is on the ground, and see the proved best pose follow.
+    Move nodes and jammers. The best pose and its bound are computed again at each step.
     """
     scenario = read_scenario(file, overrides, allow_outside)
     from nullpose.studio.server import studio as running_studio

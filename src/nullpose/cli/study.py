@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 study = typer.Typer(
     name="study",
     no_args_is_help=True,
-    help="Many random scenes, each solved in several cases.",
+    help="Solve many random scenes and report statistics.",
 )
 
 StudyFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)]
@@ -46,17 +46,19 @@ def run(
         typer.Option(
             "--workers",
             metavar="N",
-            help="Processes on this machine; 0 for none beside this one.",
+            help="Number of processes on this machine; 0 works in this process.",
             show_default="one for each processor",
         ),
     ] = None,
     chunk: Annotated[
         int | None,
-        typer.Option("--chunk", metavar="N", help="Scenes of a part.", show_default="about a second of work"),
+        typer.Option(
+            "--chunk", metavar="N", help="Number of scenes in a chunk.", show_default="about a second of work"
+        ),
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Solve the scenes of a study that its folder does not hold yet.
+    """Solve the scenes of a study, or continue.
 
     It runs on this machine or a cluster. If it is interrupted, run the same command again to resume.
     """
@@ -79,7 +81,7 @@ def run(
 
 @study.command()
 def status(folder: StudyFolder, json_output: JsonOutput = False) -> None:
-    """Say how far a study is."""
+    """Show a study's progress."""
     from nullpose.study.monte_carlo import study_status
 
     found = study_status(folder)
@@ -90,20 +92,22 @@ def status(folder: StudyFolder, json_output: JsonOutput = False) -> None:
 def show(
     folder: StudyFolder,
     scene: Annotated[
-        int, typer.Option("--scene", metavar="N", help="Number of the scene.", show_default=False)
+        int, typer.Option("--scene", metavar="N", help="Index of the scene, from 0.", show_default=False)
     ],
     point: Annotated[
         int | None,
         typer.Option(
             "--point",
             metavar="N",
-            help="Number of a combination of swept values.",
+            help="Index of a combination of swept values, from 0.",
             show_default="nothing swept",
         ),
     ] = None,
     case: Annotated[
         str | None,
-        typer.Option("--case", metavar="NAME", help="With a case's vehicle.", show_default="the scene's own"),
+        typer.Option(
+            "--case", metavar="NAME", help="Use the vehicle of this case.", show_default="the scene's own"
+        ),
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:

@@ -22,7 +22,7 @@ def report(
         typer.Option(
             "--requirement-db",
             metavar="X",
-            help="Smallest SINR or margin that will do, in dB: outage is counted against it.",
+            help="Required SINR (margin, if nodes have requirements) in dB. A scene below it is an outage.",
             show_default="0 for margins",
         ),
     ] = None,
@@ -31,7 +31,7 @@ def report(
         typer.Option(
             "--requirement-bps-hz",
             metavar="X",
-            help="The same of a secrecy rate, in bits/s/Hz.",
+            help="Required secrecy rate in bits/s/Hz. A scene below it is an outage.",
             show_default=False,
         ),
     ] = None,
@@ -40,17 +40,17 @@ def report(
         typer.Option(
             "--against",
             metavar="CASE",
-            help="Case that gains are measured against.",
+            help="Case that the gains refer to.",
             show_default="the level vehicle",
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="FOLDER", help="Where it is written.", show_default="DIR/report"),
+        typer.Option("--out", metavar="FOLDER", help="Folder of the report.", show_default="DIR/report"),
     ] = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Write a study's answer in words, figures and tables.
+    """Write the report of a study: text, figures and tables.
 
     As Markdown, HTML and CSV.
     """

@@ -33,7 +33,7 @@ def sweep(
         typer.Option(
             "--set",
             metavar="PATH",
-            help="PATH alone is varied, as in jammers.M.power_w; further PATH=VALUE fix other values.",
+            help="The setting to vary, as in jammers.M.power_w. Repeat as PATH=VALUE to fix others.",
             show_default=False,
         ),
     ],
@@ -41,7 +41,7 @@ def sweep(
     stop: Annotated[float, typer.Option("--to", help="Last value.", show_default=False)],
     out: OutFolder,
     allow_outside: AllowOutside = False,
-    points: Annotated[int, typer.Option("--points", help="How many values, both ends included.")] = 37,
+    points: Annotated[int, typer.Option("--points", help="Number of values, both ends included.")] = 37,
     log: Annotated[
         bool, typer.Option("--log/--linear", help="Space the values by a constant ratio, or evenly.")
     ] = False,
@@ -50,8 +50,8 @@ def sweep(
         typer.Option(
             "--scheme",
             metavar="NAME",
-            help="Only this scheme, a name as for solve. Can be repeated.",
-            show_default="all four",
+            help="Only this scheme (names: nullpose solve --help). Can be repeated.",
+            show_default="the paper's four",
         ),
     ] = None,
     gap: Gap = None,
@@ -65,7 +65,7 @@ def sweep(
 ) -> None:
     """Solve at many values of one setting.
 
-    A table (CSV) and a figure (PNG, SVG, PDF) are written.
+    It writes a table (CSV) and a figure (PNG, SVG, PDF).
     """
     from nullpose.files import check_outputs
     from nullpose.scenario.loading import files_of, load

@@ -22,7 +22,7 @@ def verify(
         typer.Option(
             "--scenario",
             metavar="FILE",
-            help="Say whether the certificate is about this scenario (TOML), and if not, what differs.",
+            help="Compare the certificate's scenario with this one (TOML), and say what differs.",
             show_default=False,
         ),
     ] = None,
@@ -31,7 +31,7 @@ def verify(
 ) -> None:
     """Check a certificate.
 
-    In outward-rounded arithmetic, by code that imports nothing from the solver.
+    The check uses interval arithmetic and imports nothing from the solver.
     """
     from nullpose.certificate import differences, read_certificate, subject
     from nullpose.certificate import verify as verify_certificate
@@ -50,7 +50,7 @@ def verify(
         typer.echo(verdict.message, err=not verdict.proved)
         if verdict.proved:
             digest = subject(certificate)["scenario_sha256"]
-            typer.echo(f"case {certificate.scheme}, scenario SHA-256 {digest}\n")
+            typer.echo(f"scheme {certificate.scheme}, scenario SHA-256 {digest}\n")
             show(scenario_view(certificate.scenario))
         if scenario is not None:
             told = f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"

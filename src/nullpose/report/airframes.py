@@ -100,11 +100,23 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     labelled = [(result.case.label, result) for result in comparison.results]
     gaps = [each.objective.relative_gap for _, each in labelled if each.objective is not None]
     known = [gap for gap in gaps if gap is not None]
-    lines = ["Difference: from the omnidirectional vehicle."]
-    lines += dict.fromkeys(each.status.message for _, each in labelled if each.status is not None)
+    lines = [
+        "Omnidirectional: the vehicle can take any attitude. Difference: from that vehicle.",
+        "Bounds are rounded up.",
+    ]
+    statuses = dict.fromkeys(each.status for _, each in labelled if each.status is not None)
+    legend = {status: status.message for status in statuses}
+    lines += [
+        message if message.startswith(_STATUS[status]) else f"{_STATUS[status]}: {message}"
+        for status, message in legend.items()
+    ]
     lines += grouped((label, each.reason) for label, each in labelled)
     lines += [f"The widest relative gap between value and bound is {short(max(known))}."] if known else []
-    lines += rigour_lines((label, each.objective.rigour) for label, each in labelled if each.objective)
+    lines += rigour_lines(
+        ("arrays" if each in comparison.arrays else "one dipole", each.objective.rigour)
+        for _, each in labelled
+        if each.objective
+    )
     if comparison.scenario.is_uncertain:
         lines.append(
             "Guaranteed: proved for every error within the stated limits. "
@@ -142,15 +154,22 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
 
 def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
     """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
-    best, verdict = max(results, key=lambda result: result.value), "No vehicle of its kind reaches"
+    best = max(results, key=lambda result: result.value)
+    verdict = f"{'No vehicle' if best.case.combining else 'No simpler vehicle'} with {_kind(best)} reaches"
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
-        best, verdict = least, "It is the simplest of its kind that reaches"
+        best, verdict = least, f"It is the simplest vehicle with {_kind(least)} that reaches"
     share = _share(comparison, best, "the omnidirectional vehicle's value")
     return (
         f"{begun(best.case.phrase)} reaches {share} in this scene. {verdict} "
         f"{share_text(1.0 - comparison.tolerance)} or more."
     )
+
+
+def _kind(result: AirframeResult) -> str:
+    """Return what the vehicles that one is compared with carry."""
+    combining = result.case.combining
+    return f"an array and {combining} combining" if combining else "one dipole"
 
 
 def _share(comparison: AirframeComparison, result: AirframeResult, whole: str = "") -> str:
@@ -175,5 +194,5 @@ def _errors_line(comparison: AirframeComparison) -> str:
     return (
         f"Under the stated errors an omnidirectional vehicle guarantees {share_text(kept)} of its value at "
         f"its robust pose. {begun(least.case.phrase)} guarantees {share_of(share, 'that')}: the simplest "
-        f"of its kind that guarantees {share_text(1.0 - comparison.tolerance)} or more."
+        f"vehicle with one dipole that guarantees {share_text(1.0 - comparison.tolerance)} or more."
     )

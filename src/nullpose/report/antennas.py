@@ -25,17 +25,17 @@ def antennas_view(comparison: AntennaComparison) -> View:
     scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
     promised, possible = comparison.promised, comparison.possible
     values = {
-        "best pose for the paper's antennas": promised.objective.value,
-        "that pose, stated antennas": comparison.received,
+        "1 best pose for the paper's antennas": promised.objective.value,
+        "2 pose 1 with the stated antennas": comparison.received,
     }
     if scenario.antenna is not None and scenario.antenna_record.leak > 0.0:
-        values["  the same, ground as in the paper"] = comparison.with_null
-        values["  the same, perfect null"] = comparison.with_ground
-    values["best pose for the stated antennas"] = possible.objective.value
+        values["  as 2, isotropic ground antennas"] = comparison.with_null
+        values["  as 2, perfect null"] = comparison.with_ground
+    values["3 best pose for the stated antennas"] = possible.objective.value
     numbers = [quantity.in_unit(value) for value in values.values()]
     whole, none = numbers[0], [None] * (len(numbers) - 2)
     columns: dict[str, Sequence[str | None]] = {
-        "what": list(values),
+        "pose and antennas": list(values),
         "value": [_told(number, 4) for number in numbers],
         "bound": [bound_text(promised.objective, 4), *none, bound_text(possible.objective, 4)],
         "difference": [_told(number - whole, 3) for number in numbers],
@@ -45,9 +45,13 @@ def antennas_view(comparison: AntennaComparison) -> View:
     return document(
         head(scenario.name),
         "",
-        table(f"{begun(quantity.smallest)} over the nodes ({quantity.unit})", rows(columns), left=["what"]),
+        table(
+            f"{begun(quantity.smallest)} over the nodes ({quantity.unit})",
+            rows(columns),
+            left=["pose and antennas"],
+        ),
         table("Best poses", beside(poses)),
-        "Difference: from the best pose for the paper's antennas.",
+        "Difference: from row 1. Bounds are rounded up.",
         *dict.fromkeys(result.status.message for _, result in both),
         *grouped((label, result.reason) for label, result in both),
         *rigour_lines((label, result.objective.rigour) for label, result in both),
@@ -63,17 +67,23 @@ def answer(comparison: AntennaComparison) -> str:
         comparison: of the paper's antennas with those of a scenario.
     """
     quantity = Quantity.of(comparison.scenario)
-    flown = "With the stated antennas, the best pose for the paper's antennas"
+    flown = "The best pose for the paper's antennas"
     received, possible = (
         quantity.in_unit(x) for x in (comparison.received, comparison.possible.objective.value)
     )
     if not math.isfinite(received):
         best = with_unit(possible, quantity)
-        return f"{flown} leaves a node without signal. The best pose for the stated antennas reaches {best}."
+        return (
+            f"{flown} leaves a node without signal if the antennas are the stated ones. The best pose for "
+            f"the stated antennas reaches {best}."
+        )
     lost = quantity.in_unit(comparison.promised.objective.value) - received
     gained = with_unit(abs(possible - received), quantity)
     less = f"{with_unit(abs(lost), quantity)} {'less' if lost >= 0.0 else 'more'}"
-    return f"{flown} gives {less}. The best pose for the stated antennas gives {gained} more than that."
+    return (
+        f"{flown} gives {less} if the antennas are the stated ones. The best pose for the stated antennas "
+        f"gives {gained} more than that."
+    )
 
 
 def _told(number: float, digits: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
@@ -107,5 +108,10 @@ def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
     Args:
         rigours: the label of each answer, and its rigour; labels may repeat.
     """
-    said = [(label, "" if rigour is Rigour.NONE else f"{rigour.message}.") for label, rigour in rigours]
-    return grouped(said)
+    said = list(rigours)
+    counts, among = Counter(said), Counter(label for label, _ in said)
+    sentences = []
+    for (label, rigour), count in counts.items():
+        share = "" if count == among[label] else f"at {count} of {among[label]} points "
+        sentences.append((label, "" if rigour is Rigour.NONE else f"{share}{rigour.message}."))
+    return grouped(sentences)

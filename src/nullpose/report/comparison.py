@@ -83,13 +83,12 @@ def comparison_view(comparison: Comparison) -> View:
         comparison: what each scheme makes of a scenario.
     """
     scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
-    others = (
-        "All cases use one dipole on the vehicle in this file. Other vehicles and arrays: compare --airframes"
-    )
+    others = "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes"
+    bounds = "Each upper bound holds for the poses that its scheme allows."
     return document(
         head(scenario.name),
         table("", _rows(comparison), bold=[f"smallest {quantity.short} ({quantity.unit})"]),
-        "\n".join([*_lines(comparison), f"* binding: the {quantity.smallest} is at this node", others]),
+        "\n".join([*_lines(comparison), f"* worst node: the {quantity.smallest} is here", bounds, others]),
     )
 
 
@@ -127,7 +126,7 @@ def _lines(comparison: Comparison) -> list[str]:
             (label, f"{each.status.message}{each.reason and f': {each.reason}'}") for label, each in labelled
         ),
         *rigour_lines((label, each.rigour) for label, each in labelled),
-        f"{work_words(starts, boxes)} in all",
+        f"{work_words(starts, boxes)} (all cases together)",
     ]
 
 

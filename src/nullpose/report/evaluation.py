@@ -33,7 +33,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         f"{quantity.short} ({quantity.unit})": [
             f"{quantity.in_unit(one.objective.value):.4f}" for _, one in shown
         ],
-        "node": [one.binding_node for _, one in shown],
+        "worst node": [one.binding_node for _, one in shown],
         f"to bound ({quantity.unit})": [
             "not allowed" if one.not_allowed else stated(one.below_bound, ".4f") for _, one in shown
         ],
@@ -42,7 +42,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
     lines = (bound_words(best.objective), best.objective.rigour.message, f"{len(results)} poses given")
     return document(
         head(best.scenario.name, "Best pose", f"{quantity.smallest} {value}", lines),
-        table("", rows(columns), left=["node"]),
+        table("", rows(columns), left=["worst node"]),
         f"One row in {step} is shown." if step > 1 else None,
         "Not allowed: --pose and --json tell why." if any(one.not_allowed for one in results) else None,
     )

@@ -18,6 +18,7 @@ from nullpose.report.document import View, beside, document, head, pairs, rows, 
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
 from nullpose.report.numbers import (
     begun,
+    bound_text,
     bound_words,
     count_of,
     degrees_text,
@@ -31,6 +32,7 @@ from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Result
 from nullpose.solve.array import ArrayDetails
 from nullpose.solve.robust import GuardedPose, RobustDetails
+from nullpose.study.evaluation import GivenDetails
 
 BINDING_RTOL = 1e-6
 """Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
@@ -57,7 +59,8 @@ def work_words(starts: int, boxes: int) -> str:
         starts: of searches.
         boxes: of a proof; 0 for no proof.
     """
-    return count_of(starts, "start") + (f", {count_of(boxes, 'box', 'boxes')}" if boxes else "")
+    proof = f"; proof: {count_of(boxes, 'box', 'boxes')}" if boxes else ""
+    return f"search: {count_of(starts, 'start')}{proof}"
 
 
 def azimuth_text(pose: Pose) -> str:
@@ -73,13 +76,16 @@ def _head(result: Result, label: str, *more: str) -> View:
     """Return what stands above any result: value, bound, how sure it is, the work behind it, and more."""
     objective = result.objective
     stats = result.stats
-    lines = (
+    lines: tuple[str, ...] = (
         bound_words(objective),
         f"{result.status.message}{result.reason and f': {result.reason}'}",
         "" if objective.upper_bound is None else objective.rigour.message,
-        f"{work_words(stats.starts, stats.boxes)}, {stats.wall_s:.2g} s",
+        f"{work_words(stats.starts, stats.boxes)}; {stats.wall_s:.2g} s",
         *more,
     )
+    if isinstance(result.details, GivenDetails) and objective.upper_bound is not None:
+        bound = f"{bound_text(result.details.best.objective)} {objective.quantity.unit}"
+        lines = (f"upper bound of every pose {bound}", objective.rigour.message, *more)
     value = f"{objective.quantity.smallest} {value_words(objective)}"
     return head(result.scenario.name, label, value, lines)
 
@@ -132,7 +138,8 @@ def array_view(solution: Result) -> View:
         solution: what was found.
     """
     stats, phases_rad = solution.stats, solution.phases_rad
-    agreeing = f"{stats.agreeing} of {stats.searches} searches ended at this value"
+    searches = count_of(stats.searches or 0, "local search", "local searches")
+    agreeing = f"{stats.agreeing} of {searches} ended at this value"
     turned_rad = phases_rad - phases_rad[0] if phases_rad.ndim == 1 else phases_rad[:0, 0]
     phases = {
         "element": [str(i) for i, _ in enumerate(turned_rad, start=1)],
@@ -154,10 +161,12 @@ def robust_view(solution: Result) -> View:
     """
     robust, nominal = solution.robust, solution.nominal
     objective, quantity = solution.objective, solution.objective.quantity
-    cells = {"robust pose": robust, "best pose as stated": nominal}
+    cells = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
     unbounded = "no upper bound on the guaranteed value" if solution.upper_bound is None else ""
-    errors = f"{count_of(solution.cases, 'error case')}; errors: {error_words(solution.scenario)}"
+    errors = (
+        f"errors: {error_words(solution.scenario)}; {count_of(solution.cases, 'combination')} of them bind"
+    )
     return document(
         _head(solution, "Robust, guaranteed", unbounded, errors),
         table(
@@ -166,25 +175,26 @@ def robust_view(solution: Result) -> View:
             bold=[f"guaranteed ({quantity.unit})"],
         ),
         *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
+        "Guaranteed: proved for all errors. Lowest found: over the errors that were tried.",
         *(
             pairs(begun(name), frame_rows(solution.scenario, one.pose))
             for name, one in cells.items()
             if solution.scenario.origin is not None
         ),
-        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose as stated.",
+        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.",
     )
 
 
 def _guarded_cells(objective: Objective, one: GuardedPose) -> dict[str, str]:
     """Return what a pose guarantees, what it gives without errors, and where it is."""
     pose, quantity = one.pose, objective.quantity
-    values = {"guaranteed": one.guaranteed, "worst found": one.worst, "without errors": one.nominal}
+    values = {"guaranteed": one.guaranteed, "lowest found": one.worst, "without errors": one.nominal}
     return {
         **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
         "position (m)": ", ".join(fixed(float(x), 3) for x in pose.position_m),
         "roll, pitch, yaw (deg)": ", ".join(map(degrees_text, (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))),
-        "azimuth of the axis (deg)": azimuth_text(pose),
-        "binding node": one.binding_node,
+        "axis azimuth (deg)": azimuth_text(pose),
+        "worst node": one.binding_node,
     }
 
 
@@ -247,7 +257,7 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> View | 
         quantity.ratio: [None if own else f"{link.sinr:.5g}" for link in links],
         "distance (m)": [f"{distance:.2f}" for distance in distances_m],
         **more,
-        "": ["binding" if link.node in binding else "" for link in links],
+        "": ["worst" if link.node in binding else "" for link in links],
     }
     return table("Links", rows(columns), bold=binding, left=[""])
 

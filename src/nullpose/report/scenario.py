@@ -118,11 +118,11 @@ def scenario_view(scenario: Scenario) -> View:
     """
     numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
-        "At best: the drone as close as airspace and keep-out radius allow (zones and fence ignored), the "
-        f"dipole broadside{'' if rate else ', no jamming'}."
+        "Nearest, highest: the drone as near as the airspace and the keep-out radius (around every point) "
+        f"allow, zones and fence ignored, the dipole broadside{'' if rate else ', no jamming'}."
     )
     notes = [
-        f"Node {node.name} requires more than its link carries at best."
+        f"Node {node.name} requires more than the highest ratio of its link."
         for node, told in zip(scenario.nodes, numbers["nodes"], strict=True)
         if node.min_sinr_db is not None and node.min_sinr_db > told["best_power_to_noise_db"]
     ]
@@ -231,7 +231,7 @@ def _points_table(
         "uncertainty (m)": [_extents(point) for point in points],
     }
     if best:
-        columns["closest (m)"] = [stated(each["nearest_m"], ".6g") for each in numbers]
+        columns["nearest (m)"] = [stated(each["nearest_m"], ".6g") for each in numbers]
         columns[best] = [stated(each["best_power_to_noise_db"], ".2f") for each in numbers]
     return table(f"{noun.capitalize()}s", rows(columns))
 

@@ -33,7 +33,7 @@ def reach_words(airframe: Airframe | None) -> str:
     """
     low, high = (0.0, 1.0) if airframe is None else airframe.axis_band
     if (low, high) == (0.0, 1.0):
-        return "every axis"
+        return "any axis direction"
     least, greatest = (_degrees(math.acos(math.sqrt(cosine_squared))) for cosine_squared in (high, low))
     return f"axes {least} to {greatest} deg from the vertical"
 

@@ -27,9 +27,9 @@ class Rigour(StrEnum):
 
 
 _MESSAGES = {
-    Rigour.VERIFIED: "verified: the bound was checked in outward-rounded arithmetic",
-    Rigour.VERIFIABLE: "verifiable: a certificate of the bound can be written and checked",
-    Rigour.FLOATING_POINT: "floating-point: the bound has no certificate",
+    Rigour.VERIFIED: "verified: the bound was checked in interval arithmetic",
+    Rigour.VERIFIABLE: "verifiable: solve --certificate can write the proof for verify to check",
+    Rigour.FLOATING_POINT: "floating-point: the bound is not checked against rounding and has no certificate",
     Rigour.NONE: "none: there is no bound",
 }
 

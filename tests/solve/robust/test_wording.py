@@ -26,26 +26,26 @@ def a_case(**parts: object) -> ErrorCase:
 
 
 @pytest.mark.parametrize(
-    ("offset", "bearing_deg", "elevation_deg"),
+    ("offset", "azimuth_deg", "elevation_deg"),
     [
-        ([3.0, 0.0, 0.0], 90, 0),
+        ([3.0, 0.0, 0.0], 0, 0),
         ([2.0, 2.0, 0.0], 45, 0),
-        ([0.0, -1.0, 0.1], 180, 6),
-        ([-1.0, 0.0, 1.0], 270, 45),
-        ([0.0, 1.0, -1.0], 0, -45),
-        ([-0.001, 1.0, 0.0], 0, 0),
+        ([0.0, -1.0, 0.1], 270, 6),
+        ([-1.0, 0.0, 1.0], 180, 45),
+        ([0.0, 1.0, -1.0], 90, -45),
+        ([1.0, -0.001, 0.0], 0, 0),
         ([0.0, 0.0, -1.0], 0, -90),
     ],
 )
-def test_directions(offset: list[float], bearing_deg: int, elevation_deg: int, paper: Callable) -> None:
-    """Offsets are told by their length, their bearing from north and their elevation."""
+def test_directions(offset: list[float], azimuth_deg: int, elevation_deg: int, paper: Callable) -> None:
+    """Offsets are told by their length, their azimuth from east and their elevation."""
     length = float(np.linalg.norm(offset))
     told = in_words(paper(1.0), UP, a_case(jammer_offsets_m=np.array([offset])))
-    name, *numbers = re.split(r" m off, bearing | deg, elevation | deg$| (?=[\d.]+ m off)", told)
+    name, *numbers = re.split(r" m off, towards azimuth | deg, elevation | deg$| (?=[\d.]+ m off)", told)
     assert name == "M1"
     assert [float(number) for number in numbers if number] == [
         pytest.approx(length, rel=1e-2),
-        bearing_deg,
+        azimuth_deg,
         elevation_deg,
     ]
 
@@ -59,8 +59,8 @@ def test_every_part_is_told(paper: Callable) -> None:
     )
     for axis in (UP, -UP):
         axis_told, drone_told, jammer_told = in_words(paper(1.0), axis, case).split("; ")
-        assert axis_told.startswith("axis 2 deg off, bearing 090 deg")
-        assert drone_told.startswith("drone 0.5 m off, bearing 000 deg")
+        assert axis_told.startswith("axis 2 deg off, towards azimuth 0 deg")
+        assert drone_told.startswith("drone 0.5 m off, towards azimuth 90 deg")
         assert jammer_told.startswith("M1 3 m off")
         assert jammer_told.endswith("elevation 90 deg")
 

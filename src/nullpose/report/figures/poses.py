@@ -90,7 +90,7 @@ def draw_pose(solution: Result, width: str | None = None) -> Figure:
 
 
 def draw_robust(solution: Result, width: str | None = None) -> Figure:
-    """Return the figure of a robust solution: its pose, and beside it the one that is best as stated.
+    """Return the figure of a robust solution: its pose, and beside it the one that is best without errors.
 
     Both panels show the same space, with the sets that jammers and eavesdroppers may be anywhere in.
 
@@ -99,7 +99,7 @@ def draw_robust(solution: Result, width: str | None = None) -> Figure:
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     scenario, quantity = solution.scenario, Quantity.of(solution.scenario)
-    both = {"robust pose": solution.details.robust, "best pose as stated": solution.details.nominal}
+    both = {"robust pose": solution.details.robust, "best pose without errors": solution.details.nominal}
     titles = []
     for name, one in both.items():
         guaranteed = with_unit(quantity.in_unit(one.guaranteed), quantity)

@@ -41,6 +41,7 @@ _FEW = 6  # and in each later round at most
 _ROUNDS = 5
 _SLIGHT = 1e-3
 _FINE = 1e-5  # accuracy of the multipliers
+_FINEST = 1e-10  # and at one position
 _LOOSE = 0.03  # and in units of a box's size
 _INTERIOR = 0.01  # and of an interior point's, likewise
 _GRID = 9  # of lines across a cell
@@ -169,9 +170,8 @@ def interior_multipliers(
         return math.inf
     for k in range(ratios):
         ratio_form(family, is_level(axis_field), basis, row, whitening, k, forms[k])
-    accuracy = (
-        max(1e-5, _INTERIOR * coarseness) if coarseness > 0.0 else 1e-10
-    )  # at one position nothing else closes a gap
+    # multipliers as sloppy as that exclude a box so small no sooner than its halves, for ever
+    accuracy = max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
     primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
     top_eigenvector(matrix, v)
     reached = math.inf

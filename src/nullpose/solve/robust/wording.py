@@ -38,8 +38,8 @@ def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
 
 
 def _direction(vector: FloatArray) -> str:
-    """Return a direction by its bearing, clockwise from north, and its elevation."""
+    """Return a direction by its azimuth, from east towards north, and its elevation."""
     east, north, up = vector
-    bearing_deg = math.degrees(math.atan2(east, north)) % 360.0
+    azimuth_deg = math.degrees(math.atan2(north, east)) % 360.0
     elevation_deg = math.degrees(math.atan2(up, math.hypot(east, north)))
-    return f"bearing {round(bearing_deg) % 360:03d} deg, elevation {round(elevation_deg):d} deg"
+    return f"towards azimuth {round(azimuth_deg) % 360:d} deg, elevation {round(elevation_deg):d} deg"
