@@ -35,11 +35,11 @@ COUNTED = ("optimum", "zero-interference", "maximum-gain", "vertical")
 
 # Okabe and Ito's colours, thinned: told apart with any colour vision
 FILLS = {
-    FAR: ("#ececec", "a node is out of reach"),
-    TOWARDS: ("#8fc4e8", "multipliers, frame turning to the jammer"),
-    WORLD: ("#f3cf87", "multipliers, frame at rest"),
-    AFFINE: ("#8ed1b8", "multipliers, axis given"),
-    KEPT_OUT: ("#d9a3c0", "inside a keep-out ball"),
+    FAR: ("#ececec", "too far from a node"),
+    TOWARDS: ("#8fc4e8", "bounded by multipliers, frame towards the jammer"),
+    WORLD: ("#f3cf87", "bounded by multipliers, fixed frame"),
+    AFFINE: ("#8ed1b8", "bounded by multipliers, axis given"),
+    KEPT_OUT: ("#d9a3c0", "inside the keep-out radius"),
 }
 POSE = "#d55e00"
 WINDOW_M = 1.25  # half the width of the closer views
@@ -115,7 +115,7 @@ def draw_whole(axes: Axes, solution: nullpose.Solution) -> None:
         axes.annotate(node.name, (x, y), xytext=(7, 0), textcoords="offset points", va="center", fontsize=8.5)
     axes.set_xlim(-MOST_M, MOST_M)
     axes.set_ylim(-6.0, 56.0)
-    axes.set_title(f"{DRAWN[solution.scheme.value]}\nwhole floor", fontsize=9.0)
+    axes.set_title(f"{DRAWN[solution.scheme.value]}\nboxes at the lowest altitude", fontsize=9.0)
     axes.set_ylabel("y (m)")
 
 
@@ -138,7 +138,7 @@ def draw_near(axes: Axes, solution: nullpose.Solution, exponent: int) -> set[int
         spine.set(color=POSE, linewidth=1.2)
     (proof,) = solution.proofs
     axes.set_title(
-        f"gap $10^{{{exponent}}}$\n{proof.nodes} examined, {len(proof.leaves)} leaves", fontsize=9.0
+        f"gap $10^{{{exponent}}}$\n{len(proof.leaves)} boxes, {proof.nodes} examined", fontsize=9.0
     )
     return used
 

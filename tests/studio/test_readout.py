@@ -78,7 +78,7 @@ def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenar
     assert idle.close()
 
 
-def test_the_node_that_decides_has_the_smallest_number(idle: Session, unsure: Scenario) -> None:
+def test_the_worst_node_has_the_smallest_number(idle: Session, unsure: Scenario) -> None:
     """Beside each node of a robust case stands what it is guaranteed, and the smallest is the value."""
     robust = case_named("Robust pose")
     idle.change(lambda view: view.with_scenario(unsure).with_case(robust))
@@ -87,9 +87,9 @@ def test_the_node_that_decides_has_the_smallest_number(idle: Session, unsure: Sc
     (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
     numbers = {row[0]: float(row[2].replace("&minus;", "-")) for row in found}
-    (decides,) = (row[0] for row in found if "decides" in row[3])
+    (worst,) = (row[0] for row in found if "worst" in row[3])
     assert list(numbers) == [link.node for link in known.result.links]
-    assert numbers[decides] == min(numbers.values()) == pytest.approx(known.shown_value, abs=0.006)
+    assert numbers[worst] == min(numbers.values()) == pytest.approx(known.shown_value, abs=0.006)
     assert "guaranteed SINR" in _Text(readout_html(idle)).text
     assert idle.close()
 

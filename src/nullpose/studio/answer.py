@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from nullpose.report.numbers import short
+from nullpose.report.results import binding_nodes
 from nullpose.solve import Result, Status
 from nullpose.solve.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
@@ -19,14 +20,14 @@ class Answer:
         version: the version of the scene that it belongs to.
         case: the case it answers.
         result: what the solver returned; the value of a robust one is what its pose guarantees.
-        binding_node: the node with the smallest value; of a robust pose, with the smallest guarantee.
+        worst_nodes: those with the smallest value; of a robust pose the one with the smallest guarantee.
         note: a sentence on it; may be empty.
     """
 
     version: int
     case: Case
     result: Result
-    binding_node: str
+    worst_nodes: frozenset[str]
     note: str
 
     @property
@@ -50,16 +51,15 @@ def answer_of(version: int, case: Case, result: Result) -> Answer:
         case: the case that was solved.
         result: what the solver returned.
     """
-    node, note = result.binding_node, result.note
+    worst, note = binding_nodes(result), result.note
     if case.robust and isinstance(result.details, RobustDetails):
         robust = result.details.robust
-        node = min(
-            robust.guarantee.ratios, key=lambda ratio: ratio.lower
-        ).node  # whose guarantee is the value
+        # whose guarantee is the value
+        worst = frozenset({min(robust.guarantee.ratios, key=lambda ratio: ratio.lower).node})
         note = f"Worst case: {robust.worst_case}"
     stopped = f"The proof stopped: {result.reason}" if result.reason else ""
     said = ". ".join(filter(None, (note, stopped)))
-    return Answer(version=version, case=case, result=result, binding_node=node, note=said)
+    return Answer(version=version, case=case, result=result, worst_nodes=worst, note=said)
 
 
 def status_words(answer: Answer | None) -> str:

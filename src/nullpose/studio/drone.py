@@ -36,7 +36,7 @@ _LINES: dict[str, tuple[ArrayLike, float]] = {
     "null": (_NULL, 3.0),
     "drop": ((120, 120, 120), 1.2),
     "links": (_EACH, 3.0),
-    "binding": (_EACH, 8.0),
+    "worst": (_EACH, 8.0),
 }
 
 
@@ -82,18 +82,18 @@ class Drone:
         parts["label"].text = text
         nodes = result.scenario.node_positions_m
         ends = np.stack([np.broadcast_to(here, nodes.shape), nodes], axis=1)
-        decides = np.array([link.node == answer.binding_node for link in result.links])
+        worst = np.array([link.node in answer.worst_nodes for link in result.links])
         colours = linear_colours(scale_colours([link.sinr_db for link in result.links], *link_range_db))
         lines = {
             "null": null_line_m(pose, 0.16 * size_m, most_m=1.5 * size_m)[None],
             "drop": np.array([[here, [*here[:2], 0.0]]]),
             "links": ends,
-            "binding": ends[decides],
+            "worst": ends[worst],
         }
         for name, segments in lines.items():
             parts[name].points = segments.astype(np.float32)
         parts["links"].colors = np.repeat(colours[:, None], 2, axis=1)
-        parts["binding"].colors = np.repeat(colours[decides][:, None], 2, axis=1)
+        parts["worst"].colors = np.repeat(colours[worst][:, None], 2, axis=1)
 
     def hide(self) -> None:
         """Take the drone out of the scene."""

@@ -35,7 +35,7 @@ largest smallest SINR over the nodes, and proves an upper bound for all other po
 <ul style="margin:4px 0 4px 16px;padding:0">
 <li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
 <li>Doughnut: the antenna's pattern; orange line: the null.</li>
-<li>Lines: brighter is a higher SINR; the thick one is the binding node.</li>
+<li>Lines: brighter is a higher SINR; the thick ones are the worst nodes.</li>
 <li>Coloured plane: the best value at each position of this altitude.</li></ul>"""
 
 
@@ -89,7 +89,7 @@ def _value(answer: Answer, slot: int) -> str:
     words = quantity.smallest if answer.guarded is None else f"guaranteed {quantity.noun}"
     proved = ""
     if objective.upper_bound is not None:
-        proved = f" &le; {_signed(quantity.in_unit(objective.upper_bound), 4)}"
+        proved = f", upper bound {_signed(quantity.in_unit(objective.upper_bound), 4)}"
     return (
         f'<div>{escape(words)} <b data-np="value-{slot}" data-value="{objective.value!r}">'
         f"{_signed(answer.shown_value, 4)}</b>{proved} {quantity.unit}</div>"
@@ -106,7 +106,7 @@ def _nodes(answer: Answer) -> str:
             own += f", margin {_signed(link.margin_db)} dB"
         if link.secrecy_rate_bps_hz is not None:
             own += f", {link.secrecy_rate_bps_hz:.3f} bits/s/Hz"
-        weight, mark = _decides(answer, link.node)
+        weight, mark = _worst(answer, link.node)
         style = f"font-weight:{weight};white-space:nowrap"
         rows.append(f'<span style="{style}">{escape(link.node)} {own}{mark}</span>')
     return f'<div style="display:flex;flex-wrap:wrap;gap:0 12px">{"".join(rows)}</div>'
@@ -119,16 +119,16 @@ def _guaranteed_nodes(answer: Answer, guarded: GuardedPose) -> str:
         lower = min(ratio.lower for ratio in guarded.guarantee.ratios if ratio.node == link.node)
         numbers = (quantity.in_unit(number) for number in (quantity.at(link), quantity.of_ratio(lower)))
         cells = "".join(f'<td style="text-align:right">{_signed(number)}</td>' for number in numbers)
-        weight, mark = _decides(answer, link.node)
+        weight, mark = _worst(answer, link.node)
         rows += f'<tr style="font-weight:{weight}"><td>{escape(link.node)}</td>{cells}<td>{mark}</td></tr>'
     heads = "".join(f'<th style="font-weight:400">{head}</th>' for head in ("without errors", "guaranteed"))
     head = f"<tr><th></th>{heads}<th>{quantity.unit}</th></tr>"
     return f'<table data-np="guaranteed" style="border-spacing:12px 0;margin-left:-12px">{head}{rows}</table>'
 
 
-def _decides(answer: Answer, node: str) -> tuple[int, str]:
+def _worst(answer: Answer, node: str) -> tuple[int, str]:
     """Return the weight of a node's letters and the mark behind it."""
-    return (600, " &#9664; decides") if node == answer.binding_node else (400, "")
+    return (600, " &#9664; worst") if node in answer.worst_nodes else (400, "")
 
 
 def _pose(result: Result, slot: int) -> str:

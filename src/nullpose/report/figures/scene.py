@@ -150,7 +150,6 @@ def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
     position, floor_m = pose.position_m, axes.get_zlim()[0]
     ground = np.array([*position[:2], floor_m])
     draw_line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
-    axes.scatter(*ground, color=GREY, marker="+", s=30, zorder=2)
     labels = []
     for kind, point in stage.points:
         place, (colour, marker, order) = np.asarray(point.position_m), KINDS[kind]

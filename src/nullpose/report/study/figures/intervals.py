@@ -55,7 +55,7 @@ def draw_gains(summary: Summary) -> Figure | None:
     label = f"gain in the {quantity.smallest} over {references}  ({quantity.unit})"
     marks = {
         "median of the gains on the same scenes": _DISC,
-        "gain of the worst tenth": _DIAMOND,
+        "difference of the 10th percentiles": _DIAMOND,
         _CONFIDENT: {"linewidth": 1.1},
         "10th to 90th percentile of the gains": _BAR,
     }
