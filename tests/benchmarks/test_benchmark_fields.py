@@ -25,6 +25,8 @@ from benchmarks.workloads.fields.standing import (
     standings,
 )
 
+from nullpose.solve import Status, solve
+
 A = Scene(nodes=2, jammers=1, jamming_ratio=1.0, seed=0)
 B = Scene(nodes=3, jammers=1, jamming_ratio=1.0, seed=0)
 
@@ -178,3 +180,12 @@ def test_metrics_carry_the_promises() -> None:
     promised = {m.key: m for m in Fields().metrics(rows) if m.limit is not None}
     assert set(promised) == {"fields.nullpose.hit_rate", "fields.rivals_within_ten_times"}
     assert all(m.meets_limit for m in promised.values())
+
+
+def test_a_pose_that_the_search_missed_is_found_in_the_proof() -> None:
+    """A proof that does not end looks for a better pose where it stopped, and then ends soon."""
+    scenario = Scene(nodes=10, jammers=3, jamming_ratio=0.1, seed=57).scenario(boxed=False)
+    searched, proved = solve(scenario, certify=False), solve(scenario)
+    assert proved.objective.value >= searched.objective.value * (1.0 - 1e-9)
+    assert proved.status is Status.CERTIFIED
+    assert proved.stats.boxes < 50_000

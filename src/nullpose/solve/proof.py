@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -27,6 +28,7 @@ _LATE_NODES = 3_000
 _LATE_NODES_EACH = 150  # per ratio: where axes are best split late, that is soon seen
 _LATE_SEEN = 400
 _LATE_LEFT = 0.75  # of the root box: with more left after so many nodes, hardly any try comes to an end
+_BARRIERS = (0.01, 0.1, 0.3)  # of climbs from where a try stopped: they may lead to different maxima
 _KEPT = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.1  # each stage's gap, as a share of the one before
 _NEARLY = 2.0  # a stage that ends so near to the target goes all the way
@@ -137,6 +139,12 @@ class _Run:
                 done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
             if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
                 break
+            before = self.value
+            for (position_m, axis), mu in product(workers.last(), _BARRIERS):
+                if np.any(axis):  # boxes that do not end may lie about a pose that the search missed
+                    self._improve(position_m, axis / np.linalg.norm(axis), mu)
+            if self.value > before * (1.0 + self.target):
+                return self.directly()
             if nodes >= _DIRECT_NODES and self._volume(workers.nodes()) < least:
                 least, best = self._volume(workers.nodes()), self.axes_above
         self.axes_above = best  # for the stages that may follow
@@ -183,13 +191,13 @@ class _Run:
         family, level = self.family, self.value * (1.0 + gap)
         return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
 
-    def _improve(self, position_m: FloatArray, axis: FloatArray) -> None:
+    def _improve(self, position_m: FloatArray, axis: FloatArray, mu: float = 0.01) -> None:
         from nullpose.solve.kernels.links import min_log_ratio
 
         family = self.family.arrays
         room = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
         start = float(min_log_ratio(family, position_m, axis, *room))
-        found = climb(self.family, self.axis_field, position_m, axis, mu=0.01, steps=100)
+        found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
         if found.log_value > self.incumbent.log_value:

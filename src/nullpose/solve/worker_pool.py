@@ -121,6 +121,10 @@ class WorkerPool:
         """Return the poses, position and orientation, that beat the incumbent."""
         return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.better]
 
+    def last(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Return where workers with nodes left stopped: a box's middle and an orientation, or zeros."""
+        return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.top]
+
     def nodes(self) -> FloatArray:
         """Return the nodes that are left, (n, columns)."""
         return np.concatenate([worker.stack[: worker.top] for worker in self._workers])

@@ -316,16 +316,18 @@ def branch(
         leaves: (l, COLUMNS) output, excluded boxes.
         filled: how many leaves there are already.
         most: boxes to work off at most.
-        better_p: output, (3,): position of a pose that beats the incumbent.
-        better_u: output, (3,): its axis.
+        better_p: output, (3,): position of a pose that beats the incumbent, or of the last box at the limit.
+        better_u: output, (3,): its axis; zero if there is none.
 
     Returns:
         (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
     """
-    workspace, row, axis = workspace_of(family), scratch(COLUMNS), scratch(3)
+    workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
     boxes = sought = 0
     while top > 0:
         if boxes >= most:
+            copy_into(row[CENTRE:HALF], better_p)
+            copy_into(axis, better_u)
             return LIMIT, top, filled, boxes, sought
         if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
             return FULL, top, filled, boxes, sought
