@@ -138,7 +138,7 @@ def draw_near(axes: Axes, solution: nullpose.Solution, exponent: int) -> set[int
         spine.set(color=POSE, linewidth=1.2)
     (proof,) = solution.proofs
     axes.set_title(
-        f"gap $10^{{{exponent}}}$\n{len(proof.leaves)} boxes, {proof.nodes} examined", fontsize=9.0
+        f"gap $10^{{{exponent}}}$\n{len(proof.leaves)} final boxes, {proof.nodes} examined", fontsize=9.0
     )
     return used
 

@@ -64,7 +64,7 @@ def test_ratios_are_rounded_outwards(value: float, gap: float, claim: Certificat
     assert most_db >= 10.0 * math.log10(bound)
     near = float(re.findall(r"within (\S+) of it", words)[0])
     assert bound <= value * (1.0 + near) * (1.0 + 1e-12)
-    assert words.endswith("; 7 leaves checked")
+    assert words.endswith("; 7 final boxes checked")
 
 
 @given(rate=st.floats(-3.0, 20.0), gap=st.floats(0.0, 1.0))

@@ -39,7 +39,7 @@ def test_a_proof_is_told(run: Run, proof: Path) -> None:
     assert result.stdout.startswith(
         "proved: in this scenario no position and no antenna axis gives every node"
     )
-    assert "leaves checked" in result.stdout
+    assert "final boxes checked" in result.stdout
 
 
 def test_a_proof_as_json(run: Run, proof: Path) -> None:

@@ -23,7 +23,7 @@ def sentence(certificate: Certificate, leaves: int) -> str:
     return (
         f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
         f"{axes} gives every node {Quantity.of(certificate.scenario).one} above {most}, and the stated pose "
-        f"gives every node {least} or more, which is within {near} of it; {leaves} leaves checked"
+        f"gives every node {least} or more, which is within {near} of it; {leaves} final boxes checked"
     )
 
 

@@ -99,9 +99,10 @@ def compare(
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
-    """Compare the paper's antennas with the file's.
+    """Compare ideal antennas (the paper's) with those of a scenario.
 
-    The best pose for the paper's antennas flown with those that the file states, and the best pose for these.
+    It evaluates the best pose for ideal antennas with the antennas that the scenario states, and finds the
+    best pose for the stated antennas. Ideal: a short dipole, and isotropic antennas on the ground.
     """
     scenario = read_scenario(file, overrides, allow_outside)
     options = solve_options(gap, time_limit, node_limit, fast, seed)

@@ -38,7 +38,7 @@ def evaluate(
         typer.Option(
             "--attitude",
             metavar="ROLL,PITCH,YAW",
-            help="The drone's attitude in degrees: ENU, body x forward, y left, z up; yaw first.",
+            help="Roll, pitch and yaw in degrees, in this order; ENU, body x forward, y left, z up.",
             show_default="0,0,0",
         ),
     ] = None,

@@ -51,7 +51,7 @@ def best_map(
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Draw the smallest SINR over positions.
+    """Draw a map of the smallest SINR at each position.
 
     At each position the axis is the best one that the scheme allows.
 

@@ -72,9 +72,10 @@ def solve(
     Schemes:
       optimum               the best pose of all
       zero-interference     the null points at a jammer
-      maximum-gain          the antenna broadside to the nodes
+      maximum-gain          the antenna broadside to the nodes; of three or more,
+                            the axis with the largest smallest signal
       vertical              the antenna upright
-      maximum-gain-printed  as the paper prints maximum gain, for comparison
+      maximum-gain-printed  maximum gain by the paper's eq. 3.5 as printed
     """  # noqa: D301  the mark that keeps the lines as they are
     from nullpose.report.results import result_view
 

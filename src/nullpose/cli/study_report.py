@@ -22,8 +22,8 @@ def report(
         typer.Option(
             "--requirement-db",
             metavar="X",
-            help="Required SINR (margin, if nodes have requirements) in dB. A scene below it is an outage.",
-            show_default="0 for margins",
+            help="Required SINR in dB; for nodes with min_sinr_db, required margin over it. Outage: below.",
+            show_default="none for SINR, 0 for margins",
         ),
     ] = None,
     requirement_bps_hz: Annotated[
@@ -41,7 +41,7 @@ def report(
             "--against",
             metavar="CASE",
             help="Case that the gains refer to.",
-            show_default="the level vehicle",
+            show_default="level-vertical, or the first case",
         ),
     ] = None,
     out: Annotated[

@@ -38,7 +38,9 @@ def airframes_view(comparison: AirframeComparison) -> View:
     values = rows(
         {
             "vehicle, dipole": labels,
-            "ratio": [None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives],
+            "power ratio": [
+                None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives
+            ],
             "value": _told(value, 4),
             "bound": [None if of is None else bound_text(of, 4) for of in objectives],
             "difference": _told(value - value[whole], 3),
@@ -107,8 +109,7 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
     statuses = dict.fromkeys(each.status for _, each in labelled if each.status is not None)
     legend = {status: status.message for status in statuses}
     lines += [
-        message if message.startswith(_STATUS[status]) else f"{_STATUS[status]}: {message}"
-        for status, message in legend.items()
+        f"{_STATUS[status]}: {message.removeprefix('certified ')}" for status, message in legend.items()
     ]
     lines += grouped((label, each.reason) for label, each in labelled)
     lines += [f"The widest relative gap between value and bound is {short(max(known))}."] if known else []

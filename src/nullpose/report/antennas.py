@@ -30,7 +30,7 @@ def antennas_view(comparison: AntennaComparison) -> View:
     }
     if scenario.antenna is not None and scenario.antenna_record.leak > 0.0:
         values["  as 2, isotropic ground antennas"] = comparison.with_null
-        values["  as 2, perfect null"] = comparison.with_ground
+        values["  as 2, perfect null of the drone's antenna"] = comparison.with_ground
     values["3 best pose for the stated antennas"] = possible.objective.value
     numbers = [quantity.in_unit(value) for value in values.values()]
     whole, none = numbers[0], [None] * (len(numbers) - 2)

@@ -59,7 +59,7 @@ def work_words(starts: int, boxes: int) -> str:
         starts: of searches.
         boxes: of a proof; 0 for no proof.
     """
-    proof = f"; proof: {count_of(boxes, 'box', 'boxes')}" if boxes else ""
+    proof = f"; proof: {count_of(boxes, 'box', 'boxes')} examined" if boxes else ""
     return f"search: {count_of(starts, 'start')}{proof}"
 
 
@@ -139,7 +139,7 @@ def array_view(solution: Result) -> View:
     """
     stats, phases_rad = solution.stats, solution.phases_rad
     searches = count_of(stats.searches or 0, "local search", "local searches")
-    agreeing = f"{stats.agreeing} of {searches} ended at this value"
+    agreeing = f"{stats.agreeing} of {searches} ended at this value" if (stats.searches or 0) > 1 else ""
     turned_rad = phases_rad - phases_rad[0] if phases_rad.ndim == 1 else phases_rad[:0, 0]
     phases = {
         "element": [str(i) for i, _ in enumerate(turned_rad, start=1)],
@@ -164,9 +164,8 @@ def robust_view(solution: Result) -> View:
     cells = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
     unbounded = "no upper bound on the guaranteed value" if solution.upper_bound is None else ""
-    errors = (
-        f"errors: {error_words(solution.scenario)}; {count_of(solution.cases, 'combination')} of them bind"
-    )
+    combinations = f"bound from {count_of(solution.cases, 'combination')} of errors"
+    errors = f"errors: {error_words(solution.scenario)}; {combinations}"
     return document(
         _head(solution, "Robust, guaranteed", unbounded, errors),
         table(
@@ -175,7 +174,8 @@ def robust_view(solution: Result) -> View:
             bold=[f"guaranteed ({quantity.unit})"],
         ),
         *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
-        "Guaranteed: proved for all errors. Lowest found: over the errors that were tried.",
+        "Guaranteed: holds for all errors within the stated limits. "
+        "Lowest found: over the errors that were tried.",
         *(
             pairs(begun(name), frame_rows(solution.scenario, one.pose))
             for name, one in cells.items()

@@ -50,10 +50,21 @@ def sweep_view(sweep: SweepTable) -> View:
         *([f"One row in {step} is shown."] if step > 1 else []),
         *(f"{line}." for line in certainty_lines(sweep)),
         *rigour_lines((label, row.objective.rigour) for label, row in labelled),
+        *_shared_lines(sweep),
         *grouped((label, row.reason) for label, row in labelled),
     ]
     title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(table(title, _rows(sweep, sweep.path)[::step]), "\n".join(lines))
+
+
+def _shared_lines(sweep: SweepTable) -> list[str]:
+    """Return why some points have no certificate, if they share the bound of another."""
+    shared = any(row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows)
+    words = (
+        "Points without a certificate take the bound of another point, which holds for them too. "
+        "`nullpose solve` at such a point has a certificate."
+    )
+    return [words] if shared else []
 
 
 def sweep_latex(sweep: SweepTable) -> str:

@@ -34,7 +34,7 @@ COMBININGS = "digital", "analogue"
 
 _SHORT = {
     "digital": "box limit reached",
-    "analogue": "the bound is that of digital combining, which one beam for all nodes reaches at most",
+    "analogue": "the bound is the one for digital combining, which analogue combining cannot exceed",
 }  # why a gap was not reached
 _WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for
 

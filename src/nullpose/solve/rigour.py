@@ -27,10 +27,10 @@ class Rigour(StrEnum):
 
 
 _MESSAGES = {
-    Rigour.VERIFIED: "verified: the bound was checked in interval arithmetic",
-    Rigour.VERIFIABLE: "verifiable: solve --certificate can write the proof for verify to check",
-    Rigour.FLOATING_POINT: "floating-point: the bound is not checked against rounding and has no certificate",
-    Rigour.NONE: "none: there is no bound",
+    Rigour.VERIFIED: "verified (the bound was checked in interval arithmetic)",
+    Rigour.VERIFIABLE: "verifiable (solve --certificate writes the proof, verify checks it)",
+    Rigour.FLOATING_POINT: "floating-point (the bound is not checked against rounding, no certificate)",
+    Rigour.NONE: "none (there is no bound)",
 }
 
 

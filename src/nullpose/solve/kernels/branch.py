@@ -317,7 +317,7 @@ def branch(
         filled: how many leaves there are already.
         most: boxes to work off at most.
         better_p: output, (3,): position of a pose that beats the incumbent, or of the last box at the limit.
-        better_u: output, (3,): its axis; zero if there is none.
+        better_u: output, (3,): its axis; zero if there is none, or the position is not allowed.
 
     Returns:
         (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
@@ -327,7 +327,8 @@ def branch(
     while top > 0:
         if boxes >= most:
             copy_into(row[CENTRE:HALF], better_p)
-            copy_into(axis, better_u)
+            for m in range(3):
+                better_u[m] = axis[m] if contains(domain, better_p) else 0.0
             return LIMIT, top, filled, boxes, sought
         if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
             return FULL, top, filled, boxes, sought
