@@ -47,3 +47,9 @@ def test_the_search_would_notice() -> None:
 def test_hard_scenes_with_antennas(number: int) -> None:
     """Positions at the level itself have a certificate; a proof that is cut short keeps to the airspace."""
     assert check_scene(make_feature_scene("antennas", number), starts=5).faults == ()
+
+
+@pytest.mark.parametrize("number", [321, 692])
+def test_a_scheme_keeps_to_its_axes(number: int) -> None:
+    """A proof that stops early improves no pose with an axis that its scheme does not allow."""
+    assert check_scene(make_scene(number), starts=5).faults == ()

@@ -139,16 +139,20 @@ class _Run:
                 done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
             if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
                 break
-            before = self.value
-            for (position_m, axis), mu in product(workers.last(), _BARRIERS):
-                if np.any(axis):  # boxes that do not end may lie about a pose that the search missed
-                    self._improve(position_m, axis / np.linalg.norm(axis), mu)
-            if self.value > before * (1.0 + self.target):
+            if self.axis_field.is_free and self._improved_from(workers):
                 return self.directly()
             if nodes >= _DIRECT_NODES and self._volume(workers.nodes()) < least:
                 least, best = self._volume(workers.nodes()), self.axes_above
         self.axes_above = best  # for the stages that may follow
         return done, reason
+
+    def _improved_from(self, workers: WorkerPool) -> bool:
+        """Return whether a clearly better pose lies where a try stopped: boxes may not end because of it."""
+        before = self.value
+        for (position_m, axis), mu in product(workers.last(), _BARRIERS):
+            if np.any(axis):
+                self._improve(position_m, axis / np.linalg.norm(axis), mu)
+        return self.value > before * (1.0 + self.target)
 
     def _volume(self, nodes: FloatArray) -> float:
         return float(np.sum(np.prod(nodes[:, self.node.HALF : self.node.LEVEL], axis=1)))
