@@ -32,20 +32,32 @@ def _gains(mesh: Mesh) -> np.ndarray:
 
 def test_the_doughnut_is_the_gain() -> None:
     """Along each direction the doughnut's distance is the antenna's gain there, zero on its axis."""
-    mesh = meshes.doughnut_mesh(SHORT_DIPOLE, 2.0, np.linspace(0.0, math.pi, 25), 32)
+    mesh, gain = meshes.pattern_mesh(SHORT_DIPOLE, 2.0, 24, 32)
     distance = np.linalg.norm(mesh.vertices, axis=1)
+    assert distance == pytest.approx(2.0 * gain)
     assert distance[distance > 1e-6] == pytest.approx(2.0 * _gains(mesh), abs=1e-9)
     assert np.min(distance) < 1e-12
     assert _volume(mesh) > 0.0
 
 
-def test_bands_are_the_whole_pattern() -> None:
-    """The bands of like gain together have the pattern's area, and each band's gain is that of its points."""
-    bands = meshes.doughnut_bands(SHORT_DIPOLE, 1.0, 10)
-    whole = meshes.doughnut_mesh(SHORT_DIPOLE, 1.0, np.linspace(0.0, math.pi, 200), 32)
-    assert sum(_area(band) for band, _ in bands) == pytest.approx(_area(whole), rel=0.01)
-    for band, gain in bands:
-        assert np.abs(_gains(band) - gain).max() <= 0.05 + 1e-9
+def test_an_opening_leaves_out_its_part() -> None:
+    """An opened doughnut has that much less area, none of it towards the opening's middle."""
+    whole, _ = meshes.pattern_mesh(SHORT_DIPOLE, 1.0, 40, 180)
+    opened, _ = meshes.pattern_mesh(SHORT_DIPOLE, 1.0, 40, 180, open_rad=math.pi / 2, towards_rad=2.0)
+    assert _area(opened) == pytest.approx(0.75 * _area(whole), rel=1e-3)
+    broad = opened.vertices[np.hypot(*opened.vertices[:, :2].T) > 0.1]
+    off_rad = np.angle(np.exp(1j * (np.arctan2(broad[:, 1], broad[:, 0]) - 2.0)))
+    assert np.abs(off_rad).min() == pytest.approx(math.pi / 4, abs=1e-6)
+
+
+@seed(0)
+@given(east=st.floats(-9.0, 9.0), north=st.floats(-9.0, 9.0), up=st.floats(1.0, 9.0))
+def test_the_beam_widens_by_its_angle(east: float, north: float, up: float) -> None:
+    """Every way from the tip to the beam's end is at the same angle from its middle."""
+    tip, end = np.array([1.0, 2.0, 10.0]), np.array([1.0 + east, 2.0 + north, 10.0 - up])
+    ways = meshes.beam_mesh(tip, end, 0.1).vertices[1:] - tip
+    cosines = ways @ (end - tip) / np.linalg.norm(ways, axis=1) / np.linalg.norm(end - tip)
+    assert cosines == pytest.approx(np.full(len(ways), math.cos(0.1)))
 
 
 @pytest.mark.parametrize(
@@ -113,7 +125,7 @@ def test_the_multirotor_is_in_one_piece() -> None:
 def test_pattern() -> None:
     """Every vertex is as far out as the gain in its direction, over the largest."""
     antenna = PatternAntenna("pattern", "any", harmonics_of_rows([[1.0], [0.1, 0.2, 0.3]]))
-    mesh = meshes.pattern_mesh(antenna, 2.0)
+    mesh, _ = meshes.pattern_mesh(antenna, 2.0)
     distance = np.linalg.norm(mesh.vertices, axis=1)
     gain = antenna.gain(mesh.vertices / distance[:, None])
     np.testing.assert_allclose(distance, 2.0 * gain / antenna.peak, rtol=1e-9)

@@ -34,7 +34,7 @@ def add_mesh(scene: SceneApi, name: str, mesh: Mesh, colour: ArrayLike, **style:
 
 
 def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike) -> Any:
-    """Return the handle of a mesh added to a scene, with a colour of its own at each vertex.
+    """Return the handle of a mesh added to a scene, seen from both sides, with a colour at each vertex.
 
     Args:
         scene: the page's scene.
@@ -44,8 +44,14 @@ def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike
     """
     import trimesh
 
-    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, vertex_colors=linear_colours(colours))
-    return scene.add_mesh_trimesh(name, solid, **FLAT)
+    # without a material of its own the surface is of metal, which is dark where nothing is mirrored
+    matt = trimesh.visual.material.PBRMaterial(metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
+    visual = trimesh.visual.TextureVisuals(material=matt)
+    opaque = np.full((len(mesh.vertices), 1), 255, dtype=np.uint8)
+    visual.vertex_attributes["color"] = np.hstack([linear_colours(colours), opaque])
+    return scene.add_mesh_trimesh(
+        name, trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, visual=visual), **FLAT
+    )
 
 
 def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLike, thickness: float) -> Any:

@@ -80,7 +80,8 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
         Ground(server.scene, None).show(view, size_m, freed=False)
         for slot, answer in enumerate(answers):
             text = drone_text(session, slot)
-            Drone(server.scene, slot).show(answer, text, size_m, link_range_db, pattern=True)
+            eye_m = server.initial_camera.position
+            Drone(server.scene, slot).show(answer, text, size_m, link_range_db, eye_m, pattern=True)
         if field is not None:
             Carpet(server.scene).show(field)
         return str(server.scene.as_html()).encode()

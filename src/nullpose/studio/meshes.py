@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import PatternAntenna, QuadraticAntenna
+from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
 from nullpose.report.geometry import outline_m
@@ -53,7 +52,7 @@ def merged(meshes: Iterable[Mesh]) -> Mesh:
     )
 
 
-def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int) -> Mesh:
+def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_rad: float = 0.0) -> Mesh:
     """Return the surface that a line in the x-z plane makes about the z axis.
 
     Args:
@@ -61,65 +60,60 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int) -> Mesh
             way from the first to the last.
         height_m: (n,) their heights, metres.
         around: steps about the axis.
+        open_rad: angle that is left out, its middle along x, radians.
     """
     radius, height = np.asarray(radius_m, dtype=float), np.asarray(height_m, dtype=float)
-    azimuth = np.linspace(0.0, math.tau, around, endpoint=False)
+    ends = 0.5 * open_rad, math.tau - 0.5 * open_rad
+    azimuth = np.linspace(*ends, around + (open_rad > 0.0), endpoint=open_rad > 0.0)
     x, y = np.outer(radius, np.cos(azimuth)), np.outer(radius, np.sin(azimuth))
     vertices = np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=-1).reshape(-1, 3)
     here = np.arange(len(vertices)).reshape(x.shape)
     beside = np.roll(here, -1, axis=1)
-    a, b, c, d = here[:-1], beside[:-1], here[1:], beside[1:]
+    steps = slice(around)  # which lead back to the first if nothing is left out
+    a, b, c, d = here[:-1, steps], beside[:-1, steps], here[1:, steps], beside[1:, steps]
     faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([b, d, c], -1).reshape(-1, 3)])
     return Mesh(vertices, faces)
 
 
-def doughnut_mesh(antenna: QuadraticAntenna, radius_m: float, gamma_rad: ArrayLike, around: int) -> Mesh:
-    """Return the antenna's pattern about the z axis: the distance is the gain times the radius.
+def pattern_mesh(
+    antenna: Antenna,
+    radius_m: float,
+    rings: int = 60,
+    around: int = 96,
+    *,
+    open_rad: float = 0.0,
+    towards_rad: float = 0.0,
+) -> tuple[Mesh, NDArray[np.float64]]:
+    """Return the surface of a pattern in the antenna's axes, and each vertex's gain over the largest.
 
-    Args:
-        antenna: whose pattern it is.
-        radius_m: where the gain is 1, metres.
-        gamma_rad: (n,) angles from the lower end of the axis at which it is drawn, growing, radians.
-        around: steps about the axis.
-    """
-    gamma = np.asarray(gamma_rad, dtype=float)
-    distance = radius_m * antenna.gain(np.sin(gamma) ** 2)
-    return revolved_mesh(distance * np.sin(gamma), -distance * np.cos(gamma), around)
-
-
-def pattern_mesh(antenna: PatternAntenna, radius_m: float, rings: int = 60, around: int = 96) -> Mesh:
-    """Return the surface of any pattern in the antenna's axes: the distance is the gain over its largest.
+    The distance is that gain times the radius.
 
     Args:
         antenna: whose pattern it is.
         radius_m: where the gain is largest, metres.
         rings: steps from pole to pole.
         around: steps about the z axis.
+        open_rad: angle about z that is left out, so that the inside is seen, radians.
+        towards_rad: azimuth of the middle of that angle, radians.
     """
     gamma = np.linspace(0.0, math.pi, rings + 1)
-    sphere = revolved_mesh(np.sin(gamma), -np.cos(gamma), around)
-    gain = np.maximum(0.0, antenna.gain(sphere.vertices)) / antenna.peak
-    return Mesh(radius_m * gain[:, None] * sphere.vertices, sphere.faces)
+    c, s = math.cos(towards_rad), math.sin(towards_rad)
+    turn = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
+    sphere = revolved_mesh(np.sin(gamma), -np.cos(gamma), around, open_rad).placed(turn)
+    gain = relative_gain(antenna, sphere.vertices)
+    return Mesh(radius_m * gain[:, None] * sphere.vertices, sphere.faces), gain
 
 
-def doughnut_bands(
-    antenna: QuadraticAntenna, radius_m: float, bands: int = 10, around: int = 32
-) -> list[tuple[Mesh, float]]:
-    """Return the antenna's pattern in bands, each with the gain in its middle.
+def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the gain over its largest, shape (n,).
 
     Args:
-        antenna: whose pattern it is.
-        radius_m: where the gain is 1, metres.
-        bands: how many.
-        around: steps about the axis.
+        antenna: any.
+        directions: (n, 3) unit vectors in the antenna's axes.
     """
-    ends = np.arcsin(np.sqrt(np.linspace(0.0, 1.0, bands + 1)))
-    parts = []
-    for band, (low, high) in enumerate(pairwise(ends)):
-        below = np.linspace(low, high, 4)
-        halves = [doughnut_mesh(antenna, radius_m, gamma, around) for gamma in (below, math.pi - below[::-1])]
-        parts.append((merged(halves), float(antenna.gain((band + 0.5) / bands))))
-    return parts
+    if isinstance(antenna, PatternAntenna):
+        return np.maximum(0.0, antenna.gain(directions)) / antenna.peak
+    return np.asarray(antenna.gain(1.0 - np.minimum(1.0, directions[:, 2] ** 2)))
 
 
 def ellipsoid_mesh(matrix_m: ArrayLike, rings: int = 16, around: int = 24) -> Mesh:
@@ -235,3 +229,21 @@ def null_line_m(pose: Pose, up_m: float, most_m: float = 1e3) -> NDArray[np.floa
     axis = pose.antenna_axis * (1.0 if pose.antenna_axis[2] >= 0.0 else -1.0)
     down_m = min(most_m, float(pose.position_m[2]) / axis[2]) if axis[2] > 1e-6 else most_m
     return np.stack([pose.position_m + up_m * axis, pose.position_m - down_m * axis])
+
+
+def beam_mesh(start_m: ArrayLike, end_m: ArrayLike, half_angle_rad: float, around: int = 40) -> Mesh:
+    """Return a cone that widens from one point to another, without an end.
+
+    Args:
+        start_m: (3,) its tip, metres.
+        end_m: (3,) the middle of its end, metres.
+        half_angle_rad: between its axis and its surface, radians.
+        around: steps about its axis.
+    """
+    start, way = np.asarray(start_m, dtype=float), np.subtract(end_m, start_m)
+    radius_m = math.tan(half_angle_rad) * float(np.linalg.norm(way))
+    across = np.linalg.svd(way[None])[2][1:]  # two unit vectors across the way
+    azimuth = np.linspace(0.0, math.tau, around, endpoint=False)
+    ring = start + way + radius_m * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1) @ across
+    i = np.arange(1, around + 1)
+    return Mesh(np.vstack([start, ring]), np.stack([np.zeros_like(i), i, i % around + 1], axis=-1))

@@ -198,7 +198,8 @@ class Page:
                 drone.hide()
                 continue
             text, pattern = drone_text(session, slot), self.panel.pattern.value
-            drone.show(answer, text, self._size_m, self._link_range_db, pattern=pattern)
+            eye_m = np.array(self._client.camera.position)
+            drone.show(answer, text, self._size_m, self._link_range_db, eye_m, pattern=pattern)
 
     def _show_map(self) -> None:
         maps, name = self.session.field_map, self.panel.map.value

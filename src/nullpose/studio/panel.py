@@ -22,12 +22,12 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "power": (
             "multi_slider",  # of one handle: viser's other one has a field that takes every keystroke
             "Jamming (dB)",
-            "Power of the strongest jammer over the nodes' (P_M/P); all jammers change alike.",
+            "Power of the strongest jammer over the strongest node's (P_M/P); all jammers change alike.",
             {"min": POWER_DB[0], "max": POWER_DB[1], "step": 0.5, "initial_value": (0.0,)},
         ),
         "power_text": (
             "text",
-            "as a number",
+            "typed (dB)",
             "The jamming power in dB; Enter takes it.",
             {"initial_value": ""},
         ),
@@ -52,7 +52,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "dropdown",
             "Map",
             "Colour a plane: the best possible at each place, or where the pattern falls on the ground.",
-            {"options": ("no map", *MAPS), "initial_value": MAPS[0]},
+            {"options": ("no map", *MAPS), "initial_value": MAPS[1]},
         ),
         "scale": ("html", "", "", {}),
         "pattern": (

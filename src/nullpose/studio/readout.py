@@ -34,9 +34,9 @@ receives nothing along its own axis: the <b>null</b>. nullpose finds the positio
 largest smallest SINR over the nodes, and proves an upper bound for all other poses.
 <ul style="margin:4px 0 4px 16px;padding:0">
 <li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
-<li>Doughnut: the antenna's pattern; orange line: the null.</li>
+<li>Doughnut: the antenna's pattern, open towards you; orange: the null.</li>
 <li>Lines: brighter is a higher SINR; the thick ones are the worst nodes.</li>
-<li>Coloured plane: the best value at each position of this altitude.</li></ul>"""
+<li>Coloured ground: how much the antenna receives from there; <i>Map and view</i> has more.</li></ul>"""
 
 
 def about_html() -> str:
