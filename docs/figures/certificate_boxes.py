@@ -35,10 +35,10 @@ COUNTED = ("optimum", "zero-interference", "maximum-gain", "vertical")
 
 # Okabe and Ito's colours, thinned: told apart with any colour vision
 FILLS = {
-    FAR: ("#ececec", "too far from a node"),
-    TOWARDS: ("#8fc4e8", "bounded by multipliers, frame towards the jammer"),
-    WORLD: ("#f3cf87", "bounded by multipliers, fixed frame"),
-    AFFINE: ("#8ed1b8", "bounded by multipliers, axis given"),
+    FAR: ("#ececec", "too far from a node, as is all outside"),
+    TOWARDS: ("#8fc4e8", "bounded for all axes, using the jammer's direction"),
+    WORLD: ("#f3cf87", "bounded for all axes"),
+    AFFINE: ("#8ed1b8", "bounded for the vertical axis"),
     KEPT_OUT: ("#d9a3c0", "inside the keep-out radius"),
 }
 POSE = "#d55e00"

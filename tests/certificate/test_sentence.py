@@ -62,7 +62,7 @@ def test_ratios_are_rounded_outwards(value: float, gap: float, claim: Certificat
     assert least >= value * (1.0 - 1e-6) - 1e-9
     assert least_db <= 10.0 * math.log10(value)
     assert most_db >= 10.0 * math.log10(bound)
-    near = float(re.findall(r"within (\S+) of it", words)[0])
+    near = float(re.findall(r"within a relative (\S+) of it", words)[0])
     assert bound <= value * (1.0 + near) * (1.0 + 1e-12)
     assert words.endswith("; 7 final boxes checked")
 
@@ -85,7 +85,7 @@ def test_small_numbers_are_not_lost(claim: Certificate) -> None:
     """A bound of next to nothing is written out."""
     words = sentence(replace(claim, value=1e-7, upper_bound=1.5e-7), 1)
     assert "above 1.5e-07 (" in words
-    assert "within 5.01e-01 of it" in words
+    assert "within a relative 5.01e-01 of it" in words
 
 
 def test_places_are_named(claim: Certificate) -> None:

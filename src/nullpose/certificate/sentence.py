@@ -56,7 +56,7 @@ def _numbers(certificate: Certificate) -> tuple[str, ...]:
     return (
         f"{_rounded(bound, ROUND_CEILING)} ({most_db} dB)",
         f"{_rounded(least, ROUND_FLOOR)} ({least_db} dB)",
-        _apart(bound / least - 1.0),
+        f"a relative {_apart(bound / least - 1.0)}",
     )
 
 

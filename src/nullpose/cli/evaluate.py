@@ -38,7 +38,7 @@ def evaluate(
         typer.Option(
             "--attitude",
             metavar="ROLL,PITCH,YAW",
-            help="Roll, pitch and yaw in degrees, in this order; ENU, body x forward, y left, z up.",
+            help="Degrees. Rz(yaw) Ry(pitch) Rx(roll) turns body (x forward, z up) to ENU.",
             show_default="0,0,0",
         ),
     ] = None,

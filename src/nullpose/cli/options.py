@@ -77,7 +77,7 @@ Fast = Annotated[bool, typer.Option("--fast", help="No proof, only a search from
 Robust = Annotated[
     bool,
     typer.Option(
-        "--robust", help="Maximise the value guaranteed under the scenario's errors, to a gap of 1e-2."
+        "--robust", help="Maximise the value guaranteed under the scenario's errors; default gap 1e-2."
     ),
 ]
 

@@ -66,7 +66,7 @@ def solve(
 ) -> None:
     """Find the best pose, and prove how good it is.
 
-    The proof says how far the pose can be from the true optimum.
+    The proof says how far the pose's value can be below the optimum.
 
     \b
     Schemes:

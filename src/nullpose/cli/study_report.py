@@ -22,8 +22,8 @@ def report(
         typer.Option(
             "--requirement-db",
             metavar="X",
-            help="Required SINR in dB; for nodes with min_sinr_db, required margin over it. Outage: below.",
-            show_default="none for SINR, 0 for margins",
+            help="Outage: a smallest SINR (margin, if nodes have min_sinr_db) below X dB.",
+            show_default="no outage for SINR, 0 dB for margins",
         ),
     ] = None,
     requirement_bps_hz: Annotated[
@@ -31,7 +31,7 @@ def report(
         typer.Option(
             "--requirement-bps-hz",
             metavar="X",
-            help="Required secrecy rate in bits/s/Hz. A scene below it is an outage.",
+            help="Outage: a smallest secrecy rate below X bits/s/Hz.",
             show_default=False,
         ),
     ] = None,

@@ -52,6 +52,7 @@ def antennas_view(comparison: AntennaComparison) -> View:
         ),
         table("Best poses", beside(poses)),
         "Difference: from row 1. Bounds are rounded up.",
+        "Isotropic ground antennas lose nothing to polarisation.",
         *dict.fromkeys(result.status.message for _, result in both),
         *grouped((label, result.reason) for label, result in both),
         *rigour_lines((label, result.objective.rigour) for label, result in both),

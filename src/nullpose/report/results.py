@@ -29,7 +29,7 @@ from nullpose.report.numbers import (
 )
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
-from nullpose.solve import Objective, Result
+from nullpose.solve import Objective, Result, Rigour
 from nullpose.solve.array import ArrayDetails
 from nullpose.solve.robust import GuardedPose, RobustDetails
 from nullpose.study.evaluation import GivenDetails
@@ -78,7 +78,7 @@ def _head(result: Result, label: str, *more: str) -> View:
     stats = result.stats
     lines: tuple[str, ...] = (
         bound_words(objective),
-        f"{result.status.message}{result.reason and f': {result.reason}'}",
+        f"{_status_words(result)}{result.reason and f': {result.reason}'}",
         "" if objective.upper_bound is None else objective.rigour.message,
         f"{work_words(stats.starts, stats.boxes)}; {stats.wall_s:.2g} s",
         *more,
@@ -88,6 +88,12 @@ def _head(result: Result, label: str, *more: str) -> View:
         lines = (f"upper bound of every pose {bound}", objective.rigour.message, *more)
     value = f"{objective.quantity.smallest} {value_words(objective)}"
     return head(result.scenario.name, label, value, lines)
+
+
+def _status_words(result: Result) -> str:
+    """Return how near value and bound are; *certified* is said where there can be a certificate."""
+    message = result.status.message
+    return message.removeprefix("certified ") if result.rigour is Rigour.FLOATING_POINT else message
 
 
 def solution_view(solution: Result) -> View:
@@ -164,7 +170,7 @@ def robust_view(solution: Result) -> View:
     cells = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
     unbounded = "no upper bound on the guaranteed value" if solution.upper_bound is None else ""
-    combinations = f"bound from {count_of(solution.cases, 'combination')} of errors"
+    combinations = f"upper bound from {count_of(solution.cases, 'combination')} of errors"
     errors = f"errors: {error_words(solution.scenario)}; {combinations}"
     return document(
         _head(solution, "Robust, guaranteed", unbounded, errors),

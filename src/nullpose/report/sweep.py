@@ -61,8 +61,8 @@ def _shared_lines(sweep: SweepTable) -> list[str]:
     """Return why some points have no certificate, if they share the bound of another."""
     shared = any(row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows)
     words = (
-        "Points without a certificate take the bound of another point, which holds for them too. "
-        "`nullpose solve` at such a point has a certificate."
+        "Points without a certificate reuse the bound of another point, which is valid there too. "
+        "Solved alone, each of them has a certificate."
     )
     return [words] if shared else []
 

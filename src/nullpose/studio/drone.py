@@ -148,8 +148,8 @@ class Drone:
         add_mesh(scene, f"{name}/body/rotors", rotor_mesh(arm_m), SLOTS[slot], opacity=0.45)
         add_mesh(scene, f"{name}/body/antenna/rod", rod_mesh(0.2 * size_m), _NULL)
         poles = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
-        self._has_null = bool(np.all(relative_gain(antenna, poles) < _FAINT))
-        self._turns = not isinstance(antenna, PatternAntenna)
+        self._turns = not isinstance(antenna, PatternAntenna) or antenna.harmonics.is_axisymmetric
+        self._has_null = self._turns and bool(np.all(relative_gain(antenna, poles) < _FAINT))
         towards_rad = 0.0 if self._turns else _azimuth_rad(pose, eye_m)
         self._add_pattern(frames["pattern"], antenna, 0.13 * size_m, towards_rad)
         beam = beam_mesh(np.zeros(3), [0.0, 0.0, -1.0], _BEAM_RAD)

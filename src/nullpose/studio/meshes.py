@@ -151,6 +151,23 @@ def _raised(outline_m: NDArray[np.float64], height_m: float) -> NDArray[np.float
     return np.column_stack([outline_m, np.full(len(outline_m), height_m)])
 
 
+def prism_edges(
+    outline_m: ArrayLike, low_m: float, high_m: float, most_posts: int = 12
+) -> NDArray[np.float64]:
+    """Return the edges of an upright solid, (n, 2, 3): both its ends, and some of its upright edges.
+
+    Args:
+        outline_m: (n, 2) vertices, metres.
+        low_m: its floor, metres.
+        high_m: its ceiling, metres.
+        most_posts: upright edges at most; a circle has many vertices.
+    """
+    outline = np.asarray(outline_m, dtype=float)
+    loops = [_raised(outline, height_m) for height_m in (low_m, high_m)]
+    ends = [np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in loops]
+    return np.concatenate([*ends, np.stack(loops, axis=1)[:: -(-len(outline) // most_posts)]])
+
+
 def zone_mesh(zone: NoFlyZone, low_m: float, high_m: float) -> Mesh:
     """Return a no-fly zone as far as it lies between two altitudes.
 

@@ -106,7 +106,7 @@ def _axes(frame: _Frame, unit: str) -> Iterator[str]:
         yield _text(_LEFT - 5, y + 3.5, "end", f"{value:g}")
     for power_db in range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10):
         yield _text(frame.at(power_db, 0.0)[0], _BOTTOM + 14, "middle", f"{power_db}")
-    yield _text(0.5 * (_LEFT + _RIGHT), _HEIGHT - 5, "middle", "jamming power over node power, dB")
+    yield _text(0.5 * (_LEFT + _RIGHT), _HEIGHT - 5, "middle", "strongest jammer over strongest node, dB")
     turned = f'transform="translate(10 {0.5 * (_TOP + _BOTTOM):.0f}) rotate(-90)"'
     yield f'<text {turned} text-anchor="middle" fill="#111">{escape(unit)}</text>'
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.report.geometry import outline_m as zone_outline_m
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.colours import KIND_COLOURS, round_steps
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
-from nullpose.studio.meshes import MARKS, ellipsoid_mesh, zone_mesh
+from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, zone_mesh
 from nullpose.studio.view import PointKey, View
 from nullpose.study.value_map import map_extent_m
 
@@ -161,14 +162,14 @@ class Ground:
         if airspace.geofence_m is not None:
             outline = airspace.geofence_outline_m
         floor_m, ceiling_m = float(airspace.lower_m[2]), float(airspace.upper_m[2])
-        loops = [np.insert(outline, 2, up, axis=1) for up in (floor_m, ceiling_m)]
-        edges = [np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in loops]
-        posts = np.stack(loops, axis=1)
-        add_lines(self._scene, "/airspace/edges", np.concatenate([*edges, posts]), _AIRSPACE, 1.4)
+        add_lines(self._scene, "/airspace/edges", prism_edges(outline, floor_m, ceiling_m), _AIRSPACE, 1.4)
         for i, zone in enumerate(airspace.no_fly):
-            mesh = zone_mesh(zone, 0.0, ceiling_m)
-            top = (*mesh.vertices[:, :2].mean(axis=0), mesh.vertices[:, 2].max())
-            add_mesh(self._scene, f"/airspace/zone-{i}", mesh, _ZONE, opacity=0.3, side="double")
+            low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
+            floor = zone_mesh(zone, low_m, low_m)
+            top = (*floor.vertices[:, :2].mean(axis=0), high_m)
+            add_mesh(self._scene, f"/airspace/zone-{i}", floor, _ZONE, opacity=0.25)
+            edges = prism_edges(zone_outline_m(zone), low_m, high_m)
+            add_lines(self._scene, f"/airspace/zone-edges-{i}", edges, _ZONE, 1.8)
             add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, 0.9)
 
 

@@ -14,7 +14,7 @@ from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB, View
 from nullpose.study import SweepRow, SweepTable
 
-POWER_LABEL = "jamming power over node power (dB)"
+POWER_LABEL = "strongest jammer over strongest node (dB)"
 """What the power curve is drawn over."""
 
 _PROOF_LIMIT_S = 30.0
