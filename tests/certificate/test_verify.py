@@ -175,7 +175,7 @@ def test_the_words_state_the_claim(paper: Callable, certified: Callable) -> None
         bound, value = (float(x) for x in re.findall(r"(?:above|every node) ([0-9.]+) \(", message))
         assert 0.0 <= bound - certificate.upper_bound <= 2e-9  # rounded the safe way
         assert 0.0 <= certificate.value - value <= 2e-9
-        assert f"{len(certificate.trees[0].leaves)} leaves" in message
+        assert f"{len(certificate.trees[0].leaves)} final boxes" in message
 
 
 def test_every_test_of_a_leaf_occurs(paper: Callable, certified: Callable, walled: Certificate) -> None:

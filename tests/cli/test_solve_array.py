@@ -22,7 +22,7 @@ def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
     assert result.exit_code == 0
     for words in (
         "Array of 4, digital: smallest SINR 7.21",
-        "certified",
+        "optimal within the requested gap",
         "roll 0.000 deg, pitch 0.000 deg, yaw ",
         "4 upright dipoles, linear",
     ):
