@@ -172,8 +172,6 @@ class Drone:
 def _azimuth_rad(pose: Pose, eye_m: ArrayLike) -> float:
     """Return the azimuth, in the antenna's axes, of the way from the drone to the camera."""
     body = rotation_world_from_body(pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
-    c, s = math.cos(pose.mount_rad), math.sin(pose.mount_rad)
-    x, y, _ = (
-        np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ body.T @ np.subtract(eye_m, pose.position_m)
-    )
+    antenna = rotation_world_from_body(0.0, pose.mount_rad, 0.0)
+    x, y, _ = (body @ antenna).T @ np.subtract(eye_m, pose.position_m)
     return math.atan2(y, x)
