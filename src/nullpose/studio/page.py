@@ -47,9 +47,10 @@ class Page:
     Args:
         client: the browser.
         scenario: the scene to begin with.
+        dark: whether the page is dark.
     """
 
-    def __init__(self, client: ClientHandle, scenario: Scenario) -> None:
+    def __init__(self, client: ClientHandle, scenario: Scenario, *, dark: bool = False) -> None:
         self._client = client
         self._lock = threading.RLock()
         self._open = True
@@ -61,7 +62,7 @@ class Page:
         self._link_range_db = LINK_RANGE_DB
         self._drones = [Drone(client.scene, slot) for slot in (0, 1)]
         self.session = Session(scenario, on_view=self._view_changed, on_event=self._refresh)
-        self.panel = Panel(client.gui)
+        self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._dragged)
         self._carpet = Carpet(client.scene)
         self._listen()

@@ -97,12 +97,14 @@ class Panel(SimpleNamespace):
 
     Args:
         gui: the page's interface.
+        dark: whether it is dark.
     """
 
-    def __init__(self, gui: GuiApi) -> None:
+    def __init__(self, gui: GuiApi, *, dark: bool = False) -> None:
         super().__init__()
         self._shown: View | None = None
-        gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+        shown = {"show_logo": False, "show_share_button": False}
+        gui.configure_theme(control_width="large", dark_mode=dark, **shown)
         gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
         folder = gui.add_folder("What am I looking at?")
