@@ -91,3 +91,11 @@ def test_a_case_is_not_compared_with_itself(paper: Scenario) -> None:
     vertical = case_named("Vertical")
     assert View(scenario=paper).with_compared(OPTIMUM).compared is None
     assert View(scenario=paper).with_compared(vertical).with_case(vertical).compared is None
+
+
+def test_the_files_text_stays_with_its_scenario(paper: Scenario) -> None:
+    """Changes keep the text that comments are taken from; another scenario has its own, or none."""
+    view = View(scenario=paper, text="# mine").moved(("nodes", 0), (1.0, 2.0, 3.0)).with_power_db(3.0)
+    assert view.text == "# mine"
+    assert view.with_scenario(paper, "# theirs").text == "# theirs"
+    assert view.with_scenario(paper).text == ""

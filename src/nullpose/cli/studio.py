@@ -27,12 +27,13 @@ def studio(
     Move nodes and jammers. The best pose and its bound are computed again at each step.
     """
     scenario = read_scenario(file, overrides, allow_outside)
+    from nullpose.scenario.toml_file import file_text
     from nullpose.studio.server import studio as running_studio
 
     ended = threading.Event()
     with (
         signals_handled(lambda *_: ended.set(), "SIGINT", "SIGTERM", "SIGHUP"),
-        running_studio(scenario, host=host, port=port) as running,
+        running_studio(scenario, file_text(file), host=host, port=port) as running,
     ):
         _announce(host, running.address)
         while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system

@@ -47,10 +47,13 @@ class Page:
     Args:
         client: the browser.
         scenario: the scene to begin with.
+        text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
     """
 
-    def __init__(self, client: ClientHandle, scenario: Scenario, *, dark: bool = False) -> None:
+    def __init__(
+        self, client: ClientHandle, scenario: Scenario, text: str = "", *, dark: bool = False
+    ) -> None:
         self._client = client
         self._lock = threading.RLock()
         self._open = True
@@ -61,7 +64,7 @@ class Page:
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self._link_range_db = LINK_RANGE_DB
         self._drones = [Drone(client.scene, slot) for slot in (0, 1)]
-        self.session = Session(scenario, on_view=self._view_changed, on_event=self._refresh)
+        self.session = Session(scenario, text, on_view=self._view_changed, on_event=self._refresh)
         self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._dragged)
         self._carpet = Carpet(client.scene)
@@ -141,8 +144,10 @@ class Page:
             self._refresh()  # which puts a point back whose new place was refused
 
     def _load(self, file: Any) -> None:
-        given = (file.content, file.name)
-        if self._change(lambda view: view.with_scenario(scenario_from_text(*given)), name=file.name):
+        def loaded(view: View) -> View:
+            return view.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
+
+        if self._change(loaded, name=file.name):
             self._aim()
         else:  # viser has said by now that the file has arrived
             told = "It arrived, but its faults are listed in the panel, and the scene is as it was."

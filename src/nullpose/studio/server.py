@@ -39,11 +39,12 @@ class Studio:
         server: where the pages are.
         address: what to open in a browser; it holds the token, without which nothing is answered.
         scenario: the scene that every page begins with.
+        text: of the file that it is from; empty without a file.
     """
 
-    def __init__(self, server: ViserServer, address: str, scenario: Scenario) -> None:
+    def __init__(self, server: ViserServer, address: str, scenario: Scenario, text: str = "") -> None:
         self.address = address
-        self._server, self._scenario = server, scenario
+        self._server, self._scenario, self._text = server, scenario, text
         self._lock, self._places = threading.Lock(), threading.BoundedSemaphore(MOST_PAGES)
         # a page may be closed at any moment, also while it is sent what was found
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
@@ -70,7 +71,7 @@ class Studio:
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page = Page(client, self._scenario)
+            page = Page(client, self._scenario, self._text)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")
@@ -95,11 +96,12 @@ class Studio:
 
 
 @contextmanager
-def studio(scenario: Scenario, *, host: str = LOOPBACK, port: int = 8080) -> Iterator[Studio]:
+def studio(scenario: Scenario, text: str = "", *, host: str = LOOPBACK, port: int = 8080) -> Iterator[Studio]:
     """Run a studio for the length of a block.
 
     Args:
         scenario: the scene that every page begins with.
+        text: of the file that it is from; empty without a file.
         host: address to listen at.
         port: where to listen; 0 for any that is free.
 
@@ -109,7 +111,7 @@ def studio(scenario: Scenario, *, host: str = LOOPBACK, port: int = 8080) -> Ite
     require_viser()
     import numba  # noqa: F401  here, since pages opened at once would import it in several threads at a time
 
-    running = Studio(*open_server(host, port), scenario)
+    running = Studio(*open_server(host, port), scenario, text)
     try:
         yield running
     finally:

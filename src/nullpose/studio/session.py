@@ -27,6 +27,7 @@ class Session:
 
     Args:
         scenario: the scene to begin with.
+        text: of the file that it is from; empty without a file.
         on_view: called after every change of the view.
         on_event: called with everything that the worker finds.
         rest_s: how long nothing must have changed before a proof begins, seconds.
@@ -39,6 +40,7 @@ class Session:
     def __init__(
         self,
         scenario: Scenario,
+        text: str = "",
         *,
         on_view: Callable[[], None] = lambda: None,
         on_event: Callable[[Event], None] = lambda event: None,
@@ -47,7 +49,7 @@ class Session:
         self._lock = threading.RLock()
         self._on_view, self._on_event = on_view, on_event
         self.version = 0
-        self.history = History(View(scenario=scenario, case=cases_of(scenario)[0]))
+        self.history = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
         self._found: dict[tuple[type, Case | None], Event] = {}
         self._worker = Worker(self._take, rest_s=rest_s)
 

@@ -36,11 +36,13 @@ class View:
         scenario: the scene.
         case: how its pose is chosen.
         compared: a second case to set beside it, or None.
+        text: of the file that the scenario is from, which may be out of date; empty without a file.
     """
 
     scenario: Scenario
     case: Case = OPTIMUM
     compared: Case | None = None
+    text: str = ""
 
     @property
     def cases(self) -> tuple[Case, ...]:
@@ -127,16 +129,17 @@ class View:
         told = f"given {typed or 'nothing'}; {allowed}; it stays at {self.power_text or 'none'}"
         raise ScenarioError([Fault("jamming power, dB", told)])
 
-    def with_scenario(self, scenario: Scenario) -> View:
+    def with_scenario(self, scenario: Scenario, text: str = "") -> View:
         """Return the view of another scenario, the cases kept where they have a meaning for it.
 
         Args:
             scenario: the new one.
+            text: of the file that it is from.
         """
         allowed = cases_of(scenario)
         case = self.case if self.case in allowed else allowed[0]
         compared = self.compared if self.compared in allowed and self.compared != case else None
-        return View(scenario=scenario, case=case, compared=compared)
+        return View(scenario=scenario, case=case, compared=compared, text=text)
 
     def with_case(self, case: Case) -> View:
         """Return the view with another case chosen.
