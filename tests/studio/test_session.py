@@ -14,10 +14,10 @@ from nullpose.solve import Status, solve
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.session import Session
-from nullpose.studio.view import PointKey
+from nullpose.studio.view import Key
 
 _PATIENCE_S = 120.0
-JAMMER: PointKey = ("jammers", 0)
+JAMMER: Key = ("jammers", 0)
 
 
 def wait(condition: Callable[[], bool]) -> None:

@@ -20,6 +20,8 @@ from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.case import case_named
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
+from nullpose.studio.editor import Editor
+from nullpose.studio.edits import new_scenario
 from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.panel import NO_CASE, Panel
@@ -27,7 +29,7 @@ from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.session import Session
-from nullpose.studio.view import PointKey, View
+from nullpose.studio.view import Key, View
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -68,6 +70,8 @@ class Page:
         self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._dragged)
         self._carpet = Carpet(client.scene)
+        own = client, self.session, self.panel
+        self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
         self._listen()
         self.session.start()
 
@@ -100,6 +104,7 @@ class Page:
             (panel.undo, session.undo),
             (panel.redo, session.redo),
             (panel.aim, self._aim),
+            (panel.new, self._new),
             *((button, partial(self._send, name, make)) for button, name, make in files),
         ]
         for control, action in controls:
@@ -134,14 +139,18 @@ class Page:
         self._slid_at = now
         self._change(lambda view: view.with_power_db(float(values[0])), f"power {self._gesture}")
 
-    def _dragged(self, key: PointKey, position_m: NDArray[np.float64], phase: str) -> None:
+    def _dragged(self, key: Key, position_m: NDArray[np.float64], phase: str) -> None:
         if phase == "start":
             self._gesture += 1
-            self._ground.hold(key)
+            self._ground.dragged = key
         self._change(lambda view: view.moved(key, position_m), f"drag {self._gesture}", "The new place")
         if phase == "end":
-            self._ground.hold(None)
+            self._ground.dragged = None
             self._refresh()  # which puts a point back whose new place was refused
+
+    def _new(self) -> None:
+        self._change(lambda view: view.with_scenario(new_scenario()))
+        self._aim()
 
     def _load(self, file: Any) -> None:
         def loaded(view: View) -> View:
@@ -196,7 +205,7 @@ class Page:
         size_m = scene_size_m(view.scenario)
         if not _OTHER_SIZE[0] < size_m / self._size_m < _OTHER_SIZE[1]:
             self._size_m = size_m
-        self._ground.show(view, self._size_m, freed=self.panel.freed.value)
+        self._ground.show(view, self._size_m, selected=self._editor.selected, freed=self.panel.freed.value)
         self._show_map()
         for slot, drone in enumerate(self._drones):
             answer = session.answer(view.cases[slot]) if slot < len(view.cases) else None
@@ -225,6 +234,7 @@ class Page:
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel
         panel.show(view)
+        self._editor.show(view)
         answer = session.current(view.case)
         panel.readout.content = readout_html(session)
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is

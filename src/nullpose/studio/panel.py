@@ -7,8 +7,9 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from nullpose.studio.case import cases_of
+from nullpose.studio.edits import ADDED
 from nullpose.studio.field_map import MAPS
-from nullpose.studio.readout import about_html, failure_html
+from nullpose.studio.readout import about_html, failure_html, tool_html
 from nullpose.studio.view import POWER_DB, View
 
 if TYPE_CHECKING:
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
+
+FENCE = "fence"
+"""In the choice of what to add: the fence, whose corners are clicked one after the other."""
 
 _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
     "Scene": {
@@ -46,6 +50,22 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "plot": ("html", "", "", {}),
         "undo": ("button", "Undo", "Take back the last change.", {"disabled": True}),
         "redo": ("button", "Redo", "Make the change again that was taken back.", {"disabled": True}),
+    },
+    "Edit": {
+        "add": (
+            "button_group",
+            "Add",
+            "Then click on the ground. A point is selected with a click, and then dragged by its arrows.",
+            {"options": (*ADDED, FENCE)},
+        ),
+        "tool": ("html", "", "", {}),
+        "vehicle_values": ("folder", "Vehicle and airspace", "", {}),
+        "new": (
+            "button",
+            "New scene",
+            "Begin with one node on an empty ground; Undo brings the last one back.",
+            {},
+        ),
     },
     "Map and view": {
         "map": (
@@ -114,6 +134,9 @@ class Panel(SimpleNamespace):
         close.on_click(lambda event: folder.remove())
         self.readout = gui.add_html("")
         self.faults = gui.add_html(failure_html(None))
+        self.own_values = gui.add_folder("Selected", visible=False)
+        with self.own_values:
+            self.delete = gui.add_button("Delete", order=1e6, hint="Take it out of the scene (key: Delete).")
         tabs = gui.add_tab_group()
         for tab, controls in _TABS.items():
             with tabs.add_tab(tab):
@@ -137,6 +160,22 @@ class Panel(SimpleNamespace):
         if view is not self._shown:  # what is being typed stays while the answers to a view come in
             self.show_power(view)
         self._shown = view
+
+    def show_selected(self, name: str) -> None:
+        """Show the fields of what is selected, or none.
+
+        Args:
+            name: of what is selected; empty if nothing is.
+        """
+        _put(self.own_values, visible=bool(name), **({"label": f"Selected: {name}"} if name else {}))
+
+    def show_tool(self, told: str) -> None:
+        """Say what the next click on the ground does.
+
+        Args:
+            told: a sentence; empty if it adds nothing.
+        """
+        _put(self.tool, content=tool_html(told))
 
     def show_power(self, view: View) -> None:
         """Show the jamming power that holds, in place of one that was typed and not taken.

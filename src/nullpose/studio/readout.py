@@ -184,6 +184,15 @@ def failure_html(error: ScenarioError | None, name: str = "") -> str:
     )
 
 
+def tool_html(told: str) -> str:
+    """Return what the next click on the ground does.
+
+    Args:
+        told: a sentence; empty if it adds nothing.
+    """
+    return f'<div data-np="tool" style="{_STYLE if told else ""};font-weight:600">{escape(told)}</div>'
+
+
 def drone_text(session: Session, slot: int) -> str:
     """Return a drone's label: its letter where two are compared, its value and how well it is known.
 

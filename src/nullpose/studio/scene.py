@@ -14,14 +14,14 @@ from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.colours import KIND_COLOURS, round_steps
 from nullpose.studio.drawing import add_label, add_lines, add_mesh
 from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, zone_mesh
-from nullpose.studio.view import PointKey, View
+from nullpose.studio.view import Key, View
 from nullpose.study.value_map import map_extent_m
 
 if TYPE_CHECKING:
     from viser import SceneApi
 
 FloatArray = NDArray[np.float64]
-OnDrag = Callable[[PointKey, FloatArray, str], None]
+OnDrag = Callable[[Key, FloatArray, str], None]
 
 _ZONE = (160, 60, 60)
 _WIRE = (150, 150, 150)
@@ -45,74 +45,78 @@ def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
 
 
 class Ground:
-    """What a scenario states, drawn: grid, points with their handles, airspace, zones, fence, keep-outs.
+    """What a scenario states, drawn: grid, points, arrows on one of them, airspace, zones, fence, keep-outs.
 
     Args:
         scene: the page's scene.
         on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
-            whose points have no handles.
+            whose points are not dragged.
+
+    Attributes:
+        dragged: the point that is being dragged, whose place the browser sets; or None.
     """
 
     def __init__(self, scene: SceneApi, on_drag: OnDrag | None) -> None:
         self._scene, self._on_drag = scene, on_drag
-        self._drawn: object = None
-        self._handles: dict[PointKey, Any] = {}
-        self.dragged: PointKey | None = None
+        self._ground: object = None
+        self._points: dict[Key, GroundPoint] = {}
+        self._drawn: dict[Key, object] = {}
+        self._handles: dict[Key, Any] = {}
+        self.dragged: Key | None = None
 
-    def show(self, view: View, size_m: float, *, freed: bool) -> None:
-        """Draw a view: moves the points that are there, and draws all anew if anything else has changed.
+    def show(self, view: View, size_m: float, *, selected: Key | None = None, freed: bool = False) -> None:
+        """Draw a view: moves the points that are there, and draws anew what has changed otherwise.
 
         Args:
             view: the view.
             size_m: of the scene, from which the sizes of what is drawn follow.
-            freed: whether points can be dragged off their altitude.
+            selected: the point that has arrows to drag it by, or None.
+            freed: whether it can be dragged off its altitude.
         """
-        points = dict(view.points())
-        stated = [(key, one.name, getattr(one, "uncertainty_m", None)) for key, one in points.items()]
-        drawn = (size_m, freed, view.scenario.airspace, stated)
-        if drawn != self._drawn:
-            self._drawn = drawn
-            self._draw(view, size_m, freed)
+        points = self._points = dict(view.points())
+        ground = (size_m, view.scenario.airspace, tuple(points))
+        if ground != self._ground:
+            self._ground = ground
+            self._draw_ground(view.scenario)
+        for gone in self._handles.keys() - points.keys():
+            self._scene.remove_by_name(_name(gone))
+            del self._handles[gone], self._drawn[gone]
+        keep_out_m, scale = view.scenario.airspace.keep_out_m, 1.1 if len(points) <= _CROWD else 0.8
         for key, point in points.items():
+            look = (point.name, getattr(point, "uncertainty_m", None), keep_out_m, size_m, scale)
+            drawn = (look, freed if key == selected else None)
+            if drawn != self._drawn.get(key):
+                self._drawn[key] = drawn
+                self._handles[key] = self._handle(key, size_m, drawn[1])
+                self._draw_point(key, size_m, keep_out_m, scale)
             handle = self._handles[key]
             if key != self.dragged and not np.allclose(handle.position, point.position_m, atol=1e-6):
                 handle.position = point.position_m
 
-    def hold(self, key: PointKey | None) -> None:
-        """Let one handle be dragged and take away the others', which only cost time meanwhile.
-
-        Args:
-            key: whose handle; None to end the drag: every point has its handle again.
-        """
-        self.dragged = key
-        for other, handle in self._handles.items():
-            handle.disable_axes = handle.disable_sliders = key not in (None, other)
-
-    def _draw(self, view: View, size_m: float, freed: bool) -> None:
-        for part in ("/points", "/ground", "/airspace"):
+    def _draw_ground(self, scenario: Scenario) -> None:
+        for part in ("/ground", "/airspace"):
             self._scene.remove_by_name(part)
-        airspace, points = view.scenario.airspace, dict(view.points())
-        self._draw_grid(view.scenario)
-        self._draw_airspace(view.scenario)
-        self._handles = {key: self._handle(key, one, size_m, freed) for key, one in points.items()}
-        scale = 1.1 if len(points) <= _CROWD else 0.8
-        keep_out = ellipsoid_mesh(airspace.keep_out_m * np.eye(3), 6, 10)
-        for key, point in points.items():
-            name, colour = _name(key), KIND_COLOURS[key[0]]
-            mark = MARKS[key[0]].placed(0.022 * size_m)
-            add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
-            # wires: what is see-through below the map would be hidden by it
-            add_mesh(self._scene, f"{name}/keep-out", keep_out, _WIRE, wireframe=True)
-            if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
-                near = ellipsoid_mesh(point.uncertainty_matrix_m, 10, 16)
-                add_mesh(self._scene, f"{name}/uncertainty", near, colour, wireframe=True)
-            add_label(self._scene, f"{name}/label", point.name, (0.0, 0.0, 0.062 * size_m), scale)
+        self._draw_grid(scenario)
+        self._draw_airspace(scenario)
 
-    def _handle(self, key: PointKey, point: GroundPoint, size_m: float, freed: bool) -> Any:
-        """Return the frame of a point, with arrows to drag it by if points can be dragged."""
-        on_drag = self._on_drag
-        if on_drag is None:
-            return self._scene.add_frame(_name(key), show_axes=False, position=point.position_m)
+    def _draw_point(self, key: Key, size_m: float, keep_out_m: float, scale: float) -> None:
+        name, colour, point = _name(key), KIND_COLOURS[key[0]], self._points[key]
+        mark = MARKS[key[0]].placed(0.022 * size_m)
+        add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
+        # wires: what is see-through below the map would be hidden by it
+        keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
+        add_mesh(self._scene, f"{name}/keep-out", keep_out, _WIRE, wireframe=True)
+        if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
+            near = ellipsoid_mesh(point.uncertainty_matrix_m, 10, 16)
+            add_mesh(self._scene, f"{name}/uncertainty", near, colour, wireframe=True)
+        add_label(self._scene, f"{name}/label", point.name, (0.0, 0.0, 0.062 * size_m), scale)
+
+    def _handle(self, key: Key, size_m: float, freed: bool | None) -> Any:
+        """Return the frame of a point, in place of the one before; with arrows unless freed is None."""
+        self._scene.remove_by_name(_name(key))
+        on_drag, position_m = self._on_drag, self._points[key].position_m
+        if on_drag is None or freed is None:
+            return self._scene.add_frame(_name(key), show_axes=False, position=position_m)
         arrows = self._scene.add_transform_controls(
             _name(key),
             scale=0.1 * size_m,
@@ -121,13 +125,13 @@ class Ground:
             disable_rotations=True,
             depth_test=False,
             opacity=0.75,
-            position=point.position_m,
+            position=position_m,
         )
 
         async def on_update(event: Any) -> None:
             position = np.array(event.target.position, dtype=float)
             if not freed:
-                position[2] = point.position_m[2]
+                position[2] = self._points[key].position_m[2]
             on_drag(key, position, event.phase)
 
         arrows.on_update(on_update)
@@ -173,6 +177,6 @@ class Ground:
             add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, 0.9)
 
 
-def _name(key: PointKey) -> str:
+def _name(key: Key) -> str:
     kind, index = key
     return f"/points/{kind}-{index}"

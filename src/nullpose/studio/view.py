@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,11 +17,12 @@ from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, Scenario
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 
-Kind = Literal["nodes", "jammers", "eavesdroppers"]
-PointKey = tuple[Kind, int]
-"""A ground point: which list of the scenario it is in, and where there."""
+Kind = Literal["nodes", "jammers", "eavesdroppers", "no_fly"]
+"""A list of the scenario, the last one being that of its airspace."""
+Key = tuple[Kind, int]
+"""A ground point or a no-fly zone: which list of the scenario it is in, and where there."""
 
-_KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers")
+KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 
 POWER_DB = (-30.0, 40.0)
@@ -49,13 +50,36 @@ class View:
         """The cases to solve, the chosen one first."""
         return (self.case,) if self.compared is None else (self.case, self.compared)
 
-    def points(self) -> Iterator[tuple[PointKey, GroundPoint]]:
+    def points(self) -> Iterator[tuple[Key, GroundPoint]]:
         """Yield every ground point with its key."""
-        for kind in _KINDS:
-            for index, point in enumerate(getattr(self.scenario, kind)):
+        for kind in KINDS[:-1]:
+            for index, point in enumerate(self.members(kind)):
                 yield (kind, index), point
 
-    def moved(self, key: PointKey, position_m: ArrayLike) -> View:
+    def members(self, kind: Kind) -> tuple[Any, ...]:
+        """Return a list of the scenario.
+
+        Args:
+            kind: which.
+        """
+        return tuple(getattr(self.scenario.airspace if kind == "no_fly" else self.scenario, kind))
+
+    def with_members(self, kind: Kind, members: Iterable[Any]) -> View:
+        """Return the view with another list in the scenario.
+
+        Args:
+            kind: which.
+            members: the points or zones that it is to hold.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        update: dict[str, Any] = {kind: tuple(members)}
+        if kind == "no_fly":
+            update = {"airspace": self.scenario.airspace.model_copy(update=update)}
+        return self.with_scenario(self.scenario.model_copy(update=update))
+
+    def moved(self, key: Key, position_m: ArrayLike) -> View:
         """Return the view with one ground point elsewhere, to a millimetre.
 
         Args:
@@ -67,9 +91,9 @@ class View:
         """
         kind, index = key
         east, north, up = np.round(np.asarray(position_m, dtype=float), _ROUND_M).tolist()
-        points = list(getattr(self.scenario, kind))
+        points = list(self.members(kind))
         points[index] = points[index].model_copy(update={"position_m": (east, north, up)})
-        return replace(self, scenario=self.scenario.model_copy(update={kind: tuple(points)}))
+        return self.with_members(kind, points)
 
     @property
     def power_db(self) -> float | None:

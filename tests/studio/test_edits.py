@@ -1,0 +1,89 @@
+"""Editing keeps scenarios sound: what is added, deleted or typed is there, and nothing else changes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nullpose import load
+from nullpose.errors import ScenarioError
+from nullpose.studio.edits import ADDED, entries_of, new_scenario, with_added, with_fence, with_typed, without
+from nullpose.studio.view import View
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml") if path.stem != "study")
+PAPER = View(scenario=load(EXAMPLES / "paper.toml"))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_what_is_typed_unchanged_changes_nothing(name: str) -> None:
+    """The texts that are shown, taken as they are, leave the very same view."""
+    view = View(scenario=load(EXAMPLES / f"{name}.toml"))
+    keys = [
+        None,
+        *(key for key, _ in view.points()),
+        *(("no_fly", i) for i in range(len(view.members("no_fly")))),
+    ]
+    for key in keys:
+        entries = entries_of(view, key)
+        assert with_typed(view, entries, {entry.path: entry.text for entry in entries}) is view
+
+
+@pytest.mark.parametrize("what", ["node", "jammer", "no-fly zone"])
+def test_what_is_added_can_be_deleted_again(what: str) -> None:
+    """It stands where the click was, under a name of its own; without it the scene is as before."""
+    more = with_added(PAPER, what, (-12.345, 7.0), 100.0)
+    kind = ADDED[what]
+    one = more.members(kind)[-1]
+    place = one.centre_m if kind == "no_fly" else one.position_m[:2]
+    assert place == pytest.approx((-12.345, 7.0), abs=0.006)
+    assert len({each.name for each in (*more.members("nodes"), *more.members("jammers"))}) == len(
+        (*more.members("nodes"), *more.members("jammers"))
+    )
+    assert without(more, (kind, len(more.members(kind)) - 1)) == PAPER
+
+
+def test_a_scene_that_has_no_use_for_an_eavesdropper_refuses_it() -> None:
+    """The fault says with which objective it has a meaning."""
+    with pytest.raises(ScenarioError, match="secrecy-rate"):
+        with_added(PAPER, "eavesdropper", (1.0, 2.0), 100.0)
+    secret = View(scenario=load(EXAMPLES / "eavesdropper.toml"))
+    assert len(with_added(secret, "eavesdropper", (1.0, 2.0), 100.0).members("eavesdroppers")) == 2
+
+
+def test_the_last_node_stays() -> None:
+    """A scene without a node is refused."""
+    with pytest.raises(ScenarioError, match="nodes"):
+        without(View(scenario=new_scenario()), ("nodes", 0))
+
+
+def test_a_tilt_limit_comes_and_goes() -> None:
+    """A number limits the tilt, "any" frees it, and the mount alone leaves it free."""
+
+    def typed(view: View, path: str, text: str) -> View:
+        return with_typed(view, entries_of(view, None), {path: text})
+
+    limited = typed(PAPER, "airframe.tilt_max_deg", "30")
+    assert limited.scenario.airframe is not None
+    assert np.degrees(limited.scenario.airframe.tilt_max_rad) == pytest.approx(30.0)
+    assert typed(limited, "airframe.tilt_max_deg", "any").scenario.axis_band == (0.0, 1.0)
+    mounted = typed(PAPER, "airframe.mount_deg", "90").scenario
+    assert mounted.airframe is not None
+    assert (mounted.airframe.mount_deg, mounted.axis_band) == (90.0, (0.0, 1.0))
+
+
+def test_all_faults_of_what_is_typed_are_told() -> None:
+    """A name that is taken and a negative power are both told, by path."""
+    entries = entries_of(PAPER, ("jammers", 0))
+    with pytest.raises(ScenarioError) as refused:
+        with_typed(PAPER, entries, {"jammers[0].power_w": "-3", "jammers[0].name": "S1"})
+    assert {fault.path for fault in refused.value.faults} == {"jammers[0].name", "jammers[0].power_w"}
+
+
+def test_a_fence_is_drawn_and_taken_away() -> None:
+    """Its corners are those clicked; an empty text takes it away."""
+    corners = [(-40.0, -20.0), (40.0, -20.0), (40.0, 70.0)]
+    fenced = with_fence(PAPER, corners)
+    assert np.allclose(fenced.scenario.airspace.geofence_m, corners)
+    entries = entries_of(fenced, None)
+    assert with_typed(fenced, entries, {"airspace.geofence_m": ""}) == PAPER
