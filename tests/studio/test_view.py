@@ -94,8 +94,8 @@ def test_a_case_is_not_compared_with_itself(paper: Scenario) -> None:
 
 
 def test_the_files_text_stays_with_its_scenario(paper: Scenario) -> None:
-    """Changes keep the text that comments are taken from; another scenario has its own, or none."""
+    """Changes keep the text that comments are taken from; another file has its own."""
     view = View(scenario=paper, text="# mine").moved(("nodes", 0), (1.0, 2.0, 3.0)).with_power_db(3.0)
     assert view.text == "# mine"
     assert view.with_scenario(paper, "# theirs").text == "# theirs"
-    assert view.with_scenario(paper).text == ""
+    assert view.with_scenario(paper).text == "# mine"

@@ -149,7 +149,7 @@ class Page:
             self._refresh()  # which puts a point back whose new place was refused
 
     def _new(self) -> None:
-        self._change(lambda view: view.with_scenario(new_scenario()))
+        self._change(lambda view: view.with_scenario(new_scenario(), ""))
         self._aim()
 
     def _load(self, file: Any) -> None:

@@ -153,17 +153,18 @@ class View:
         told = f"given {typed or 'nothing'}; {allowed}; it stays at {self.power_text or 'none'}"
         raise ScenarioError([Fault("jamming power, dB", told)])
 
-    def with_scenario(self, scenario: Scenario, text: str = "") -> View:
+    def with_scenario(self, scenario: Scenario, text: str | None = None) -> View:
         """Return the view of another scenario, the cases kept where they have a meaning for it.
 
         Args:
             scenario: the new one.
-            text: of the file that it is from.
+            text: of the file that it is from; None if it is still the one of this view.
         """
         allowed = cases_of(scenario)
         case = self.case if self.case in allowed else allowed[0]
         compared = self.compared if self.compared in allowed and self.compared != case else None
-        return View(scenario=scenario, case=case, compared=compared, text=text)
+        kept = self.text if text is None else text
+        return View(scenario=scenario, case=case, compared=compared, text=kept)
 
     def with_case(self, case: Case) -> View:
         """Return the view with another case chosen.
