@@ -14,7 +14,11 @@ from ipaddress import ip_address
 from typing import Any
 from urllib.parse import parse_qs
 
+from nullpose.studio.asked import ASKED, asked_of
+from nullpose.studio.frame import framed
+
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
+_ALIVE = "/alive"  # where a page asks whether its studio still runs
 _HEADERS = {"Referrer-Policy": "no-referrer", "Content-Security-Policy": "frame-ancestors 'none'"}
 
 _NO_TOKEN = "The token is missing or of another run: open the whole address that nullpose studio printed.\n"
@@ -30,7 +34,7 @@ class Guard:
     """Sees every request before viser does, for a page and for a websocket alike.
 
     No cookie is set: browsers send one to every port of a host, thus to other people's servers on it too.
-    The token is in the page's address, and viser is told by its parameter ``websocket`` to use it there.
+    The token is in the page's address, and the script of the frame puts it into that of the websocket.
 
     Args:
         host: address that is listened at, as it was given.
@@ -80,11 +84,12 @@ class Guard:
         given = parse_qs(query)
         if not hmac.compare_digest(given.get("token", [""])[0].encode(), self._token.encode()):
             return connection.respond(HTTPStatus.FORBIDDEN, _NO_TOKEN)
-        if path == "/" and "Upgrade" not in request.headers and "websocket" not in given:
-            response = connection.respond(HTTPStatus.FOUND, "")
-            response.headers["Location"] = f"/?{query}&websocket=ws://{hosts[0]}/?token={self._token}"
+        if "Upgrade" in request.headers:  # this task goes on to serve the websocket
+            ASKED.set(asked_of(given, f"http://{hosts[0]}/?token={self._token}"))
+        if path == _ALIVE:
+            response = connection.respond(HTTPStatus.OK, "")
         else:
-            response = viser(connection, request)
+            response = _page(viser, connection, request) if path == "/" else viser(connection, request)
         if response is not None:
             response.headers.update(_HEADERS)
         return response
@@ -96,6 +101,17 @@ class Guard:
         names = {_bracketed(name) for name in self._names}
         allowed = {f"{name}:{port}" for name in names} | (names if port == 80 else set())
         return self._anywhere or hosts[0].lower() in allowed
+
+
+def _page(viser: Callable[[Any, Any], Any], connection: Any, request: Any) -> Any:
+    """Return viser's page with what the studio adds to it; None for a websocket."""
+    request.headers.pop("Accept-Encoding", None)
+    response = viser(connection, request)
+    if response is not None:
+        response.body = framed(response.body)
+        response.headers.pop("Content-Length")
+        response.headers["Content-Length"] = str(len(response.body))
+    return response
 
 
 def _bracketed(name: str) -> str:

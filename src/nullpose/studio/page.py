@@ -24,10 +24,13 @@ from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
 from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.field_map import MAPS, FieldMap
-from nullpose.studio.panel import NO_CASE, Panel
+from nullpose.studio.history import History
+from nullpose.studio.overlay import Scale, overlay_html
+from nullpose.studio.panel import NO_CASE, Panel, show_link
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
+from nullpose.studio.scene_link import scene_to_text
 from nullpose.studio.session import Session
 from nullpose.studio.view import Key, View
 
@@ -51,12 +54,21 @@ class Page:
         scenario: the scene to begin with.
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
+        address: of the studio as this browser reaches it.
+        history: what to go on from, in place of the scene; None to begin anew.
     """
 
     def __init__(
-        self, client: ClientHandle, scenario: Scenario, text: str = "", *, dark: bool = False
+        self,
+        client: ClientHandle,
+        scenario: Scenario,
+        text: str = "",
+        *,
+        dark: bool = False,
+        address: str = "",
+        history: History | None = None,
     ) -> None:
-        self._client = client
+        self._client, self._address = client, address
         self._lock = threading.RLock()
         self._open = True
         self._gesture = 0
@@ -64,9 +76,11 @@ class Page:
         self._late: threading.Timer | None = None
         self._size_m = np.inf
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
+        self._scale: Scale | None = None
         self._link_range_db = LINK_RANGE_DB
         self._drones = [Drone(client.scene, slot) for slot in (0, 1)]
-        self.session = Session(scenario, text, on_view=self._view_changed, on_event=self._refresh)
+        told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._refresh}
+        self.session = Session(scenario, text, history=history, **told)
         self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._dragged)
         self._carpet = Carpet(client.scene)
@@ -105,6 +119,7 @@ class Page:
             (panel.redo, session.redo),
             (panel.aim, self._aim),
             (panel.new, self._new),
+            (panel.link, self._link),
             *((button, partial(self._send, name, make)) for button, name, make in files),
         ]
         for control, action in controls:
@@ -119,10 +134,25 @@ class Page:
         try:
             self.session.change(change, gesture)
         except ScenarioError as error:
-            self.panel.faults.content = failure_html(error, name)
+            self.tell(error, name)
             return False
         self.panel.faults.content = failure_html(None)
         return True
+
+    def tell(self, error: ScenarioError, name: str) -> None:
+        """Show the faults of what was refused.
+
+        Args:
+            error: with the faults.
+            name: what was refused.
+        """
+        self.panel.faults.content = failure_html(error, name)
+
+    def _link(self) -> None:
+        try:
+            show_link(self._client.gui, f"{self._address}&scene={scene_to_text(self.session.view.scenario)}")
+        except NullposeError as error:
+            self._client.add_notification("No link", str(error), color="red", auto_close_seconds=8.0)
 
     def _compare(self, label: str) -> None:
         case = None if label == NO_CASE else case_named(label)
@@ -224,9 +254,10 @@ class Page:
         field = None if maps is None else maps.named(name)
         if field is None:
             self._carpet.hide()
-            self.panel.scale.content = ""
+            self.panel.scale.content, self._scale = "", None
             return
         ends = self._carpet.show(field)
+        self._scale = Scale(field=field, ends=ends, of_value=name == MAPS[0])
         self.panel.scale.content = scale_svg(*ends, field.title, field.unit)
         if name == MAPS[0] and field.unit == "dB":
             self._link_range_db = ends
@@ -237,6 +268,7 @@ class Page:
         self._editor.show(view)
         answer = session.current(view.case)
         panel.readout.content = readout_html(session)
+        panel.overlay.content = overlay_html(session, self._scale)
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
         panel.plot.content = power_plot_svg(
             session.curve,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from html import escape
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +100,12 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "save": ("button", "Save scenario", "Download the scene as a scenario file (TOML).", {}),
         "pose": ("button", "Export pose", "Download the pose and its values (JSON).", {}),
         "figure": ("button", "Export figure", "Download the power plot (PNG).", {}),
+        "link": (
+            "button",
+            "Link to this scene",
+            "Show an address that opens this scene in another tab, as long as this studio runs.",
+            {},
+        ),
         "html": (
             "button",
             "Export scene",
@@ -113,7 +120,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
-    A text is in a form of its own, ``form``, that is submitted with Enter.
+    A text is in a form of its own, ``form``, that is submitted with Enter. ``overlay`` is not in the panel.
 
     Args:
         gui: the page's interface.
@@ -132,6 +139,7 @@ class Panel(SimpleNamespace):
             gui.add_html(about_html())
             close = gui.add_button("Got it", hint="Close this explanation.")
         close.on_click(lambda event: folder.remove())
+        self.overlay = gui.add_html("", visible=False)  # shown by the frame's script
         self.readout = gui.add_html("")
         self.faults = gui.add_html(failure_html(None))
         self.own_values = gui.add_folder("Selected", visible=False)
@@ -187,6 +195,24 @@ class Panel(SimpleNamespace):
         _put(self.power_text, disabled=view.power_db is None, value=view.power_text)
         if view.power_db is not None:
             _put(self.power, value=(round(min(max(view.power_db, POWER_DB[0]), POWER_DB[1]), 6),))
+
+
+def show_link(gui: GuiApi, address: str) -> None:
+    """Show an address to copy, until it is closed.
+
+    Args:
+        gui: the page's interface.
+        address: which.
+    """
+    modal = gui.add_modal("Link to this scene")
+    with modal:
+        gui.add_html(
+            f'<input data-np="link" readonly aria-label="address" value="{escape(address)}" '
+            'onfocus="this.select()" style="width:100%;font:13px monospace;padding:6px">'
+            '<p style="font-size:13px">It holds this run\'s token: whoever has it can use this studio.</p>'
+        )
+        close = gui.add_button("Close")
+    close.on_click(lambda event: modal.close())
 
 
 def _put(control: Any, **values: object) -> None:

@@ -60,7 +60,7 @@ def readout_html(session: Session) -> str:
 def _case_html(session: Session, slot: int) -> str:
     case = session.view.cases[slot]
     answer, current, status = session.answer(case), session.current(case), session.status(case)
-    colour, mark = next(look for start, look in _TONES.items() if status.startswith(start))
+    _, colour, mark = status_look(status)
     head = (
         f'<div style="font-weight:600;color:{css(SLOTS[slot])}">{_letter(session, slot)}'
         f"{escape(case.label)}</div>"
@@ -74,6 +74,15 @@ def _case_html(session: Session, slot: int) -> str:
         f'{head}<div data-np="numbers-{slot}" data-version="{answer.version}" style="{shade}">'
         f"{_value(answer, slot)}{_nodes(answer)}{_pose(answer.result, slot)}{_note(answer.note)}</div>"
     )
+
+
+def status_look(status: str) -> tuple[str, str, str]:
+    """Return how a status begins, by which looks are told apart, its colour on white, and its mark.
+
+    Args:
+        status: as the session tells it.
+    """
+    return next((start, *look) for start, look in _TONES.items() if status.startswith(start))
 
 
 def _note(text: str) -> str:

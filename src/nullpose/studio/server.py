@@ -8,11 +8,16 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from io import StringIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.studio.asked import ASKED, Asked
+from nullpose.studio.autosave import Autosave
 from nullpose.studio.camera import aim
+from nullpose.studio.history import History
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser
+from nullpose.studio.scene_link import SCENE, scenario_from_scene
 
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer
@@ -32,6 +37,13 @@ _FAULT = "The page could not be made; the terminal says why."
 _log = logging.getLogger("nullpose.studio")
 
 
+class _Tab(NamedTuple):
+    """Which tab a page is of, and what it went on from."""
+
+    name: str
+    begun: History | None
+
+
 class Studio:
     """A running studio; each browser that opens it has a page and a session of its own.
 
@@ -49,6 +61,8 @@ class Studio:
         # a page may be closed at any moment, also while it is sent what was found
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
+        self._saved = Autosave()
+        self._tabs: dict[int, _Tab] = {}
         self.pages: dict[int, Any] = {}
         aim(server.initial_camera, scenario)
         server.on_client_connect(self._connect)
@@ -58,20 +72,23 @@ class Studio:
         """End every page's thread and the server."""
         with self._lock:
             self._closed = True
-            pages, self.pages = list(self.pages.values()), {}
+            pages, self.pages, self._tabs = list(self.pages.values()), {}, {}
         for page in pages:
             page.close()
         with redirect_stdout(StringIO()):
             self._server.stop()
 
-    def _connect(self, client: ClientHandle) -> None:
-        from nullpose.studio.page import Page
+    async def _connect(self, client: ClientHandle) -> None:
+        # what the websocket asked for is known here, in its task, but to make a page would hold up all others
+        arguments = (client, ASKED.get(Asked()))
+        threading.Thread(target=self._serve, args=arguments, name="nullpose-studio-page", daemon=True).start()
 
+    def _serve(self, client: ClientHandle, asked: Asked) -> None:
         if not self._places.acquire(timeout=_RELOAD_S):
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page = Page(client, self._scenario, self._text)
+            page, tab = self._page(client, asked)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")
@@ -79,18 +96,37 @@ class Studio:
             return
         with self._lock:
             gone = self._closed or client.client_id not in self._server.get_clients()
-            if not gone:
-                self.pages[client.client_id] = page
+            self._tabs[client.client_id] = tab
+            self.pages[client.client_id] = page
         if gone:
-            self._end(page)
+            self._disconnect(client)
+
+    def _page(self, client: ClientHandle, asked: Asked) -> tuple[Page, _Tab]:
+        """Return a page that goes on where its tab was, or begins with its address's scene or the file's."""
+        from nullpose.studio.page import Page
+
+        name = asked.page and f"{asked.page} {asked.scene}"  # another scene in the address is a new beginning
+        with self._lock:
+            live = [self.pages[key].session.history for key, tab in self._tabs.items() if tab.name == name]
+            history = self._saved.begin(name, live)
+        begun, refused = (self._scenario, self._text), None
+        if history is None and asked.scene:
+            try:
+                begun = scenario_from_scene(asked.scene), ""
+            except ScenarioError as error:
+                refused = error
+        page = Page(client, *begun, dark=asked.dark, address=asked.address, history=history)
+        if refused is not None:
+            page.tell(refused, SCENE)
+        return page, _Tab(name, history)
 
     def _disconnect(self, client: ClientHandle) -> None:
         with self._lock:
-            page = self.pages.pop(client.client_id, None)
-        if page is not None:
-            self._end(page)
-
-    def _end(self, page: Page) -> None:
+            page, tab = self.pages.pop(client.client_id, None), self._tabs.pop(client.client_id, None)
+            if page is None or tab is None:
+                return
+            begun = [other.begun for other in self._tabs.values() if other.name == tab.name]
+            self._saved.end(tab.name, page.session.history, begun)
         page.close()
         self._places.release()
 

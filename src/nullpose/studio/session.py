@@ -31,6 +31,7 @@ class Session:
         on_view: called after every change of the view.
         on_event: called with everything that the worker finds.
         rest_s: how long nothing must have changed before a proof begins, seconds.
+        history: what to go on from, in place of the scene; None to begin anew.
 
     Attributes:
         version: of the scene now.
@@ -45,11 +46,13 @@ class Session:
         on_view: Callable[[], None] = lambda: None,
         on_event: Callable[[Event], None] = lambda event: None,
         rest_s: float = REST_S,
+        history: History | None = None,
     ) -> None:
         self._lock = threading.RLock()
         self._on_view, self._on_event = on_view, on_event
         self.version = 0
-        self.history = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
+        begun = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
+        self.history = begun if history is None else replace(history, gesture="")
         self._found: dict[tuple[type, Case | None], Event] = {}
         self._worker = Worker(self._take, rest_s=rest_s)
 

@@ -159,16 +159,22 @@ def test_two_hosts_or_two_origins_are_refused(alone: Asked) -> None:
 
 
 def test_the_page_keeps_its_token_and_stands_in_no_frame(alone: Asked) -> None:
-    """The page is told where its websocket is; it names its address to nobody, and no page can wrap it."""
+    """What is asked for names its address to nobody, stands in no page, and sets no cookie."""
     host = f"localhost:{alone.port}"
-    status, headers = alone.get(f"/?{alone.query}&fixedDpr=0.5", host)
-    assert status == 302
-    assert headers["Location"] == f"/?{alone.query}&fixedDpr=0.5&websocket=ws://{host}/?{alone.query}"
-    status, headers = alone.get(headers["Location"], host)
-    assert status == 200
-    assert headers["Referrer-Policy"] == "no-referrer"
-    assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
-    assert headers["Set-Cookie"] is None
+    for path in ("/", "/index.html", "/alive"):
+        status, headers = alone.get(f"{path}?{alone.query}&fixedDpr=0.5", host)
+        assert status == 200
+        assert headers["Referrer-Policy"] == "no-referrer"
+        assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
+        assert headers["Set-Cookie"] is None
+
+
+def test_whether_a_studio_still_runs_is_told_to_its_own_page_only(alone: Asked) -> None:
+    """Another run's page is refused, as for everything else."""
+    host = f"localhost:{alone.port}"
+    for query, told in ((alone.query, 200), (f"token={OTHER_TOKEN}", 403), ("", 403)):
+        assert alone.get(f"/alive?{query}", host)[0] == told
+    assert alone.get(f"/alive?{alone.query}", host, "http://evil.example")[0] == 403
 
 
 def test_every_run_has_a_token_of_its_own(alone: Asked) -> None:

@@ -1,0 +1,115 @@
+// Runs before viser. It names the tab, tells viser where its websocket is, shows the overlay and the state
+// of the connection, and folds the panel on a phone.
+(() => {
+  "use strict";
+  const LONGEST_SCENE = 7900; // the server takes a request line of 8192 bytes; what is cut off is refused there
+  const ASK_MS = 2000;
+  const WORDS = {
+    connecting: "connecting",
+    connected: "connected",
+    reconnecting: "reconnecting",
+    behind: "not connected; goes on when this window is in front",
+    ended: "not connected: the studio was ended or cannot be reached; a new one prints a new address to open",
+    restarted: "not connected: the studio was ended or restarted; open the address that the new one prints",
+  };
+  const query = new URLSearchParams(location.search);
+  const token = query.get("token");
+
+  function tab() {
+    const bytes = crypto.getRandomValues(new Uint8Array(16));
+    const made = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+    try {
+      const kept = sessionStorage.getItem("nullpose-page");
+      sessionStorage.setItem("nullpose-page", kept ?? made);
+      return kept ?? made;
+    } catch {
+      return made; // storage is forbidden, as in some frames: the tab is then new each time
+    }
+  }
+
+  function address(websocket) {
+    for (const name of ["page", "dark", "websocket"]) query.delete(name);
+    if (websocket) query.set("websocket", websocket);
+    history.replaceState(null, "", `?${query}`);
+  }
+
+  const own = new URLSearchParams({ token, page: tab() });
+  if (matchMedia("(prefers-color-scheme: dark)").matches) own.set("dark", "1");
+  if (query.has("scene")) own.set("scene", query.get("scene").slice(0, LONGEST_SCENE));
+  address(`ws://${location.host}/?${own}`);
+
+  const overlay = document.createElement("div");
+  overlay.id = "np-overlay";
+  overlay.innerHTML = '<div data-np="overlay"></div><div data-np="connection" role="status"></div>';
+  const line = overlay.lastChild;
+
+  function tell(state) {
+    overlay.dataset.state = state;
+    if (line.textContent !== WORDS[state]) line.textContent = WORDS[state];
+  }
+
+  let asking = false;
+  async function ask() {
+    asking = true;
+    while (overlay.dataset.state !== "connected") {
+      let state = "reconnecting";
+      try {
+        const answer = await fetch(`/alive?token=${token}`, { cache: "no-store" });
+        state = answer.ok ? (document.hasFocus() ? "reconnecting" : "behind") : "restarted";
+      } catch {
+        state = "ended";
+      }
+      if (overlay.dataset.state === "connected") break;
+      tell(state);
+      await new Promise((resume) => setTimeout(resume, ASK_MS));
+    }
+    asking = false;
+  }
+
+  function show(message) {
+    const content = (message.props ?? message.updates)?.content;
+    if (typeof content !== "string" || !content.startsWith('<div data-np="overlay"')) return;
+    overlay.firstChild.outerHTML = content;
+  }
+
+  let folded = !matchMedia("(max-width: 36em)").matches; // viser's own limit for its sheet at the bottom
+  function fold() {
+    const handle = document.querySelector("svg.tabler-icon-cloud-check")?.parentElement;
+    if (folded || !handle) return;
+    folded = true;
+    handle.click();
+  }
+
+  function hear(data) {
+    if (data?.type === "connected") {
+      tell("connected");
+      address();
+      setTimeout(fold, 0);
+    } else if (data?.type === "closed") {
+      if (!asking) {
+        tell("reconnecting");
+        ask();
+      }
+    } else if (data?.type === "message_batch") {
+      data.messages.forEach(show);
+      fold();
+    }
+  }
+
+  // viser's worker has the websocket; what it says to the page is heard here too, whatever the panel shows
+  window.Worker = class extends window.Worker {
+    constructor(...given) {
+      super(...given);
+      this.addEventListener("message", (event) => hear(event.data));
+    }
+  };
+
+  addEventListener("DOMContentLoaded", () => {
+    tell("connecting");
+    document.body.append(overlay);
+    // viser's notices are below the overlay
+    const measure = () =>
+      document.documentElement.style.setProperty("--np-height", `${overlay.offsetHeight}px`);
+    new ResizeObserver(measure).observe(overlay);
+  });
+})();
