@@ -1,12 +1,15 @@
 """Where the camera stands, and how far it sees."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from nullpose import load, solve
 from nullpose.scenario import Scenario
 from nullpose.studio.camera import aim
+from nullpose.studio.eye import Eye
 from nullpose.studio.scene import scene_size_m
 
 
@@ -17,7 +20,7 @@ def test_nothing_of_a_scene_is_cut_away(paper: Scenario, scale: float) -> None:
         one.model_copy(update={"position_m": tuple(scale * np.array(one.position_m))}) for one in paper.nodes
     )
     scenario = paper.model_copy(update={"nodes": nodes})
-    camera = SimpleNamespace()
+    camera = SimpleNamespace(position=np.ones(3), look_at=np.zeros(3), fov=1.3)
     aim(camera, scenario)
     reach_m = scene_size_m(scenario)
     forward = (camera.look_at - camera.position) / np.linalg.norm(camera.look_at - camera.position)
@@ -25,3 +28,20 @@ def test_nothing_of_a_scene_is_cut_away(paper: Scenario, scale: float) -> None:
         corner = camera.look_at + reach_m * (np.array(offset) - 0.5)
         assert camera.near < (corner - camera.position) @ forward < camera.far
     assert np.linalg.norm(camera.position - camera.look_at) < 0.1 * camera.far
+
+
+@pytest.mark.parametrize("canvas", [(1280, 800), (890, 800), (390, 844)])
+@pytest.mark.parametrize("name", ["paper", "field", "no-fly", "eavesdropper"])
+def test_all_that_matters_is_seen(name: str, canvas: tuple[int, int]) -> None:
+    """At any aspect every point, the drone and its pattern are on the canvas."""
+    scenario = load(Path(__file__).parents[2] / "examples" / f"{name}.toml")
+    pose = solve(scenario, certify=False).pose
+    camera = SimpleNamespace(
+        position=np.ones(3), look_at=np.zeros(3), fov=1.3, image_width=canvas[0], image_height=canvas[1]
+    )
+    aim(camera, scenario, pose)
+    points = [one.position_m for one in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
+    reach_m = 0.12 * scene_size_m(scenario) * np.vstack([np.eye(3), -np.eye(3)])
+    pixels = Eye.of(camera).pixels(np.vstack([points, pose.position_m + reach_m]))
+    assert np.all(pixels[:, 2] > camera.near)
+    assert np.all((pixels[:, :2] > 0.0) & (pixels[:, :2] < canvas))

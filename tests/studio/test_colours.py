@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, seed
 from hypothesis import strategies as st
 
-from nullpose.studio.colours import KIND_COLOURS, css, linear_colours, scale_colours, scale_range
+from nullpose.studio.colours import linear_colours, scale_colours, scale_range
 
 
 def test_brightness_grows_along_the_scale() -> None:
@@ -40,11 +40,6 @@ def test_a_scale_of_rates_shows_small_differences(values: list[float]) -> None:
 def test_nothing_finite_has_a_scale_too() -> None:
     """Without a single value the scale is still one."""
     assert scale_range([np.nan])[0] < scale_range([np.nan])[1]
-
-
-def test_kinds_differ_in_colour() -> None:
-    """Nodes, jammers and eavesdroppers have three colours."""
-    assert len({css(colour) for colour in KIND_COLOURS.values()}) == 3
 
 
 def test_one_value_has_one_colour() -> None:

@@ -1,30 +1,62 @@
-"""Where the camera stands at first, and how far it sees."""
+"""Where the camera stands, and how far it sees."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.studio.scene import scene_size_m
+from nullpose.studio.eye import Eye
+from nullpose.studio.scene import grid_m, scene_size_m
 
 _FAR = 100.0  # sizes of the scene that the camera sees, which leaves room to move away from it
+_FROM = [(0.82, -0.52, 0.56), (-0.52, -0.82, 0.56), (0.52, 0.82, 0.56), (-0.82, 0.52, 0.56)]
+"""Ways to the camera; the first is taken that has the fewest points behind the drone."""
+
+_DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
+"""Its label and its pattern, from where it is, sizes of the scene."""
+
+_TALL = 0.08  # of a point with its label, sizes of the scene
 
 
-def aim(camera: Any, scenario: Scenario) -> None:
-    """Let a camera look at the whole of a scene.
+def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
+    """Let a camera look at the whole of a scene: points, drone with its label, and the ground between them.
 
     Args:
         camera: of a page, or the one that pages begin with.
         scenario: the scene.
+        pose: of the drone, if it is known.
     """
-    size_m = scene_size_m(scenario)
-    points = np.vstack([scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)])
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    middle[2] = max(0.08 * size_m, 0.5 * float(scenario.airspace.lower_m[2]))
-    camera.position, camera.look_at = middle + size_m * np.array([0.82, -0.52, 0.56]), middle
+    size_m, eye = scene_size_m(scenario), Eye.of(camera)
+    points = np.array(
+        [one.position_m for one in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
+    )
+    drone = np.empty((0, 3)) if pose is None else pose.position_m + size_m * np.array(_DRONE)
+    matter = np.vstack([_floor_m(scenario), points, np.add(points, [0.0, 0.0, _TALL * size_m]), drone])
+    eyes = [eye._replace(position_m=way, look_at_m=np.zeros(3)).fitted(matter) for way in _FROM]
+    eye = min(eyes, key=lambda one: _behind(one, points, drone))  # of the best ones the first
+    camera.position, camera.look_at = eye.position_m, eye.look_at_m
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     camera.near = 0.02 * size_m
     camera.far = _FAR * size_m
+
+
+def _floor_m(scenario: Scenario) -> NDArray[np.float64]:
+    """Return the corners, (4, 3) metres, of the ground's grid with the numbers beside it."""
+    low, high, step_m = grid_m(scenario)
+    low, high = np.subtract(low, [0.0, step_m]), np.add(high, [step_m, 0.0])
+    return np.array([[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])])
+
+
+def _behind(eye: Eye, points_m: NDArray[np.float64], drone_m: NDArray[np.float64]) -> int:
+    """Return how many points a camera sees behind the drone with its pattern."""
+    if not len(drone_m):
+        return 0
+    points, drone = eye.pixels(points_m), eye.pixels(drone_m)
+    low, high = drone.min(axis=0), drone.max(axis=0)
+    inside = np.all((low[:2] < points[:, :2]) & (points[:, :2] < high[:2]), axis=1)
+    return int(np.sum(inside & (points[:, 2] > low[2])))

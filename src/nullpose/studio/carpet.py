@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.colours import round_steps, scale_colours, scale_range
-from nullpose.studio.drawing import FLAT, add_label, add_lines
+from nullpose.studio.drawing import FLAT, add_lines
+from nullpose.studio.labels import Labels, Rank
+from nullpose.studio.look import LIGHT, Look
 from nullpose.study.value_map import Field
 
 if TYPE_CHECKING:
@@ -17,8 +19,7 @@ if TYPE_CHECKING:
 
 _LIFT_M = 0.05  # off the grid on the ground
 _FINER = 6  # pixels for each step of the grid
-_ALPHA = 105
-_WHITE = (250, 250, 250)
+_FADE = 4.0  # how steeply the map fades in at its edges
 _MOST_LABELS = 4
 
 
@@ -27,10 +28,12 @@ class Carpet:
 
     Args:
         scene: the page's scene.
+        labels: of the page.
+        look: its colours.
     """
 
-    def __init__(self, scene: SceneApi) -> None:
-        self._scene = scene
+    def __init__(self, scene: SceneApi, labels: Labels, look: Look = LIGHT) -> None:
+        self._scene, self._labels, self._look = scene, labels, look
 
     def show(self, field: Field) -> tuple[float, float]:
         """Return the ends of the scale after drawing a field in place of the one before.
@@ -45,7 +48,7 @@ class Carpet:
         height = float(north[-1] - north[0] + east[1] - east[0])
         self._scene.add_image(
             "/map/colours",
-            _image(field, low, high),
+            _image(field, low, high, self._look.map_alpha),
             width,
             height,
             format="png",
@@ -57,21 +60,24 @@ class Carpet:
         if contours:
             flat = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for _, line in contours])
             raised = np.insert(flat, 2, altitude_m + 1e-3 * width, axis=-1)
-            add_lines(self._scene, "/map/contours", raised, _WHITE, 1.3)
+            add_lines(self._scene, "/map/contours", raised, self._look.contour, 1.3)
         levels = sorted({level for level, _ in contours})
         for level in levels[:: max(1, len(levels) // _MOST_LABELS)]:
             points = np.concatenate([line for own, line in contours if own == level])
             x, y = points[np.argmin(points[:, 1])]  # southmost, out of the way of what is in the middle
             name, text = f"/map/level-{level:g}", f"{level:g} {field.unit}".replace("-", MINUS)
-            add_label(self._scene, name, text, (x, y, altitude_m), 0.7, "center-center")
+            self._labels.put(
+                name, text, (x, y, altitude_m), Rank.SCALE, scale=0.7, anchors=("center-center",)
+            )
         return low, high
 
     def hide(self) -> None:
         """Take the field out of the scene."""
+        self._labels.drop("/map")
         self._scene.remove_by_name("/map")
 
 
-def _image(field: Field, low: float, high: float) -> NDArray[np.uint8]:
+def _image(field: Field, low: float, high: float, map_alpha: int) -> NDArray[np.uint8]:
     """Return the field as an image, north up, see-through where there is no value."""
     from scipy.ndimage import zoom
 
@@ -79,7 +85,9 @@ def _image(field: Field, low: float, high: float) -> NDArray[np.uint8]:
     filled = np.where(known, np.clip(np.nan_to_num(field.values, nan=low), low, high), low)
     fine = zoom(filled, _FINER, order=1, mode="nearest", grid_mode=True)
     solid = zoom(known.astype(float), _FINER, order=0, mode="nearest", grid_mode=True) > 0.5
-    alpha = np.where(solid, _ALPHA, 0).astype(np.uint8)
+    across, along = (np.sin(np.linspace(0.0, np.pi, n)) for n in fine.shape)
+    fade = np.minimum(1.0, _FADE * np.minimum(across[:, None], along))  # no hard edge in a dark page
+    alpha = np.where(solid, map_alpha * fade, 0).astype(np.uint8)
     return np.dstack([scale_colours(fine, low, high), alpha])[::-1]
 
 

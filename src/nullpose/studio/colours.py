@@ -1,22 +1,11 @@
-"""Colours that every kind of colour vision tells apart, the dB scale of maps and links, round numbers."""
+"""The dB scale of maps and links in colours that every kind of colour vision tells apart, round numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-Rgb = tuple[int, int, int]
-
-KIND_COLOURS = MappingProxyType(
-    {"nodes": (0, 114, 178), "jammers": (213, 94, 0), "eavesdroppers": (204, 121, 167)}
-)
-"""Okabe and Ito's blue, vermilion and reddish purple; the shapes differ too."""
-
-SLOTS: tuple[Rgb, Rgb] = ((30, 60, 200), (0, 0, 0))
-"""The drone of the chosen case, and that of the compared one."""
 
 _LEAST_SPAN = 6.0
 _LEAST_RATE_SPAN = 0.5

@@ -1,8 +1,8 @@
-"""What everything in a page's scene is drawn with: meshes without shadows, lines and labels."""
+"""What everything in a page's scene is drawn with: meshes without shadows, and lines."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,7 +54,14 @@ def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike
     )
 
 
-def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLike, thickness: float) -> Any:
+def add_lines(
+    scene: SceneApi,
+    name: str,
+    segments_m: ArrayLike,
+    colour: ArrayLike,
+    thickness: float,
+    units: Literal["screen", "world"] = "screen",
+) -> Any:
     """Return the handle of lines added to a scene.
 
     Args:
@@ -62,25 +69,21 @@ def add_lines(scene: SceneApi, name: str, segments_m: ArrayLike, colour: ArrayLi
         name: its place in the scene's tree.
         segments_m: (n, 2, 3) their ends, metres.
         colour: (3,) red, green, blue; or (n, 2, 3), that of each end, which is in linear light.
-        thickness: on the screen, pixels.
+        thickness: on the screen, pixels, or in the world, metres.
+        units: which of the two.
     """
     points = np.asarray(segments_m, dtype=np.float32)
     colours = np.asarray(colour, dtype=np.uint8)
-    return scene.add_line_segments(name, points, colours, thickness=thickness, thickness_units="screen")
+    return scene.add_line_segments(name, points, colours, thickness=thickness, thickness_units=units)
 
 
-def add_label(
-    scene: SceneApi, name: str, text: str, place_m: ArrayLike, scale: float, anchor: str = "bottom-center"
-) -> Any:
-    """Return the handle of a label added to a scene.
+def put(handle: Any, **values: object) -> None:
+    """Set what differs of a handle: what is set as it was would be sent all the same.
 
     Args:
-        scene: the page's scene.
-        name: its place in the scene's tree.
-        text: what it says.
-        place_m: (3,) metres.
-        scale: of its letters.
-        anchor: which part of it is at that place.
+        handle: of viser's.
+        values: by their names.
     """
-    position = np.asarray(place_m, dtype=float)
-    return scene.add_label(name, text, position=position, anchor=anchor, font_screen_scale=scale)
+    for name, value in values.items():
+        if getattr(handle, name) != value:
+            setattr(handle, name, value)

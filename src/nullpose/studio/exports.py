@@ -67,6 +67,8 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
     from nullpose.studio.camera import aim
     from nullpose.studio.carpet import Carpet
     from nullpose.studio.drone import Drone
+    from nullpose.studio.eye import Eye
+    from nullpose.studio.labels import Labels
     from nullpose.studio.opening import LOOPBACK, open_server
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
@@ -76,14 +78,16 @@ def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, fl
     size_m = scene_size_m(view.scenario)
     server, _ = open_server(LOOPBACK, 0)
     try:
-        aim(server.initial_camera, view.scenario)
-        Ground(server.scene, None).show(view, size_m, freed=False)
+        aim(server.initial_camera, view.scenario, answers[0].result.pose)
+        labels = Labels(server.scene)
+        Ground(server.scene, labels, None).show(view, answers[0], size_m, freed=False)
         for slot, answer in enumerate(answers):
             text = drone_text(session, slot)
             eye_m = server.initial_camera.position
-            Drone(server.scene, slot).show(answer, text, size_m, link_range_db, eye_m, pattern=True)
+            Drone(server.scene, labels, slot).show(answer, text, size_m, link_range_db, eye_m, pattern=True)
         if field is not None:
-            Carpet(server.scene).show(field)
+            Carpet(server.scene, labels).show(field)
+        labels.arrange(Eye.of(server.initial_camera))
         return str(server.scene.as_html()).encode()
     finally:
         with redirect_stdout(StringIO()):

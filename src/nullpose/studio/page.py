@@ -23,8 +23,11 @@ from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
 from nullpose.studio.exports import figure_png, pose_json, scene_html
+from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.history import History
+from nullpose.studio.labels import Labels
+from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import Scale, overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, show_link
 from nullpose.studio.plot import power_plot_svg, scale_svg
@@ -40,6 +43,8 @@ if TYPE_CHECKING:
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+
+_LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
 
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
@@ -74,16 +79,20 @@ class Page:
         self._gesture = 0
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
+        self._moved: threading.Timer | None = None
         self._size_m = np.inf
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self._scale: Scale | None = None
         self._link_range_db = LINK_RANGE_DB
-        self._drones = [Drone(client.scene, slot) for slot in (0, 1)]
+        self._aimed = False
+        look = DARK if dark else LIGHT
+        self._labels = Labels(client.scene)
+        self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._refresh}
         self.session = Session(scenario, text, history=history, **told)
         self.panel = Panel(client.gui, dark=dark)
-        self._ground = Ground(client.scene, self._dragged)
-        self._carpet = Carpet(client.scene)
+        self._ground = Ground(client.scene, self._labels, self._dragged, look)
+        self._carpet = Carpet(client.scene, self._labels, look)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
         self._listen()
@@ -98,6 +107,8 @@ class Page:
         with self._lock:
             self._open = False
             self._not_late()
+            if self._moved is not None:
+                self._moved.cancel()
         return self.session.close(timeout_s)
 
     def _listen(self) -> None:
@@ -126,6 +137,7 @@ class Page:
             control.on_update(_by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
+        self._client.camera.on_update(self._looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
         panel.upload.on_upload(lambda event: self._load(event.target.value))
 
@@ -180,14 +192,14 @@ class Page:
 
     def _new(self) -> None:
         self._change(lambda view: view.with_scenario(new_scenario(), ""))
-        self._aim()
+        self._aimed = False
 
     def _load(self, file: Any) -> None:
         def loaded(view: View) -> View:
             return view.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
         if self._change(loaded, name=file.name):
-            self._aim()
+            self._aimed = False
         else:  # viser has said by now that the file has arrived
             told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
             title = f"{file.name} was not taken"
@@ -200,8 +212,10 @@ class Page:
             self._client.add_notification("Not exported", str(error), color="red", auto_close_seconds=8.0)
 
     def _aim(self) -> None:
+        answer = self.session.current(self.session.view.case)
+        self._aimed = answer is not None
         with self._client.atomic():
-            aim(self._client.camera, self.session.view.scenario)
+            aim(self._client.camera, self.session.view.scenario, answer.result.pose if answer else None)
 
     def _view_changed(self) -> None:
         with self._lock:
@@ -235,7 +249,8 @@ class Page:
         size_m = scene_size_m(view.scenario)
         if not _OTHER_SIZE[0] < size_m / self._size_m < _OTHER_SIZE[1]:
             self._size_m = size_m
-        self._ground.show(view, self._size_m, selected=self._editor.selected, freed=self.panel.freed.value)
+        chosen = {"selected": self._editor.selected, "freed": self.panel.freed.value}
+        self._ground.show(view, session.current(view.case), self._size_m, **chosen)
         self._show_map()
         for slot, drone in enumerate(self._drones):
             answer = session.answer(view.cases[slot]) if slot < len(view.cases) else None
@@ -245,6 +260,22 @@ class Page:
             text, pattern = drone_text(session, slot), self.panel.pattern.value
             eye_m = np.array(self._client.camera.position)
             drone.show(answer, text, self._size_m, self._link_range_db, eye_m, pattern=pattern)
+        if not self._aimed:
+            self._aim()
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Put the labels where they do not overlap, but not under a hand that drags a point."""
+        with self._lock, self._client.atomic():
+            if self._open and self._ground.dragged is None:
+                self._labels.arrange(Eye.of(self._client.camera))
+
+    async def _looked(self, _: object) -> None:
+        """Arrange the labels a little after the camera has moved."""
+        if self._moved is None or not self._moved.is_alive():
+            self._moved = threading.Timer(_LOOKED_S, self._arrange)
+            self._moved.daemon = True
+            self._moved.start()
 
     def _show_map(self) -> None:
         maps, name = self.session.field_map, self.panel.map.value

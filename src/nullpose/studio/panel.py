@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from nullpose.studio.case import cases_of
+from nullpose.studio.drawing import put
 from nullpose.studio.edits import ADDED
 from nullpose.studio.field_map import MAPS
 from nullpose.studio.readout import about_html, failure_html, tool_html
@@ -163,8 +164,8 @@ class Panel(SimpleNamespace):
         """
         labels = tuple(case.label for case in cases_of(view.scenario))
         others = (NO_CASE, *(label for label in labels if label != view.case.label))
-        _put(self.case, options=labels, value=view.case.label)
-        _put(self.compared, options=others, value=NO_CASE if view.compared is None else view.compared.label)
+        put(self.case, options=labels, value=view.case.label)
+        put(self.compared, options=others, value=NO_CASE if view.compared is None else view.compared.label)
         if view is not self._shown:  # what is being typed stays while the answers to a view come in
             self.show_power(view)
         self._shown = view
@@ -175,7 +176,7 @@ class Panel(SimpleNamespace):
         Args:
             name: of what is selected; empty if nothing is.
         """
-        _put(self.own_values, visible=bool(name), **({"label": f"Selected: {name}"} if name else {}))
+        put(self.own_values, visible=bool(name), **({"label": f"Selected: {name}"} if name else {}))
 
     def show_tool(self, told: str) -> None:
         """Say what the next click on the ground does.
@@ -183,7 +184,7 @@ class Panel(SimpleNamespace):
         Args:
             told: a sentence; empty if it adds nothing.
         """
-        _put(self.tool, content=tool_html(told))
+        put(self.tool, content=tool_html(told))
 
     def show_power(self, view: View) -> None:
         """Show the jamming power that holds, in place of one that was typed and not taken.
@@ -191,10 +192,10 @@ class Panel(SimpleNamespace):
         Args:
             view: the view now.
         """
-        _put(self.power, disabled=view.power_db is None)
-        _put(self.power_text, disabled=view.power_db is None, value=view.power_text)
+        put(self.power, disabled=view.power_db is None)
+        put(self.power_text, disabled=view.power_db is None, value=view.power_text)
         if view.power_db is not None:
-            _put(self.power, value=(round(min(max(view.power_db, POWER_DB[0]), POWER_DB[1]), 6),))
+            put(self.power, value=(round(min(max(view.power_db, POWER_DB[0]), POWER_DB[1]), 6),))
 
 
 def show_link(gui: GuiApi, address: str) -> None:
@@ -213,10 +214,3 @@ def show_link(gui: GuiApi, address: str) -> None:
         )
         close = gui.add_button("Close")
     close.on_click(lambda event: modal.close())
-
-
-def _put(control: Any, **values: object) -> None:
-    """Set what differs: what is set as it was would be sent all the same."""
-    for name, value in values.items():
-        if getattr(control, name) != value:
-            setattr(control, name, value)

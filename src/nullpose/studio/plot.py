@@ -11,11 +11,15 @@ from nullpose.report.figures.style import CURVES
 from nullpose.schemes import Curve, Scheme
 from nullpose.studio.colours import css, round_steps, scale_colours
 from nullpose.studio.events import PowerCurve
+from nullpose.studio.look import either, lit
 from nullpose.studio.view import POWER_DB
 
 _WIDTH, _HEIGHT = 340, 214
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
 _MOST_SPAN = 30.0
+_INK = either("#111", "#ddd")
+_GRID = either("#ddd", "#444")
+_HERE = either("#d55e00", "#ff8a3c")
 _INSIDE = (  # a drawing of its own, which cuts off what leaves it
     f'x="{_LEFT}" y="{_TOP}" width="{_RIGHT - _LEFT}" height="{_BOTTOM - _TOP}" '
     f'viewBox="{_LEFT} {_TOP} {_RIGHT - _LEFT} {_BOTTOM - _TOP}"'
@@ -85,8 +89,8 @@ def _now(frame: _Frame, power_db: float, here: list[float]) -> str:
     now = f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{_BOTTOM}" stroke="#888" stroke-dasharray="1 3"/>'
     for height in here:
         now += (
-            f'<circle data-np="now" cx="{x:.1f}" cy="{frame.at(power_db, height)[1]:.1f}" r="5" fill="#fff" '
-            'fill-opacity=".6" stroke="#d55e00" stroke-width="2.5"/>'
+            f'<circle data-np="now" cx="{x:.1f}" cy="{frame.at(power_db, height)[1]:.1f}" r="5" fill="none" '
+            f'stroke="{_HERE}" stroke-width="2.5"/>'
         )
     return now
 
@@ -102,18 +106,18 @@ def _frame_around(curves: list[float], here: list[float]) -> _Frame:
 def _axes(frame: _Frame, unit: str) -> Iterator[str]:
     for value in round_steps(*frame, 6)[1:-1]:
         y = frame.at(0.0, value)[1]
-        yield f'<line x1="{_LEFT}" y1="{y:.1f}" x2="{_RIGHT}" y2="{y:.1f}" stroke="#ddd"/>'
+        yield f'<line x1="{_LEFT}" y1="{y:.1f}" x2="{_RIGHT}" y2="{y:.1f}" stroke="{_GRID}"/>'
         yield _text(_LEFT - 5, y + 3.5, "end", f"{value:g}")
     for power_db in range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10):
         yield _text(frame.at(power_db, 0.0)[0], _BOTTOM + 14, "middle", f"{power_db}")
     yield _text(0.5 * (_LEFT + _RIGHT), _HEIGHT - 5, "middle", "strongest jammer over strongest node, dB")
     turned = f'transform="translate(10 {0.5 * (_TOP + _BOTTOM):.0f}) rotate(-90)"'
-    yield f'<text {turned} text-anchor="middle" fill="#111">{escape(unit)}</text>'
+    yield f'<text {turned} text-anchor="middle" fill="{_INK}">{escape(unit)}</text>'
 
 
 def _text(x: float, y: float, anchor: str, text: str) -> str:
     minus = escape(text).replace("-", "&#8722;")
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="#111">{minus}</text>'
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{_INK}">{minus}</text>'
 
 
 def _polyline(curve: Curve, points: Iterable[tuple[float, float]], frame: _Frame) -> str:
@@ -123,7 +127,7 @@ def _polyline(curve: Curve, points: Iterable[tuple[float, float]], frame: _Frame
 
 def _look(curve: Curve) -> str:
     dashes = "" if isinstance(curve.line, str) else " ".join(f"{length:g}" for length in curve.line[1])
-    return f'stroke="{curve.colour}" stroke-dasharray="{dashes}"'
+    return f'stroke="{lit(curve.colour)}" stroke-dasharray="{dashes}"'
 
 
 def _legend(lines: Iterable[str]) -> Iterator[str]:
@@ -156,6 +160,6 @@ def scale_svg(low: float, high: float, title: str, unit: str) -> str:
     return (
         '<div data-np="scale" style="padding:0 6px"><svg viewBox="0 0 340 44" width="100%" '
         'font-family="sans-serif" font-size="11"><defs><linearGradient id="np-scale">'
-        f'{stops}</linearGradient></defs><text x="10" y="11">{escape(title)}</text>'
+        f'{stops}</linearGradient></defs><text x="10" y="11" fill="{_INK}">{escape(title)}</text>'
         f'<rect x="10" y="15" width="320" height="12" fill="url(#np-scale)"/>{texts}</svg></div>'
     )

@@ -14,18 +14,20 @@ from nullpose.report.numbers import MINUS, fixed
 from nullpose.solve import Result
 from nullpose.solve.robust import GuardedPose
 from nullpose.studio.answer import Answer
-from nullpose.studio.colours import SLOTS, css
+from nullpose.studio.colours import css
+from nullpose.studio.look import DARK, LIGHT, either
 from nullpose.studio.session import Session
 
 _FAILED = "no pose"
 _TONES = {
-    _FAILED: ("#a02000", "&#10007;"),
-    "certified": ("#00684a", "&#10003;"),
-    "best so far": ("#005a8c", "&#9679;"),
-    "": ("#8a5a00", "&#8987;"),
+    _FAILED: (either("#a02000", "#ff9b80"), "&#10007;"),
+    "certified": (either("#00684a", "#4fd6a6"), "&#10003;"),
+    "best so far": (either("#005a8c", "#7cc4f5"), "&#9679;"),
+    "": (either("#8a5a00", "#f0b64a"), "&#8987;"),
 }
 """Colour and mark of how far a case has come, by how its status begins."""
 
+_NOTE = either("#555", "#b8b8b8")
 _MOST_NULLS = 4
 _STYLE = "font-size:13px;line-height:1.35;padding:2px 10px 8px;font-variant-numeric:tabular-nums"
 
@@ -61,8 +63,9 @@ def _case_html(session: Session, slot: int) -> str:
     case = session.view.cases[slot]
     answer, current, status = session.answer(case), session.current(case), session.status(case)
     _, colour, mark = status_look(status)
+    own = either(*(css(look.slots[slot]) for look in (LIGHT, DARK)))
     head = (
-        f'<div style="font-weight:600;color:{css(SLOTS[slot])}">{_letter(session, slot)}'
+        f'<div style="font-weight:600;color:{own}">{_letter(session, slot)}'
         f"{escape(case.label)}</div>"
         f'<div data-np="status-{slot}" style="color:{colour};font-weight:600">{mark} {escape(status)}</div>'
     )
@@ -86,7 +89,7 @@ def status_look(status: str) -> tuple[str, str, str]:
 
 
 def _note(text: str) -> str:
-    return f'<div style="color:#555;font-size:12px">{escape(text)}</div>' if text else ""
+    return f'<div style="color:{_NOTE};font-size:12px">{escape(text)}</div>' if text else ""
 
 
 def _letter(session: Session, slot: int) -> str:

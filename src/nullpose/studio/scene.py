@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.physics import to_db
 from nullpose.report.geometry import outline_m as zone_outline_m
-from nullpose.report.numbers import MINUS
+from nullpose.report.numbers import MINUS, fixed
 from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
-from nullpose.studio.colours import KIND_COLOURS, round_steps
-from nullpose.studio.drawing import add_label, add_lines, add_mesh
+from nullpose.studio.answer import Answer
+from nullpose.studio.colours import round_steps
+from nullpose.studio.drawing import add_lines, add_mesh, put
+from nullpose.studio.labels import ANCHORS, Labels, Rank
+from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, zone_mesh
-from nullpose.studio.view import Key, View
+from nullpose.studio.view import POWER_DB, Key, View
 from nullpose.study.value_map import map_extent_m
 
 if TYPE_CHECKING:
@@ -23,11 +28,10 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 OnDrag = Callable[[Key, FloatArray, str], None]
 
-_ZONE = (160, 60, 60)
-_WIRE = (150, 150, 150)
-_GRID = (190, 190, 190)
-_AIRSPACE = (86, 150, 190)
-_CROWD = 6  # more points than this have smaller labels
+_CROWD = 12  # of more nodes than this only the worst have their SINR in their labels
+_RINGS = (0.4, 0.7, 1.0)  # around a jammer, sizes of the largest
+_RING_LIFT_M = 0.1  # off the map on the ground
+_RING_SIZES = (0.02, 0.12)  # of the largest at the ends of the range of powers, sizes of the scene
 
 
 def scene_size_m(scenario: Scenario) -> float:
@@ -36,12 +40,28 @@ def scene_size_m(scenario: Scenario) -> float:
     Args:
         scenario: the scene.
     """
-    low, high = _extent_m(scenario)
+    low, high = ground_m(scenario)
     return float(np.max(high - low))
 
 
-def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
+def ground_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
+    """Return the low and the high corner, each (2,) in metres, of the ground that is drawn.
+
+    Args:
+        scenario: the scene.
+    """
     return map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
+
+
+def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
+    """Return the low and the high corner, each (2,), of the grid on the ground, and its step, metres.
+
+    Args:
+        scenario: the scene.
+    """
+    low, high = ground_m(scenario)
+    step_m = float(np.diff(round_steps(0.0, float(np.max(high - low)), 12))[0])
+    return step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m), step_m
 
 
 class Ground:
@@ -49,26 +69,38 @@ class Ground:
 
     Args:
         scene: the page's scene.
+        labels: of the page.
         on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
             whose points are not dragged.
+        look: the page's colours.
 
     Attributes:
         dragged: the point that is being dragged, whose place the browser sets; or None.
     """
 
-    def __init__(self, scene: SceneApi, on_drag: OnDrag | None) -> None:
-        self._scene, self._on_drag = scene, on_drag
+    def __init__(self, scene: SceneApi, labels: Labels, on_drag: OnDrag | None, look: Look = LIGHT) -> None:
+        self._scene, self._labels, self._on_drag, self._look = scene, labels, on_drag, look
         self._ground: object = None
         self._points: dict[Key, GroundPoint] = {}
         self._drawn: dict[Key, object] = {}
         self._handles: dict[Key, Any] = {}
+        self._rings: dict[Key, Any] = {}
         self.dragged: Key | None = None
 
-    def show(self, view: View, size_m: float, *, selected: Key | None = None, freed: bool = False) -> None:
+    def show(
+        self,
+        view: View,
+        answer: Answer | None,
+        size_m: float,
+        *,
+        selected: Key | None = None,
+        freed: bool = False,
+    ) -> None:
         """Draw a view: moves the points that are there, and draws anew what has changed otherwise.
 
         Args:
             view: the view.
+            answer: to the present scene, whose SINRs are in the nodes' labels; None if there is none yet.
             size_m: of the scene, from which the sizes of what is drawn follow.
             selected: the point that has arrows to drag it by, or None.
             freed: whether it can be dragged off its altitude.
@@ -79,41 +111,72 @@ class Ground:
             self._ground = ground
             self._draw_ground(view.scenario)
         for gone in self._handles.keys() - points.keys():
-            self._scene.remove_by_name(_name(gone))
+            self._remove(gone)
             del self._handles[gone], self._drawn[gone]
-        keep_out_m, scale = view.scenario.airspace.keep_out_m, 1.1 if len(points) <= _CROWD else 0.8
+        keep_out_m = view.scenario.airspace.keep_out_m
         for key, point in points.items():
-            look = (point.name, getattr(point, "uncertainty_m", None), keep_out_m, size_m, scale)
+            look = (point.name, getattr(point, "uncertainty_m", None), keep_out_m, size_m)
             drawn = (look, freed if key == selected else None)
             if drawn != self._drawn.get(key):
                 self._drawn[key] = drawn
                 self._handles[key] = self._handle(key, size_m, drawn[1])
-                self._draw_point(key, size_m, keep_out_m, scale)
+                self._draw_point(key, size_m, keep_out_m)
             handle = self._handles[key]
             if key != self.dragged and not np.allclose(handle.position, point.position_m, atol=1e-6):
                 handle.position = point.position_m
+            self._label(key, point, view, answer, size_m)
+            if key in self._rings:
+                self._show_rings(key, view, size_m)
 
     def _draw_ground(self, scenario: Scenario) -> None:
         for part in ("/ground", "/airspace"):
+            self._labels.drop(part)
             self._scene.remove_by_name(part)
         self._draw_grid(scenario)
         self._draw_airspace(scenario)
 
-    def _draw_point(self, key: Key, size_m: float, keep_out_m: float, scale: float) -> None:
-        name, colour, point = _name(key), KIND_COLOURS[key[0]], self._points[key]
+    def _label(self, key: Key, point: GroundPoint, view: View, answer: Answer | None, size_m: float) -> None:
+        """Write a point's name over it, and a node's SINR."""
+        text, rank = point.name, Rank.JAMMER if key[0] == "jammers" else Rank.POINT
+        if answer is not None and key[0] == "nodes":
+            nodes, worst = len(view.scenario.nodes), answer.worst_nodes
+            rank = Rank.WORST if point.name in worst else rank
+            if rank is Rank.WORST or nodes <= _CROWD:
+                text += f" {fixed(answer.result.links[key[1]].sinr_db, 2)} dB".replace("-", MINUS)
+            if rank is Rank.WORST and len(worst) < nodes:
+                text += ", worst"
+        offset_m = np.array([0.0, 0.0, 0.062 * size_m])
+        scale = 1.1 if rank <= Rank.JAMMER else 0.9
+        place_m = point.position_m + offset_m
+        self._labels.put(
+            f"{_name(key)}/label", text, place_m, rank, scale=scale, anchors=ANCHORS, offset_m=offset_m
+        )
+
+    def _show_rings(self, key: Key, view: View, size_m: float) -> None:
+        """Put a jammer's rings on the ground, the larger the more power it has."""
+        rings, radius_m = self._rings[key], _ring_m(view, key[1], size_m)
+        put(rings, visible=radius_m > 0.0, scale=radius_m or 1.0)
+        below_m = np.array([0.0, 0.0, _RING_LIFT_M - self._points[key].position_m[2]])
+        if not np.allclose(rings.position, below_m):
+            rings.position = below_m
+
+    def _draw_point(self, key: Key, size_m: float, keep_out_m: float) -> None:
+        name, colour, point = _name(key), self._look.kinds[key[0]], self._points[key]
         mark = MARKS[key[0]].placed(0.022 * size_m)
         add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
         # wires: what is see-through below the map would be hidden by it
         keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
-        add_mesh(self._scene, f"{name}/keep-out", keep_out, _WIRE, wireframe=True)
+        add_mesh(self._scene, f"{name}/keep-out", keep_out, self._look.wire, wireframe=True)
         if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
             near = ellipsoid_mesh(point.uncertainty_matrix_m, 10, 16)
             add_mesh(self._scene, f"{name}/uncertainty", near, colour, wireframe=True)
-        add_label(self._scene, f"{name}/label", point.name, (0.0, 0.0, 0.062 * size_m), scale)
+        if key[0] == "jammers":
+            rings = np.concatenate([radius * _circle() for radius in _RINGS])
+            self._rings[key] = add_lines(self._scene, f"{name}/rings", rings, colour, 2.0)
 
     def _handle(self, key: Key, size_m: float, freed: bool | None) -> Any:
         """Return the frame of a point, in place of the one before; with arrows unless freed is None."""
-        self._scene.remove_by_name(_name(key))
+        self._remove(key)
         on_drag, position_m = self._on_drag, self._points[key].position_m
         if on_drag is None or freed is None:
             return self._scene.add_frame(_name(key), show_axes=False, position=position_m)
@@ -137,14 +200,18 @@ class Ground:
         arrows.on_update(on_update)
         return arrows
 
+    def _remove(self, key: Key) -> None:
+        """Take a point with all that is drawn of it out of the scene."""
+        self._labels.drop(f"{_name(key)}/")
+        self._scene.remove_by_name(_name(key))
+        self._rings.pop(key, None)
+
     def _draw_grid(self, scenario: Scenario) -> None:
-        low, high = _extent_m(scenario)
-        step_m = np.diff(round_steps(0.0, float(np.max(high - low)), 12))[0]
-        low, high = step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m)
+        low, high, step_m = grid_m(scenario)
         east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
         lines = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
         lines += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
-        add_lines(self._scene, "/ground/grid", lines, _GRID, 1.2)
+        add_lines(self._scene, "/ground/grid", lines, self._look.grid, 1.2)
         every = max(1, (max(len(east), len(north)) + 2) // 4)
         middle = 0.5 * (low + high)
         ticks = [
@@ -155,26 +222,47 @@ class Ground:
         ticks += [(f"{y:g}", high[0] + 0.45 * step_m, y) for y in north[::every]]
         for i, (text, x, y) in enumerate(ticks):
             text = text.replace("-", MINUS)
-            add_label(self._scene, f"/ground/tick-{i}", text, (x, y, 0.0), 0.8, "center-center")
+            name, place_m = f"/ground/tick-{i}", (x, y, 0.0)
+            self._labels.put(name, text, place_m, Rank.SCALE, scale=0.8, anchors=("center-center",))
 
     def _draw_airspace(self, scenario: Scenario) -> None:
         airspace = scenario.airspace
-        low, high = _extent_m(scenario)
+        low, high = ground_m(scenario)
         west, south = np.maximum(low, airspace.lower_m[:2])
         east, north = np.minimum(high, airspace.upper_m[:2])
         outline = np.array([[west, south], [east, south], [east, north], [west, north]])
         if airspace.geofence_m is not None:
             outline = airspace.geofence_outline_m
         floor_m, ceiling_m = float(airspace.lower_m[2]), float(airspace.upper_m[2])
-        add_lines(self._scene, "/airspace/edges", prism_edges(outline, floor_m, ceiling_m), _AIRSPACE, 1.4)
+        edges = prism_edges(outline, floor_m, ceiling_m)
+        add_lines(self._scene, "/airspace/edges", edges, self._look.airspace, 1.4)
+        colour = self._look.zone
         for i, zone in enumerate(airspace.no_fly):
             low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
             floor = zone_mesh(zone, low_m, low_m)
             top = (*floor.vertices[:, :2].mean(axis=0), high_m)
-            add_mesh(self._scene, f"/airspace/zone-{i}", floor, _ZONE, opacity=0.25)
+            add_mesh(self._scene, f"/airspace/zone-{i}", floor, colour, opacity=0.25)
             edges = prism_edges(zone_outline_m(zone), low_m, high_m)
-            add_lines(self._scene, f"/airspace/zone-edges-{i}", edges, _ZONE, 1.8)
-            add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, 0.9)
+            add_lines(self._scene, f"/airspace/zone-edges-{i}", edges, colour, 1.8)
+            self._labels.put(
+                f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, Rank.ZONE, anchors=ANCHORS
+            )
+
+
+def _circle() -> FloatArray:
+    """Return a circle of size one on the ground as segments, (n, 2, 3)."""
+    azimuth = np.linspace(0.0, math.tau, 49)
+    circle = np.stack([np.cos(azimuth), np.sin(azimuth), 0.0 * azimuth], axis=-1)
+    return np.stack([circle[:-1], circle[1:]], axis=1)
+
+
+def _ring_m(view: View, index: int, size_m: float) -> float:
+    """Return the radius of a jammer's largest ring, metres: larger with its power over the nodes'."""
+    powers_w = view.scenario.jammer_powers_w
+    if view.power_db is None or powers_w[index] <= 0.0:
+        return 0.0
+    power_db = view.power_db + to_db(powers_w[index] / powers_w.max())
+    return size_m * float(np.interp(power_db, POWER_DB, _RING_SIZES))
 
 
 def _name(key: Key) -> str:

@@ -1,0 +1,80 @@
+"""What a camera sees: where on its canvas a point is, and from where it sees them all."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_CANVAS = 1000.0, 800.0  # pixels, where none is known
+_MARGIN = 0.9  # of half the canvas, which leaves room for labels
+
+
+class Eye(NamedTuple):
+    """A camera whose upper side is up.
+
+    Args:
+        position_m: (3,) where it stands, metres.
+        look_at_m: (3,) a point in the middle of what it sees, metres.
+        fov_rad: angle between the upper and the lower edge of what it sees, radians.
+        width_px: of the canvas, pixels.
+        height_px: of the canvas, pixels.
+    """
+
+    position_m: ArrayLike
+    look_at_m: ArrayLike
+    fov_rad: float
+    width_px: float
+    height_px: float
+
+    @classmethod
+    def of(cls, camera: Any) -> Eye:
+        """Return what a camera of viser's sees; one that has no canvas yet is given a usual one.
+
+        Args:
+            camera: of a page, or the one that pages begin with.
+        """
+        width_px, height_px = (getattr(camera, "image_width", 0), getattr(camera, "image_height", 0))
+        size = (width_px, height_px) if width_px and height_px else _CANVAS
+        return cls(np.array(camera.position), np.array(camera.look_at), float(camera.fov), *size)
+
+    def pixels(self, points_m: ArrayLike) -> NDArray[np.float64]:
+        """Return where on the canvas points are, (n, 3): to the right, down, and metres before the camera.
+
+        Args:
+            points_m: (n, 3) metres.
+        """
+        axes = _axes(np.subtract(self.look_at_m, self.position_m))
+        right, up, ahead = axes @ np.subtract(points_m, self.position_m).T
+        scale = 0.5 * self.height_px / math.tan(0.5 * self.fov_rad) / np.where(ahead == 0.0, np.nan, ahead)
+        x, y = 0.5 * self.width_px + scale * right, 0.5 * self.height_px - scale * up
+        return np.stack([x, y, ahead], axis=-1)
+
+    def fitted(self, points_m: ArrayLike) -> Eye:
+        """Return the camera that looks the same way, as near as it can be with all points in its canvas.
+
+        Args:
+            points_m: (n, 3) metres.
+        """
+        axes = _axes(np.subtract(self.look_at_m, self.position_m))
+        *sides, ahead = axes @ np.asarray(points_m, dtype=float).T
+        slope = _MARGIN * math.tan(0.5 * self.fov_rad)
+        middle, behind = [], np.inf
+        for side, reach in zip(sides, (slope * self.width_px / self.height_px, slope), strict=True):
+            # a point is inside two opposite edges where the camera is between them, or farther away
+            high, low = np.max(side - reach * ahead), np.max(-side - reach * ahead)
+            middle.append(0.5 * (high - low))
+            behind = min(behind, -0.5 * (high + low) / reach)
+        position = np.array([*middle, behind]) @ axes
+        away_m = float(np.mean(ahead)) - behind
+        return self._replace(position_m=position, look_at_m=position + away_m * axes[2])
+
+
+def _axes(ahead: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return unit vectors to the right, up and ahead of a camera, (3, 3), one in each row."""
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= max(float(np.linalg.norm(right)), 1e-12)
+    return np.stack([right, np.cross(right, ahead), ahead])
