@@ -62,11 +62,12 @@ def test_a_power_beyond_the_slider_is_shown_as_it_is(paper: Scenario) -> None:
     assert View(scenario=paper).with_power_db(-99.0).power_text == "-99"
 
 
-def test_a_power_in_dbm_is_replaced_by_one_in_watts(paper: Scenario) -> None:
-    """A jammer stated in dBm can be scaled too."""
+def test_a_power_in_dbm_stays_in_dbm(paper: Scenario) -> None:
+    """A jammer stated in dBm is scaled in dBm."""
     jammer = paper.jammers[0].model_copy(update={"power_w": None, "power_dbm": 30.0})
     view = View(scenario=paper.model_copy(update={"jammers": (jammer,)})).with_power_db(10.0)
-    assert view.scenario.jammers[0].transmit_power_w == pytest.approx(10.0)
+    assert view.scenario.jammers[0].power_dbm == 40.0
+    assert view.power_db == pytest.approx(10.0, abs=1e-9)
 
 
 def test_without_jammers_there_is_no_power(paper: Scenario) -> None:

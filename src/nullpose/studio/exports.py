@@ -1,4 +1,4 @@
-"""What can be taken away from a page: the pose, the power plot, the scene."""
+"""What can be taken away from a page: the scenario, the pose, the power plot, the scene."""
 
 from __future__ import annotations
 
@@ -9,6 +9,16 @@ from io import BytesIO, StringIO
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
+from nullpose.studio.toml_like import toml_like
+
+
+def scenario_toml(session: Session) -> bytes:
+    """Return the scene as a scenario file, in the text of the file that it is from.
+
+    Args:
+        session: whose.
+    """
+    return toml_like(session.view.text, session.view.scenario).encode()
 
 
 def pose_json(session: Session) -> bytes:

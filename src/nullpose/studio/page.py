@@ -22,7 +22,7 @@ from nullpose.studio.case import case_named
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
-from nullpose.studio.exports import figure_png, pose_json, scene_html
+from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
 from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.history import History
@@ -120,7 +120,11 @@ class Page:
             *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
         ]
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
-            (panel.save, "scenario.toml", lambda: session.view.scenario.to_toml().encode()),
+            (
+                panel.save,
+                "scenario.toml",
+                lambda: toml_like(session.view.text, session.view.scenario).encode(),
+            ),
             (panel.pose, "pose.json", partial(pose_json, session)),
             (panel.figure, "figure.png", partial(figure_png, session)),
             (panel.html, "scene.html", lambda: scene_html(session, panel.map.value, self._link_range_db)),

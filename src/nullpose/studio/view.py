@@ -120,11 +120,15 @@ class View:
         now_db = self.power_db
         if now_db is None or math.isclose(now_db, power_db, abs_tol=1e-9):
             return self
-        factor = float(from_db(power_db - now_db))
-        powers_w = (float(f"{one.transmit_power_w * factor:.12g}") for one in self.scenario.jammers)
+        by_db = power_db - now_db
+        powers = (  # each in the unit that it is stated in
+            {"power_w": float(f"{one.transmit_power_w * float(from_db(by_db)):.12g}")}
+            if one.power_dbm is None
+            else {"power_dbm": float(f"{one.power_dbm + by_db:.12g}")}
+            for one in self.scenario.jammers
+        )
         jammers = tuple(
-            one.model_copy(update={"power_w": power_w, "power_dbm": None})
-            for one, power_w in zip(self.scenario.jammers, powers_w, strict=True)
+            one.model_copy(update=power) for one, power in zip(self.scenario.jammers, powers, strict=True)
         )
         return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
 

@@ -208,6 +208,7 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     saved = tmp_path / "saved.toml"
     download.value.save_as(saved)
     assert load(saved) == scenario
+    saved.write_text(f"# Mine.\n{saved.read_text()}")
 
     version = _version(page)
     broken = tmp_path / "broken.toml"
@@ -230,6 +231,16 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     _settled(page, version)
     assert session.view.scenario == scenario
     assert page.locator("[data-np=faults]").inner_text() == ""
+    version = _version(page)
+    page.get_by_role("tab", name="Scene").click()
+    _type_power(page, "20")
+    _settled(page, version)
+    page.get_by_role("tab", name="Files").click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save scenario").click()
+    download.value.save_as(saved)
+    assert saved.read_text().startswith("# Mine.\n")
+    assert load(saved) == session.view.scenario != scenario
 
 
 def test_the_exported_scene_needs_no_server(page: Page, tmp_path: Path) -> None:

@@ -1,0 +1,228 @@
+"""A scenario goes back into the file that it is from, and leaves the rest of it alone."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nullpose import load
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Jammer, Node, NoFlyZone, Scenario
+from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio.toml_like import toml_like
+from nullpose.studio.view import View
+
+EXAMPLES = {
+    path.stem: (path.read_text(), load(path))
+    for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+    if path.stem != "study"
+}
+ALONE = [name for name in EXAMPLES if name not in ("geodetic", "frame")]  # those that name no other file
+
+KINDS = st.sampled_from(["nodes", "jammers", "eavesdroppers"])
+PLACES = st.integers(0, 9)
+METRES = st.floats(-300.0, 300.0).map(lambda value: round(value, 3))
+POSITIONS = st.tuples(METRES, METRES, st.floats(0.0, 5.0))
+NAMES = st.text(min_size=1, max_size=12).filter(lambda name: name.isprintable() and name == name.strip())
+POWERS_W = st.one_of(st.sampled_from([0.1, 1.0, 2.0]), st.floats(1e-6, 1e3))
+
+Edit = Callable[[Scenario], Scenario]
+
+
+def _listed(kind: str, change: Callable[[list[Any]], list[Any]]) -> Edit:
+    return lambda scenario: scenario.model_copy(
+        update={kind: tuple(change(list(getattr(scenario, kind))))} if getattr(scenario, kind) else {}
+    )
+
+
+def _updated(kind: str, place: int, update: dict[str, object]) -> Edit:
+    def change(points: list[Any]) -> list[Any]:
+        place_here = place % len(points)
+        points[place_here] = points[place_here].model_copy(update=update)
+        return points
+
+    return _listed(kind, change)
+
+
+def _removed(kind: str, place: int) -> Edit:
+    return _listed(kind, lambda points: [one for at, one in enumerate(points) if at != place % len(points)])
+
+
+def _added(kind: str, name: str, position_m: Any, power_w: float) -> Edit:
+    made = (Node if kind == "nodes" else Jammer)(name=name, position_m=position_m, power_w=power_w)
+    return lambda scenario: scenario.model_copy(update={kind: (*getattr(scenario, kind), made)})
+
+
+def _airspace(**update: Any) -> Edit:
+    return lambda scenario: scenario.model_copy(
+        update={"airspace": scenario.airspace.model_copy(update=update)}
+    )
+
+
+def _zoned(name: str, x_m: float, y_m: float) -> Edit:
+    zone = NoFlyZone(name=name, centre_m=(x_m, y_m), radius_m=3.0)
+    return lambda scenario: _airspace(no_fly=(*scenario.airspace.no_fly, zone))(scenario)
+
+
+def _tilted(tilt_deg: float) -> Edit:
+    return lambda scenario: Scenario.from_dict(
+        scenario.to_dict() | {"airframe": {"tilt_max_deg": tilt_deg, "mount_deg": 90.0}}
+    )
+
+
+EDITS = st.one_of(
+    st.builds(lambda kind, at, p: _updated(kind, at, {"position_m": p}), KINDS, PLACES, POSITIONS),
+    st.builds(lambda kind, at, name: _updated(kind, at, {"name": name}), KINDS, PLACES, NAMES),
+    st.builds(
+        lambda at, power: _updated("jammers", at, {"power_w": power, "power_dbm": None}), PLACES, POWERS_W
+    ),
+    st.builds(
+        lambda at: _updated("nodes", at, {"antenna": "dipole", "antenna_axis": (1.0, 0.0, 0.0)}), PLACES
+    ),
+    st.builds(_removed, KINDS, PLACES),
+    st.builds(_added, st.sampled_from(["nodes", "jammers"]), NAMES, POSITIONS, POWERS_W),
+    st.builds(_zoned, NAMES, METRES, METRES),
+    st.just(_airspace(no_fly=())),
+    st.just(_airspace(geofence_m=None)),
+    st.builds(
+        lambda size_m: _airspace(geofence_m=((-size_m, -size_m), (size_m, -size_m), (0.0, size_m))),
+        st.floats(50.0, 300.0),
+    ),
+    st.builds(lambda low_m: _airspace(altitude_m=(low_m, 90.0)), st.floats(6.0, 80.0)),
+    st.builds(_tilted, st.floats(1.0, 180.0)),
+    st.builds(lambda db: lambda s: View(scenario=s).with_power_db(db).scenario, st.floats(-30.0, 40.0)),
+)
+
+
+def _in_watts(scenario: Scenario) -> dict[str, object]:
+    """Returns what a scenario states, every power in watts."""
+    stated: dict[str, Any] = scenario.to_dict()
+    for kind in ("nodes", "jammers"):
+        for table, point in zip(stated[kind], getattr(scenario, kind), strict=True):
+            table.pop("power_dbm", None)
+            table["power_w"] = point.transmit_power_w
+    return stated
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+@settings(max_examples=50, deadline=None)
+@given(edits=st.lists(EDITS, min_size=1, max_size=6))
+def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: list[Edit]) -> None:
+    """After any edits, by themselves, the file's own powers in dBm included; its heading stays."""
+    text, scenario = EXAMPLES[name]
+    for edit in edits:
+        with suppress(ScenarioError):
+            scenario = edit(scenario)
+    saved = toml_like(text, scenario)
+    assert _in_watts(scenario_from_text(saved.encode(), "saved.toml")) == _in_watts(scenario)
+    heading = text.split("\n\n")[0]
+    assert saved.startswith(heading) or heading.startswith("[")
+    if name in ALONE and name != "no-fly":
+        above = text.split("[[nodes]]")[0].splitlines()
+        assert [line for line in above if line.startswith("#") and line not in saved] == []
+
+
+@pytest.mark.parametrize("name", ALONE)
+@pytest.mark.parametrize("ends", ["\n", "\r\n", ""])
+def test_what_is_not_changed_is_the_same_text(name: str, ends: str) -> None:
+    """To the byte, whatever ends its lines."""
+    text, scenario = EXAMPLES[name]
+    text = text.replace("\n", ends) if ends else text.rstrip("\n")
+    assert toml_like(text, scenario) == text
+
+
+def test_what_another_file_held_is_in_the_saved_one() -> None:
+    """Nodes and the harmonics of a pattern, so that the file loads anywhere."""
+    for name, lost in (("geodetic", "nodes_from = "), ("frame", None)):
+        text, scenario = EXAMPLES[name]
+        saved = toml_like(text, scenario)
+        assert scenario_from_text(saved.encode(), "saved.toml") == scenario
+        kept = [line for line in text.splitlines() if not (lost and line.startswith(lost))]
+        assert [line for line in kept if line not in saved.splitlines()] == []
+
+
+HAND_MADE = """\
+# A scene of my own.
+name = 'mine'   # a title
+
+[airspace]   # where it may fly
+altitude_m = [8, 30]
+geofence_m = [
+  [-60, -60],   # the south-west
+  [60, -60],
+  [0, 90]
+]
+
+[receiver]
+noise_w = 1e-3
+reference_gain_db = 0
+
+# All nodes.
+[[nodes]]
+position_m = [0, 0, 0]
+power_dbm = 30   # one watt
+[[nodes]]
+# the second
+position_m = [0.0, 50.0, 0.0]
+power_dbm = 30
+
+# Jammers follow.
+
+# The one on the roof.
+[[jammers]]
+name = "roof"
+position_m = [17, 15, 4]
+power_w = 1_000e-3
+
+# the end
+"""
+
+
+def _hand_made(*edits: Edit) -> str:
+    scenario = scenario_from_text(HAND_MADE.encode(), "")
+    for edit in edits:
+        scenario = edit(scenario)
+    saved = toml_like(HAND_MADE, scenario)
+    assert _in_watts(scenario_from_text(saved.encode(), "")) == _in_watts(scenario)
+    return saved
+
+
+def test_only_what_changed_is_written_anew() -> None:
+    """One number of a list, in its place; a corner of a fence over several lines; a power in its unit."""
+    moved = _hand_made(_updated("jammers", 0, {"position_m": (17.0, 15.5, 4.0)}))
+    assert moved == HAND_MADE.replace("[17, 15, 4]", "[17, 15.5, 4]")
+    fence = _hand_made(_airspace(geofence_m=((-60.0, -60.0), (60.0, -61.0), (0.0, 90.0))))
+    assert fence == HAND_MADE.replace("[60, -60]", "[60, -61.0]")
+    power = _hand_made(_updated("nodes", 0, {"power_w": 0.1, "power_dbm": None}))
+    assert power == HAND_MADE.replace("power_dbm = 30   # one", "power_dbm = 20.0   # one")
+    watts = _hand_made(_updated("nodes", 0, {"power_w": 0.3, "power_dbm": None}))
+    assert watts == HAND_MADE.replace("power_dbm = 30   # one", "power_w = 0.3   # one")
+
+
+def test_a_point_that_is_gone_takes_its_comments_along() -> None:
+    """The comment above it and those within it, but not the one above the list, nor one that stands alone."""
+    without = _hand_made(_removed("jammers", 0))
+    assert "roof" not in without
+    assert without.endswith("# Jammers follow.\n\n# the end\n")
+    first = _hand_made(_removed("nodes", 0))
+    assert "one watt" not in first
+    assert "# All nodes.\n[[nodes]]\n# the second\n" in first
+    assert 'name = "S2"' in first
+
+
+def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
+    """In the unit that they have, with an empty line before it."""
+    added = _hand_made(_added("nodes", "new", (1.0, 2.0, 0.0), 0.1))
+    block = '[[nodes]]\nname = "new"\nposition_m = [1.0, 2.0, 0.0]\npower_dbm = 20.0\n'
+    head, tail = HAND_MADE.split("\n# Jammers follow.")
+    assert added == f"{head}\n{block}\n# Jammers follow.{tail}"
+
+
+def test_without_a_files_text_it_is_the_scenarios_own(paper: Scenario) -> None:
+    """So too where the text is of something else."""
+    for text in ("", "no scenario", "[airspace]\n"):
+        assert toml_like(text, paper) == paper.to_toml()
