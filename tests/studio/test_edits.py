@@ -7,7 +7,9 @@ import pytest
 
 from nullpose import load
 from nullpose.errors import ScenarioError
+from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.edits import ADDED, entries_of, new_scenario, with_added, with_fence, with_typed, without
+from nullpose.studio.toml_like import toml_like
 from nullpose.studio.view import View
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -87,3 +89,34 @@ def test_a_fence_is_drawn_and_taken_away() -> None:
     assert np.allclose(fenced.scenario.airspace.geofence_m, corners)
     entries = entries_of(fenced, None)
     assert with_typed(fenced, entries, {"airspace.geofence_m": ""}) == PAPER
+
+
+def test_comments_go_with_a_renamed_point_and_not_with_another_of_its_name() -> None:
+    """A jammer that is renamed and then moved keeps its comments; one that takes its place has none."""
+    text = """\
+[airspace]
+altitude_m = [8.0, 30.0]
+[receiver]
+noise_w = 1e-3
+reference_gain_db = 0.0
+[[nodes]]
+position_m = [0.0, 0.0, 0.0]
+power_w = 1.0
+
+# the roof
+[[jammers]]
+name = "M1"
+position_m = [17.0, 15.0, 4.0]
+power_w = 2.0   # measured
+"""
+    view = View(scenario=scenario_from_text(text.encode(), ""), text=text)
+    key = ("jammers", 0)
+    typed = {"jammers[0].name": "roof", "jammers[0].position_m[0]": "18"}
+    renamed = with_typed(view, entries_of(view, key), typed).moved(key, (19.0, 15.0, 4.0))
+    expected = text.replace('"M1"', '"roof"').replace("[17.0", "[19.0")
+    assert toml_like(renamed.text, renamed.scenario) == expected
+    other = with_added(without(view, key), "jammer", (30.0, 30.0), 50.0)
+    saved = toml_like(other.text, other.scenario)
+    assert 'name = "M1"' in saved
+    assert "roof" not in saved
+    assert "measured" not in saved

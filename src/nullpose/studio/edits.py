@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
@@ -123,7 +123,8 @@ def without(view: View, key: Key) -> View:
         ScenarioError: the scenario needs it.
     """
     kind, index = key
-    return view.with_members(kind, (one for i, one in enumerate(view.members(kind)) if i != index))
+    # the text follows at once: a point that is added later may have the same name, and other comments
+    return view.with_members(kind, (one for i, one in enumerate(view.members(kind)) if i != index)).written
 
 
 def with_fence(view: View, corners_m: ArrayLike) -> View:
@@ -218,4 +219,9 @@ def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -
             overrides.append(Override(entry.path, typed or None))
         else:
             overrides.append(parse_override(f"{entry.path}={typed}"))
-    return view.with_scenario(apply_overrides(view.scenario, overrides)) if overrides else view
+    typed_in = view.with_scenario(apply_overrides(view.scenario, overrides)) if overrides else view
+    names = [one for one in overrides if one.path.endswith(".name")]
+    if names:  # by itself in the text, where a point that has moved too would be taken for another one
+        renamed = view.written.with_scenario(apply_overrides(view.scenario, names)).written
+        return replace(typed_in, text=renamed.text)
+    return typed_in

@@ -120,11 +120,7 @@ class Page:
             *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
         ]
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
-            (
-                panel.save,
-                "scenario.toml",
-                lambda: toml_like(session.view.text, session.view.scenario).encode(),
-            ),
+            (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),
             (panel.figure, "figure.png", partial(figure_png, session)),
             (panel.html, "scene.html", lambda: scene_html(session, panel.map.value, self._link_range_db)),

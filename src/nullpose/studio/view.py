@@ -16,6 +16,7 @@ from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, Scenario
 from nullpose.studio.case import OPTIMUM, Case, cases_of
+from nullpose.studio.toml_like import toml_like
 
 Kind = Literal["nodes", "jammers", "eavesdroppers", "no_fly"]
 """A list of the scenario, the last one being that of its airspace."""
@@ -169,6 +170,11 @@ class View:
         compared = self.compared if self.compared in allowed and self.compared != case else None
         kept = self.text if text is None else text
         return View(scenario=scenario, case=case, compared=compared, text=kept)
+
+    @property
+    def written(self) -> View:
+        """The view with the text of its file, if it has one, brought up to date."""
+        return replace(self, text=self.text and toml_like(self.text, self.scenario))
 
     def with_case(self, case: Case) -> View:
         """Return the view with another case chosen.
