@@ -16,6 +16,7 @@ from nullpose.errors import NullposeError, ScenarioError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio.autosave import Left
 from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.case import case_named
@@ -25,7 +26,6 @@ from nullpose.studio.edits import new_scenario
 from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
 from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS, FieldMap
-from nullpose.studio.history import History
 from nullpose.studio.labels import Labels
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import Scale, overlay_html
@@ -60,7 +60,7 @@ class Page:
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
         address: of the studio as this browser reaches it.
-        history: what to go on from, in place of the scene; None to begin anew.
+        left: what to go on from, in place of the scene; None to begin anew.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Page:
         *,
         dark: bool = False,
         address: str = "",
-        history: History | None = None,
+        left: Left | None = None,
     ) -> None:
         self._client, self._address = client, address
         self._lock = threading.RLock()
@@ -89,13 +89,15 @@ class Page:
         self._labels = Labels(client.scene)
         self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._refresh}
-        self.session = Session(scenario, text, history=history, **told)
+        self.session = Session(scenario, text, history=None if left is None else left.history, **told)
         self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._labels, self._dragged, look)
         self._carpet = Carpet(client.scene, self._labels, look)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
         self._listen()
+        if left is not None:
+            self._go_on(left)
         self.session.start()
 
     def close(self, timeout_s: float = 5.0) -> bool:
@@ -150,6 +152,19 @@ class Page:
             return False
         self.panel.faults.content = failure_html(None)
         return True
+
+    @property
+    def left(self) -> Left:
+        """What a later page of the same tab goes on from."""
+        camera = self._client.camera
+        return Left(self.session.history, camera.position, camera.look_at, self.panel.controls)
+
+    def _go_on(self, left: Left) -> None:
+        camera, self._aimed = self._client.camera, True
+        self.panel.choose(left.controls)
+        with self._client.atomic():
+            aim(camera, self.session.view.scenario)
+            camera.position, camera.look_at = left.eye_m, left.look_at_m
 
     def tell(self, error: ScenarioError, name: str) -> None:
         """Show the faults of what was refused.

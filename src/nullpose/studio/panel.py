@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import nullcontext
 from html import escape
 from types import SimpleNamespace
@@ -118,6 +119,9 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
 """What each tab holds, by name: the kind of control, its label, its help, and more of what viser takes."""
 
 
+_KEPT = ("map", "pattern", "freed")
+
+
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
@@ -155,6 +159,20 @@ class Panel(SimpleNamespace):
                         self.form = gui.add_form(None)
                     with self.form if kind == "text" else nullcontext():
                         setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
+
+    @property
+    def controls(self) -> dict[str, object]:
+        """What is chosen for the picture, by the controls' names."""
+        return {name: getattr(self, name).value for name in _KEPT}
+
+    def choose(self, controls: Mapping[str, object]) -> None:
+        """Choose for the picture what was chosen before.
+
+        Args:
+            controls: as :attr:`controls` has it.
+        """
+        for name, value in controls.items():
+            put(getattr(self, name), value=value)
 
     def show(self, view: View) -> None:
         """Offer the cases that have a meaning for a view, and show those chosen, and the jamming power.

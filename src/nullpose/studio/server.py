@@ -14,7 +14,6 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.studio.asked import ASKED, Asked
 from nullpose.studio.autosave import Autosave
-from nullpose.studio.camera import aim
 from nullpose.studio.history import History
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 from nullpose.studio.scene_link import SCENE, scenario_from_scene
@@ -64,7 +63,6 @@ class Studio:
         self._saved = Autosave()
         self._tabs: dict[int, _Tab] = {}
         self.pages: dict[int, Any] = {}
-        aim(server.initial_camera, scenario)
         server.on_client_connect(self._connect)
         server.on_client_disconnect(self._disconnect)
 
@@ -107,18 +105,18 @@ class Studio:
 
         name = asked.page and f"{asked.page} {asked.scene}"  # another scene in the address is a new beginning
         with self._lock:
-            live = [self.pages[key].session.history for key, tab in self._tabs.items() if tab.name == name]
-            history = self._saved.begin(name, live)
+            live = [self.pages[key].left for key, tab in self._tabs.items() if tab.name == name]
+            left = self._saved.begin(name, live)
         begun, refused = (self._scenario, self._text), None
-        if history is None and asked.scene:
+        if left is None and asked.scene:
             try:
                 begun = scenario_from_scene(asked.scene), ""
             except ScenarioError as error:
                 refused = error
-        page = Page(client, *begun, dark=asked.dark, address=asked.address, history=history)
+        page = Page(client, *begun, dark=asked.dark, address=asked.address, left=left)
         if refused is not None:
             page.tell(refused, SCENE)
-        return page, _Tab(name, history)
+        return page, _Tab(name, left and left.history)
 
     def _disconnect(self, client: ClientHandle) -> None:
         with self._lock:
@@ -126,7 +124,7 @@ class Studio:
             if page is None or tab is None:
                 return
             begun = [other.begun for other in self._tabs.values() if other.name == tab.name]
-            self._saved.end(tab.name, page.session.history, begun)
+            self._saved.end(tab.name, page.left, begun)
         page.close()
         self._places.release()
 
