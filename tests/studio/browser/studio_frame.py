@@ -1,0 +1,225 @@
+"""What is around the picture: colours, coming back, the scene in the address, the card and the connection."""
+
+from __future__ import annotations
+
+import re
+import time
+import zlib
+from base64 import urlsafe_b64encode
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from nullpose.scenario import Scenario
+from nullpose.studio.server import Studio, studio
+
+CERTIFIED = "document.querySelector('[data-np=overlay-status-0]')?.innerText.includes('certified to')"
+DARK = "document.documentElement.dataset.mantineColorScheme == 'dark'"
+WIDE, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+
+
+@pytest.fixture
+def alone(paper: Scenario) -> Iterator[Studio]:
+    """A studio that no other test uses."""
+    with studio(paper, port=0) as one:
+        yield one
+
+
+@contextmanager
+def _opened(browser: Browser, address: str, **more: Any) -> Iterator[Page]:
+    """Opens an address in a browser of its own, up to the first proof."""
+    context = browser.new_context(**{"viewport": WIDE, "device_scale_factor": 0.5} | more)
+    page = context.new_page()
+    page.set_default_timeout(90_000)
+    page.goto(address)
+    page.wait_for_function(CERTIFIED)
+    yield page
+    context.close()
+
+
+def _until(met: Callable[[], object], seconds: float = 30.0) -> None:
+    until = time.monotonic() + seconds
+    while not met():
+        assert time.monotonic() < until, "it did not happen in time"
+        time.sleep(0.05)
+
+
+def _only(running: Studio) -> Any:
+    """Returns the server's side of the only page."""
+    _until(lambda: len(running.pages) == 1)
+    return next(iter(running.pages.values()))
+
+
+def _after(running: Studio, before: Any) -> Any:
+    """Returns the server's side of the page that came after another."""
+    _until(lambda: len(running.pages) == 1 and _only(running) is not before)
+    return _only(running)
+
+
+def _value(page: Page, where: str) -> str:
+    return page.locator(f"[data-np={where}]").get_attribute("data-value") or ""
+
+
+def _ink_on_ground(page: Page, selector: str) -> float:
+    """Returns the contrast (WCAG) of a text in the card with the card."""
+    read = "e => [e, document.querySelector('#np-overlay')].map((one, i) => getComputedStyle(one)"
+    colours = page.locator(selector).evaluate(f"{read}[i ? 'backgroundColor' : 'color'])")
+    share = [np.array([float(part) for part in re.findall(r"[\d.]+", one)[:3]]) / 255 for one in colours]
+    linear = [np.where(one <= 0.04045, one / 12.92, ((one + 0.055) / 1.055) ** 2.4) for one in share]
+    low, high = sorted(float(one @ (0.2126, 0.7152, 0.0722)) for one in linear)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_has_the_systems_colours(browser: Browser, alone: Studio, scheme: Any) -> None:
+    """The panel as the card, whose letters stand out from it."""
+    with _opened(browser, alone.address, color_scheme=scheme) as page:
+        page.wait_for_function(f"({DARK}) == {'true' if scheme == 'dark' else 'false'}")
+        parts = (".np-value", ".np-label", ".np-bound", ".np-status", "[data-np=connection]")
+        assert min(_ink_on_ground(page, f"#np-overlay {part}") for part in parts) > 4.5
+
+
+def test_a_page_loaded_again_goes_on_where_it_was(browser: Browser, alone: Studio) -> None:
+    """With the node that was moved, the camera and the map as they were, and undo takes the move back."""
+    with _opened(browser, alone.address) as page:
+        first = _only(alone)
+        began = first.session.view.scenario
+        first.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)))
+        first.panel.map.value = "no map"
+        page.wait_for_function(
+            f"document.querySelector('[data-np=overlay]').dataset.version == 2 && {CERTIFIED}"
+        )
+        value = _value(page, "overlay-value-0")
+        first._client.camera.position = (60.0, 60.0, 40.0)
+        page.wait_for_timeout(1500)
+        page.reload()
+        page.wait_for_function(CERTIFIED)
+        second = _after(alone, first)
+        assert second.session.view.scenario.nodes[0].position_m == (12.0, 3.0, 0.0)
+        assert _value(page, "overlay-value-0") == value
+        assert second.panel.map.value == "no map"
+        page.wait_for_timeout(1500)
+        assert second._client.camera.position == pytest.approx([60.0, 60.0, 40.0], abs=0.1)
+        page.get_by_role("button", name="Undo").click()
+        _until(lambda: second.session.view.scenario == began)
+        assert urlsplit(page.url).query == urlsplit(alone.address).query
+
+
+def test_another_tab_begins_with_the_file(browser: Browser, alone: Studio, paper: Scenario) -> None:
+    """What one tab keeps is not another's."""
+    with _opened(browser, alone.address):
+        first = _only(alone)
+        first.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)))
+        with _opened(browser, alone.address):
+            (second,) = (page for page in alone.pages.values() if page is not first)
+            assert second.session.view.scenario == paper
+
+
+def test_a_dropped_connection_goes_on_where_it_was(browser: Browser, alone: Studio) -> None:
+    """By itself, and the card says when it is there again."""
+    with _opened(browser, alone.address) as page:
+        first = _only(alone)
+        first.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)))
+        alone._server._websock_server.disconnect_all_clients()
+        second = _after(alone, first)
+        assert second.session.history.past == first.session.history.past
+        assert second.session.view == first.session.view
+        page.wait_for_selector("#np-overlay[data-state=connected]")
+        page.wait_for_function(CERTIFIED)
+        assert page.locator("[data-np=connection]").inner_text() == "connected"
+
+
+def test_a_link_opens_the_same_scene(browser: Browser, alone: Studio) -> None:
+    """The button shows an address, which opens the scene as it is now in another tab."""
+    with _opened(browser, alone.address) as page:
+        ours = _only(alone)
+        ours.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)).with_power_db(20.0))
+        page.get_by_role("tab", name="Files").click()
+        page.get_by_role("button", name="Link to this scene").click()
+        link = page.locator("[data-np=link]")
+        link.wait_for()
+        assert link.get_attribute("readonly") is not None
+        address = link.input_value()
+        assert address.startswith(f"{alone.address}&scene=")
+        with _opened(browser, address) as other:
+            (second,) = (one for one in alone.pages.values() if one is not ours)
+            assert second.session.view.scenario == ours.session.view.scenario
+            assert other.locator("[data-np=faults]").inner_text() == ""
+        page.get_by_role("button", name="Close").click()
+        link.wait_for(state="detached")
+
+
+@pytest.mark.parametrize("fault", ["receiver", "damaged"])
+def test_a_broken_link_shows_its_faults_and_the_files_scene(
+    browser: Browser, alone: Studio, paper: Scenario, fault: str
+) -> None:
+    """As for a file that is not taken."""
+    text = urlsafe_b64encode(zlib.compress(b"[[nodes]]\npower_w = -1\n")).decode().rstrip("=")
+    broken = text if fault == "receiver" else text[:-9]
+    with _opened(browser, f"{alone.address}&scene={broken}") as page:
+        told = page.locator("[data-np=faults]")
+        assert "the scene in the address was not taken" in told.inner_text()
+        assert fault in told.inner_text()
+        assert _only(alone).session.view.scenario == paper
+
+
+def test_the_card_stays_when_the_panel_is_folded(browser: Browser, alone: Studio) -> None:
+    """It goes on telling what is solved, and no click ends on it."""
+    with _opened(browser, alone.address) as page:
+        ours = _only(alone)
+        assert _value(page, "overlay-value-0") == _value(page, "value-0")
+        page.get_by_label("Collapse panel area").click()
+        page.wait_for_selector("[data-np=readout]", state="hidden")
+        before = _value(page, "overlay-value-0")
+        ours.session.change(lambda view: view.with_power_db(20.0))
+        page.wait_for_function(
+            f"document.querySelector('[data-np=overlay]').dataset.version == 2 && {CERTIFIED}"
+        )
+        assert _value(page, "overlay-value-0") != before
+        card = page.locator("#np-overlay").bounding_box()
+        assert card is not None
+        assert card["width"] <= 340
+        under = page.evaluate("document.elementFromPoint(40, 40).closest('#np-overlay') === null")
+        assert under is True
+
+
+def test_a_phone_shows_the_scene_first(browser: Browser, alone: Studio) -> None:
+    """The panel is folded, and unfolds with a tap; the card is inside the screen, clear of the notices."""
+    with _opened(browser, alone.address, viewport=PHONE) as page:
+        readout = page.locator("[data-np=readout]")
+        readout.wait_for(state="hidden")
+        value = page.locator("[data-np=overlay-value-0]")
+        assert value.is_visible()
+        card = page.locator("#np-overlay").bounding_box()
+        assert card is not None
+        assert card["x"] >= 0
+        assert card["x"] + card["width"] <= PHONE["width"]
+        for notice in page.locator(".mantine-Notification-root").all():
+            box = notice.bounding_box()
+            assert box is None or box["y"] >= card["y"] + card["height"]
+        page.get_by_text("nullpose studio").click()
+        readout.wait_for(state="visible")
+        assert _value(page, "value-0") == _value(page, "overlay-value-0")
+
+
+def test_the_end_of_a_studio_is_told(browser: Browser, paper: Scenario) -> None:
+    """Also that another one has taken its place, whose address is another."""
+    with studio(paper, port=0) as first:
+        port = urlsplit(first.address).port
+        context = browser.new_context(viewport=WIDE, device_scale_factor=0.5)
+        page = context.new_page()
+        page.set_default_timeout(60_000)
+        page.goto(first.address)
+        page.wait_for_function(CERTIFIED)
+    told = page.locator("[data-np=connection]")
+    page.wait_for_selector("#np-overlay[data-state=ended]")
+    assert "not connected: the studio was ended" in told.inner_text()
+    with studio(paper, port=port or 0):
+        page.wait_for_selector("#np-overlay[data-state=restarted]")
+        assert "open the address that the new one prints" in told.inner_text()
+    context.close()
