@@ -1,0 +1,94 @@
+"""Every number of the page is the one that ``nullpose solve --json`` prints, and the map's best the value."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+from typer.testing import CliRunner
+
+from nullpose import load
+from nullpose.cli.app import app
+from nullpose.scenario import Scenario
+from nullpose.studio.server import Studio
+from nullpose.studio.session import Session
+from nullpose.studio.view import View
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml") if path.stem != "study")
+CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
+
+
+def _solved(scenario: Scenario, folder: Path) -> dict[str, Any]:
+    """Returns what the command line prints of a scenario that the page has saved."""
+    path = folder / "scene.toml"
+    path.write_text(scenario.to_toml(), encoding="utf-8")
+    result = CliRunner().invoke(app, ["solve", str(path), "--json"])
+    assert result.exit_code == 0, result.stderr
+    return dict(json.loads(result.stdout))
+
+
+def _expected(solved: dict[str, Any], scenario: Scenario) -> list[str]:
+    """Returns the numbers in the order of the panel, printed as it prints them."""
+    objective, is_rate = solved["objective"], scenario.objective == "secrecy-rate"
+    best = [objective["value"], objective["upper_bound"]]
+    numbers = [f"{one if is_rate else 10.0 * math.log10(one):.4f}" for one in best]
+    for link in solved["links"]:
+        numbers.append(f"{link['sinr_db']:.2f}")
+        numbers += [f"{link['margin_db']:.2f}"] if "margin_db" in link else []
+        numbers += [f"{link['secrecy_rate_bps_hz']:.3f}"] if is_rate else []
+    pose = solved["pose"]
+    numbers += [f"{metres:.2f}" for metres in pose["position_m"]]
+    numbers += [f"{math.degrees(pose[key]):.1f}" for key in ("roll_rad", "pitch_rad", "yaw_rad", "tilt_rad")]
+    axis, here = np.array(pose["antenna_axis"]), np.array(pose["position_m"])
+    for jammer in (
+        scenario.jammers[:4] if scenario.antenna_record.__class__.__name__ != "PatternAntenna" else ()
+    ):
+        way = np.array(jammer.position_m) - here
+        off = math.degrees(math.acos(min(1.0, abs(axis @ way) / np.linalg.norm(way))))
+        numbers.append(f"{off:.1f}")
+    return [re.sub(r"^-(0\.0*)$", r"\1", number) for number in numbers]
+
+
+def _shown(page: Page, names: tuple[str, ...]) -> list[str]:
+    """Returns the numbers of the panel, in their order, without those that are parts of names."""
+    text = page.locator("[data-np=numbers-0]").inner_text().replace("\u2212", "-")
+    for name in sorted(names, key=len, reverse=True):
+        text = text.replace(name, "")
+    return re.findall(r"-?\d+\.\d+", text)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_page_has_the_numbers_of_the_command_line(
+    name: str, page: Page, session: Session, running: Studio, tmp_path: Path
+) -> None:
+    """To the printed digits: value, bound, every node, pose and null; and the map's best to .01 dB."""
+    scenario = load(EXAMPLES / f"{name}.toml", allow_outside=True)
+    session.change(lambda view: View(scenario=scenario))
+    version = session.version
+    page.wait_for_function(
+        f"+document.querySelector('[data-np=readout]').dataset.version == {version} && {CERTIFIED}"
+    )
+    one_antenna = scenario.model_copy(update={"array": None})  # the page shows no array, and says so
+    solved = _solved(one_antenna, tmp_path)
+    names = (*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names)
+    assert _shown(page, names) == _expected(solved, one_antenna)
+    value = float(page.locator("[data-np=value-0]").get_attribute("data-value") or "nan")
+    assert value == pytest.approx(solved["objective"]["value"], rel=1e-12)
+    card = page.locator("[data-np=overlay-value-0]").last.get_attribute("data-value")
+    assert float(card or "nan") == value
+    page.wait_for_function("document.querySelector('[data-np=plot]') !== null")
+    for _ in range(300):
+        if session.field_map is not None:
+            break
+        page.wait_for_timeout(100)
+    assert session.field_map is not None
+    answer = session.current(session.view.case)
+    assert answer is not None
+    assert session.field_map.best.best[0] == pytest.approx(answer.shown_value, abs=0.01)
