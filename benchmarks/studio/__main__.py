@@ -8,10 +8,11 @@ from benchmarks.studio.soak import soak
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.studio", description=__doc__)
 parser.add_argument("what", choices=("latency", "soak"))
-parser.add_argument("--steps", type=int, default=0, help="without it 60 and 36000 (an hour at 10 Hz)")
-parser.add_argument("--minutes", type=float, default=20.0, help="when a soak ends though steps are left")
+parser.add_argument("--steps", type=int, default=60, help="of a drag")
+parser.add_argument("--minutes", type=float, default=30.0, help="of random editing")
+parser.add_argument("--seed", type=int, default=0, help="of random editing")
 arguments = parser.parse_args()
 if arguments.what == "latency":
-    print(json.dumps(latency(arguments.steps or 60), indent=2))
+    print(json.dumps(latency(arguments.steps), indent=2))
 else:
-    print(json.dumps(soak(arguments.steps or 36_000, arguments.minutes), indent=2))
+    print(json.dumps(soak(arguments.minutes, arguments.seed), indent=2))

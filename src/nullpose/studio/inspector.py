@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 OnTyped = Callable[[dict[str, str]], bool]
 
 
+_Shape = tuple[tuple[str, tuple[str, ...]], ...]
+
+
 class Inspector:
     """Fields in a folder of the panel.
 
@@ -25,42 +28,45 @@ class Inspector:
     def __init__(self, gui: GuiApi, folder: Any, on_typed: OnTyped) -> None:
         self._gui, self._folder, self._on_typed = gui, folder, on_typed
         self._entries: Sequence[Entry] = ()
-        self._controls: list[Any] = []
-        self._form: Any = None
+        self._forms: dict[_Shape, tuple[Any, list[Any]]] = {}  # hidden and kept: to take one away costs more
 
     def show(self, entries: Sequence[Entry]) -> None:
         """Show values; what is being typed stays while they are as they were.
 
         Args:
-            entries: the values now; none take all fields away.
+            entries: the values now; none hide all fields.
         """
         if entries == self._entries:
             return
-        shape = [(entry.label, entry.options) for entry in entries]
-        if shape != [(entry.label, entry.options) for entry in self._entries]:
-            self._build(entries)
-        self._entries = entries
+        before, self._entries = _shape(self._entries), entries
+        if before != _shape(entries) and before:
+            self._forms[before][0].visible = False
+        if entries:
+            if _shape(entries) not in self._forms:
+                self._forms[_shape(entries)] = self._built(entries)
+            self._forms[_shape(entries)][0].visible = True
         self._put_back()
 
-    def _build(self, entries: Sequence[Entry]) -> None:
-        if self._form is not None:
-            self._form.remove()
-            self._form = None
-        self._controls = []
-        if not entries:
-            return
+    @property
+    def _controls(self) -> list[Any]:
+        return self._forms[_shape(self._entries)][1] if self._entries else []
+
+    def _built(self, entries: Sequence[Entry]) -> tuple[Any, list[Any]]:
+        """Return a form with its fields."""
+        gui, controls = self._gui, []
         with self._folder:
-            self._form = self._gui.add_form(None)
-        with self._form:
+            form = gui.add_form(None)
+        with form:
             for entry in entries:
-                hint = f"{entry.path.rpartition('.')[2]}; Enter takes it."
+                more: dict[str, Any] = {"initial_value": entry.text, "hint": f"{entry.key}; Enter takes it."}
                 if entry.options:
-                    control: Any = self._gui.add_dropdown(entry.label, entry.options, hint=hint)
+                    control: Any = gui.add_dropdown(entry.label, entry.options, **more)
                     control.on_update(self._chosen)
                 else:
-                    control = self._gui.add_text(entry.label, "", hint=hint)
-                self._controls.append(control)
-        self._form.on_submit(lambda event: self._typed())
+                    control = gui.add_text(entry.label, **more)
+                controls.append(control)
+        form.on_submit(lambda event: self._typed())
+        return form, controls
 
     def _chosen(self, event: Any) -> None:
         if event.client is not None:  # a user did it, and not the program
@@ -77,3 +83,8 @@ class Inspector:
         for entry, control in zip(self._entries, self._controls, strict=True):
             if control.value != entry.text:
                 control.value = entry.text
+
+
+def _shape(entries: Sequence[Entry]) -> _Shape:
+    """Return what the fields for entries depend on."""
+    return tuple((entry.label, entry.options) for entry in entries)

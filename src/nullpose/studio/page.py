@@ -242,7 +242,7 @@ class Page:
                 self._late.start()
 
     def _refresh(self, *_: object) -> None:
-        with self._lock:
+        with self._lock, self.session.still:
             self._not_late()
             if not self._open:
                 return

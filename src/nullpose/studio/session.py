@@ -36,6 +36,7 @@ class Session:
     Attributes:
         version: of the scene now.
         history: the view now, those before it and those undone.
+        still: a lock under which nothing changes, to read several things that belong together.
     """
 
     def __init__(
@@ -48,7 +49,7 @@ class Session:
         rest_s: float = REST_S,
         history: History | None = None,
     ) -> None:
-        self._lock = threading.RLock()
+        self.still = threading.RLock()
         self._on_view, self._on_event = on_view, on_event
         self.version = 0
         begun = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
@@ -105,7 +106,7 @@ class Session:
         Args:
             case: which.
         """
-        with self._lock:
+        with self.still:
             answer = self.current(case)
             compiling = self._last(Notice) if answer is None else None
             notice = self._last(Notice, case, current=True) or compiling
@@ -132,7 +133,7 @@ class Session:
         self._go(History.redone)
 
     def _go(self, change: Callable[[History], History]) -> None:
-        with self._lock:
+        with self.still:
             history = change(self.history)
             if history is self.history:
                 return
@@ -149,7 +150,7 @@ class Session:
         return found
 
     def _take(self, event: Event) -> None:
-        with self._lock:
+        with self.still:
             self._found[type(event), getattr(event, "case", None)] = event
             if isinstance(event, Answer):
                 self._found.pop((Notice, None), None)
