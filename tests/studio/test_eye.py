@@ -20,6 +20,14 @@ def test_the_middle_and_the_edge_are_where_they_should_be() -> None:
     assert right == pytest.approx([440.0, 240.0, 10.0])
 
 
+def test_a_camera_that_was_moved_is_left_alone() -> None:
+    """A canvas of another size asks for a new fit, but not when the camera is elsewhere."""
+    fit = Eye([0.8, -0.5, 0.5], np.zeros(3), 1.3, 1280.0, 800.0).fitted(np.eye(3))
+    assert not fit.is_resized(fit)
+    assert fit._replace(width_px=890.0).is_resized(fit)
+    assert not fit._replace(width_px=890.0, position_m=np.add(fit.position_m, 0.5)).is_resized(fit)
+
+
 @seed(0)
 @given(points=POINTS, canvas=CANVASES)
 def test_all_points_are_on_the_canvas(points: list[tuple[float, ...]], canvas: tuple[float, float]) -> None:

@@ -80,6 +80,17 @@ def test_the_worse_node_keeps_its_label() -> None:
     assert scene.handles["/a"].visible
 
 
+def test_nothing_is_under_what_covers_the_canvas() -> None:
+    """A label that would be under the overlay goes to another side of its place, or away."""
+    scene = _Scene()
+    labels = Labels(scene)  # type: ignore[arg-type]
+    labels.put("/a", "0.81 dB", [0.0, 0.0, 0.0], Rank.VALUE, anchors=ANCHORS)
+    labels.put("/b", "0.81 dB", [-20.0, 0.0, 0.0], Rank.VALUE, anchors=ANCHORS)
+    labels.arrange(EYE, np.array([[0.0, 0.0, 490.0, 800.0]]))
+    assert (scene.handles["/a"].visible, scene.handles["/a"].anchor) == (True, "center-left")
+    assert not scene.handles["/b"].visible
+
+
 def test_what_stays_as_it_was_is_not_sent() -> None:
     """The same labels put and arranged again send nothing."""
     scene = _Scene()

@@ -13,7 +13,7 @@ from nullpose.studio.eye import Eye
 from nullpose.studio.scene import grid_m, scene_size_m
 
 _FAR = 100.0  # sizes of the scene that the camera sees, which leaves room to move away from it
-_FROM = [(0.82, -0.52, 0.56), (-0.52, -0.82, 0.56), (0.52, 0.82, 0.56), (-0.82, 0.52, 0.56)]
+_FROM = [(0.82, -0.52, 0.64), (-0.52, -0.82, 0.64), (0.52, 0.82, 0.64), (-0.82, 0.52, 0.64)]
 """Ways to the camera; the first is taken that has the fewest points behind the drone."""
 
 _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
@@ -22,8 +22,10 @@ _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for
 _TALL = 0.08  # of a point with its label, sizes of the scene
 
 
-def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
-    """Let a camera look at the whole of a scene: points, drone with its label, and the ground between them.
+def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
+    """Return what a camera sees after letting it look at the whole of a scene.
+
+    That is the points, the drone with its pattern and label, and the ground between them.
 
     Args:
         camera: of a page, or the one that pages begin with.
@@ -43,13 +45,14 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     camera.near = 0.02 * size_m
     camera.far = _FAR * size_m
+    return eye
 
 
 def _floor_m(scenario: Scenario) -> NDArray[np.float64]:
-    """Return the corners, (4, 3) metres, of the ground's grid with the numbers beside it."""
-    low, high, step_m = grid_m(scenario)
-    low, high = np.subtract(low, [0.0, step_m]), np.add(high, [step_m, 0.0])
-    return np.array([[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])])
+    """Return points, (n, 3) metres, around the ground's grid and the numbers beside it."""
+    (west, south), (east, north), step_m = grid_m(scenario)
+    numbers = [[west, south - step_m], [east, south - step_m], [east + step_m, south], [east + step_m, north]]
+    return np.insert([*numbers, [west, north]], 2, 0.0, axis=1)
 
 
 def _behind(eye: Eye, points_m: NDArray[np.float64], drone_m: NDArray[np.float64]) -> int:

@@ -52,6 +52,15 @@ class Eye(NamedTuple):
         x, y = 0.5 * self.width_px + scale * right, 0.5 * self.height_px - scale * up
         return np.stack([x, y, ahead], axis=-1)
 
+    def is_resized(self, other: Eye) -> bool:
+        """Return whether only the canvas differs from another's.
+
+        Args:
+            other: the other.
+        """
+        ends = np.stack([self.position_m, self.look_at_m]), np.stack([other.position_m, other.look_at_m])
+        return self[3:] != other[3:] and np.allclose(*ends, rtol=1e-3)
+
     def fitted(self, points_m: ArrayLike) -> Eye:
         """Return the camera that looks the same way, as near as it can be with all points in its canvas.
 
@@ -60,16 +69,27 @@ class Eye(NamedTuple):
         """
         axes = _axes(np.subtract(self.look_at_m, self.position_m))
         *sides, ahead = axes @ np.asarray(points_m, dtype=float).T
-        slope = _MARGIN * math.tan(0.5 * self.fov_rad)
-        middle, behind = [], np.inf
-        for side, reach in zip(sides, (slope * self.width_px / self.height_px, slope), strict=True):
-            # a point is inside two opposite edges where the camera is between them, or farther away
-            high, low = np.max(side - reach * ahead), np.max(-side - reach * ahead)
-            middle.append(0.5 * (high - low))
-            behind = min(behind, -0.5 * (high + low) / reach)
+        slopes = _MARGIN * math.tan(0.5 * self.fov_rad) * np.array([self.width_px / self.height_px, 1.0])
+        # a point is inside two opposite edges where the camera is between these, or farther away
+        ends = [
+            (np.max(side - slope * ahead), np.min(side + slope * ahead))
+            for side, slope in zip(sides, slopes, strict=True)
+        ]
+        behind = min(0.5 * (low - high) / slope for (high, low), slope in zip(ends, slopes, strict=True))
+        middle = [_middle(side, ahead - behind) for side in sides]
         position = np.array([*middle, behind]) @ axes
         away_m = float(np.mean(ahead)) - behind
         return self._replace(position_m=position, look_at_m=position + away_m * axes[2])
+
+
+def _middle(side: NDArray[np.float64], ahead: NDArray[np.float64]) -> float:
+    """Return from where points are seen as far to one side as to the other."""
+    low, high = float(side.min()), float(side.max())
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        seen = (side - middle) / np.maximum(ahead, 1e-9)
+        low, high = (middle, high) if seen.max() + seen.min() > 0.0 else (low, middle)
+    return middle
 
 
 def _axes(ahead: NDArray[np.float64]) -> NDArray[np.float64]:

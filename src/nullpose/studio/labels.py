@@ -94,13 +94,14 @@ class Labels:
         for name in [name for name in self._all if name.startswith(prefix)]:
             self._all.pop(name).handle.remove()
 
-    def arrange(self, eye: Eye) -> None:
+    def arrange(self, eye: Eye, taken: FloatArray | None = None) -> None:
         """Hide the labels that would be over one that matters more, and put each beside it if it can be.
 
         Args:
             eye: the camera.
+            taken: (n, 4) left, upper, right and lower edges of what else is over the canvas, pixels.
         """
-        taken = np.empty((0, 4))
+        taken = np.empty((0, 4)) if taken is None else taken
         for label in sorted(self._all.values(), key=lambda one: one.rank):
             x, y, ahead = eye.pixels(label.place_m[None])[0]
             if not ahead > 0.0:

@@ -46,6 +46,8 @@ _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one 
 
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
 
+_CARD_PX = np.array([0.0, 0.0, 352.0, 212.0])  # where the overlay is on the canvas, for one case
+
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
 _log = logging.getLogger("nullpose.studio")
@@ -85,6 +87,7 @@ class Page:
         self._scale: Scale | None = None
         self._link_range_db = LINK_RANGE_DB
         self._aimed = False
+        self._fit: Eye | None = None
         look = DARK if dark else LIGHT
         self._labels = Labels(client.scene)
         self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
@@ -229,8 +232,9 @@ class Page:
     def _aim(self) -> None:
         answer = self.session.current(self.session.view.case)
         self._aimed = answer is not None
+        pose = answer.result.pose if answer else None
         with self._client.atomic():
-            aim(self._client.camera, self.session.view.scenario, answer.result.pose if answer else None)
+            self._fit = aim(self._client.camera, self.session.view.scenario, pose)
 
     def _view_changed(self) -> None:
         with self._lock:
@@ -283,7 +287,12 @@ class Page:
         """Put the labels where they do not overlap, but not under a hand that drags a point."""
         with self._lock, self._client.atomic():
             if self._open and self._ground.dragged is None:
-                self._labels.arrange(Eye.of(self._client.camera))
+                eye = Eye.of(self._client.camera)
+                if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
+                    self._aim()
+                    eye = self._fit
+                card_px = _CARD_PX * np.array([0.0, 0.0, 1.0, len(self.session.view.cases)])
+                self._labels.arrange(eye, card_px[None])
 
     async def _looked(self, _: object) -> None:
         """Arrange the labels a little after the camera has moved."""
