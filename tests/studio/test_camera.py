@@ -10,7 +10,7 @@ from nullpose import load, solve
 from nullpose.scenario import Scenario
 from nullpose.studio.camera import aim
 from nullpose.studio.eye import Eye
-from nullpose.studio.scene import scene_size_m
+from nullpose.studio.scene import ground_m, scene_size_m
 
 
 @pytest.mark.parametrize("scale", [0.1, 1.0, 20.0, 400.0])
@@ -22,12 +22,14 @@ def test_nothing_of_a_scene_is_cut_away(paper: Scenario, scale: float) -> None:
     scenario = paper.model_copy(update={"nodes": nodes})
     camera = SimpleNamespace(position=np.ones(3), look_at=np.zeros(3), fov=1.3)
     aim(camera, scenario)
-    reach_m = scene_size_m(scenario)
+    middle, reach_m = np.mean(ground_m(scenario), axis=0), scene_size_m(scenario)
+    middle = np.append(middle, 0.0)
     forward = (camera.look_at - camera.position) / np.linalg.norm(camera.look_at - camera.position)
     for offset in np.ndindex(2, 2, 2):
-        corner = camera.look_at + reach_m * (np.array(offset) - 0.5)
+        corner = middle + reach_m * (np.array(offset) - [0.5, 0.5, 0.0]) * [1.0, 1.0, 0.1]
         assert camera.near < (corner - camera.position) @ forward < camera.far
     assert np.linalg.norm(camera.position - camera.look_at) < 0.1 * camera.far
+    assert camera.look_at[2] == pytest.approx(0.0, abs=1e-9 * reach_m)
 
 
 @pytest.mark.parametrize("canvas", [(1280, 800), (890, 800), (390, 844)])

@@ -40,6 +40,9 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
     matter = np.vstack([_floor_m(scenario), points, np.add(points, [0.0, 0.0, _TALL * size_m]), drone])
     eyes = [eye._replace(position_m=way, look_at_m=np.zeros(3)).fitted(matter) for way in _FROM]
     eye = min(eyes, key=lambda one: _behind(one, points, drone))  # of the best ones the first
+    way_m = np.subtract(eye.look_at_m, eye.position_m)
+    # turned by hand, it goes around a point that is on the ground
+    eye = eye._replace(look_at_m=eye.position_m - way_m * np.asarray(eye.position_m)[2] / way_m[2])
     camera.position, camera.look_at = eye.position_m, eye.look_at_m
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
