@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from nullpose.cli.faults import signals_handled
-from nullpose.cli.options import AllowOutside, Overrides, ScenarioFile, read_scenario
+from nullpose.cli.options import AllowOutside, Overrides, read_scenario
 
 _LOOPBACK = "127.0.0.1"
 
 
 def studio(
-    file: ScenarioFile,
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE",
+            help="Scenario file (TOML). Left out: a new scene with one node, to build on.",
+            show_default=False,
+        ),
+    ] = None,
     overrides: Overrides = None,
     allow_outside: AllowOutside = False,
     port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Port of the page.")] = 8080,
@@ -24,16 +32,22 @@ def studio(
 ) -> None:
     """Open a scenario in the browser.
 
-    Move nodes and jammers. The best pose and its bound are computed again at each step.
+    Add, move and delete nodes and jammers. The best pose and its bound are computed again at each step.
     """
-    scenario = read_scenario(file, overrides, allow_outside)
+    from nullpose.scenario import apply_overrides
     from nullpose.scenario.toml_file import file_text
+    from nullpose.studio.edits import new_scenario
     from nullpose.studio.server import studio as running_studio
+
+    if file is None:
+        scenario, text = apply_overrides(new_scenario(), overrides or []), ""
+    else:
+        scenario, text = read_scenario(file, overrides, allow_outside), file_text(file)
 
     ended = threading.Event()
     with (
         signals_handled(lambda *_: ended.set(), "SIGINT", "SIGTERM", "SIGHUP"),
-        running_studio(scenario, file_text(file), host=host, port=port) as running,
+        running_studio(scenario, text, host=host, port=port) as running,
     ):
         _announce(host, running.address)
         while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
