@@ -112,16 +112,16 @@ class Editor:
         self._refresh()
 
     def _clicked(self, eye_m: Any, way: Any) -> None:
-        size_m, view = self._size_m(), self._session.view
+        size_m, tool = self._size_m(), self._tool  # which another thread may end meanwhile
         place_m = ground_place_m(size_m, eye_m, way)
-        if not self._tool:
-            self.selected = picked(view, size_m, eye_m, way)
+        if not tool:
+            self.selected = picked(self._session.view, size_m, eye_m, way)
         elif place_m is None:
             return
-        elif self._tool == FENCE:
+        elif tool == FENCE:
             self._corner(place_m, size_m)
-        elif self._change(lambda view: with_added(view, self._tool, place_m, size_m), name="The new point"):
-            self.selected = ADDED[self._tool], len(self._session.view.members(ADDED[self._tool])) - 1
+        elif self._change(lambda view: with_added(view, tool, place_m, size_m), name="The new point"):
+            self.selected = ADDED[tool], len(self._session.view.members(ADDED[tool])) - 1
             self._tool = ""
         self._refresh()
 
