@@ -38,6 +38,7 @@ class _Label:
     place_m: FloatArray
     rank: Rank
     anchors: tuple[str, ...]
+    scale: float
 
 
 class Labels:
@@ -50,6 +51,7 @@ class Labels:
     def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
         self._all: dict[str, _Label] = {}
+        self._larger = 1.0
 
     def put(
         self,
@@ -77,13 +79,23 @@ class Labels:
         label = self._all.get(name)
         if label is None:
             handle = self._scene.add_label(
-                name, text, position=position, anchor=anchors[0], font_screen_scale=scale
+                name, text, position=position, anchor=anchors[0], font_screen_scale=self._larger * scale
             )
-            label = self._all[name] = _Label(handle, position, rank, anchors)
-        label.place_m, label.rank = np.array(place_m, dtype=float), rank
-        put(label.handle, text=text, font_screen_scale=scale)
+            label = self._all[name] = _Label(handle, position, rank, anchors, scale)
+        label.place_m, label.rank, label.scale = np.array(place_m, dtype=float), rank, scale
+        put(label.handle, text=text, font_screen_scale=self._larger * scale)
         if not np.allclose(label.handle.position, position, atol=1e-6):
             label.handle.position = position
+
+    def enlarge(self, factor: float) -> None:
+        """Show all labels larger, those to come too.
+
+        Args:
+            factor: how much; 1 for the usual size.
+        """
+        self._larger = factor
+        for label in self._all.values():
+            put(label.handle, font_screen_scale=factor * label.scale)
 
     def drop(self, prefix: str) -> None:
         """Take labels out of the scene.

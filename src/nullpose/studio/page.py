@@ -31,6 +31,7 @@ from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import Scale, overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, show_link
 from nullpose.studio.plot import power_plot_svg, scale_svg
+from nullpose.studio.present import Present
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.scene_link import scene_to_text
@@ -98,6 +99,7 @@ class Page:
         self._carpet = Carpet(client.scene, self._labels, look)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
+        self.present = Present(client, self._enlarge)
         self._listen()
         if left is not None:
             self._go_on(left)
@@ -114,6 +116,7 @@ class Page:
             self._not_late()
             if self._moved is not None:
                 self._moved.cancel()
+        self.present.close()
         return self.session.close(timeout_s)
 
     def _listen(self) -> None:
@@ -136,12 +139,16 @@ class Page:
             (panel.aim, self._aim),
             (panel.new, self._new),
             (panel.link, self._link),
+            (panel.present, self.present.begin),
             *((button, partial(self._send, name, make)) for button, name, make in files),
         ]
         for control, action in controls:
             control.on_update(_by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
+        for key, act in (("P", self._toggle_present), ("escape", self.present.end)):
+            command: Any = self._client.gui.add_command("Begin or end presenting", hotkey=key)
+            command.on_trigger(lambda event, act=act: act())
         self._client.camera.on_update(self._looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
         panel.upload.on_upload(lambda event: self._load(event.target.value))
@@ -228,6 +235,14 @@ class Page:
             self._client.send_file_download(name, make(), save_immediately=True)
         except NullposeError as error:
             self._client.add_notification("Not exported", str(error), color="red", auto_close_seconds=8.0)
+
+    def _toggle_present(self) -> None:
+        (self.present.end if self.present.is_on else self.present.begin)()
+
+    def _enlarge(self, factor: float) -> None:
+        with self._lock, self._client.atomic():
+            self._labels.enlarge(factor)
+        self._arrange()
 
     def _aim(self) -> None:
         answer = self.session.current(self.session.view.case)

@@ -91,6 +91,12 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             {"initial_value": False},
         ),
         "aim": ("button", "Reset the camera", "Look at the whole scene again.", {}),
+        "present": (
+            "button",
+            "Present",
+            "Fold the panel and let the camera go round (key: P); Escape ends it.",
+            {},
+        ),
     },
     "Files": {
         "upload": (

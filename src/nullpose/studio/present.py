@@ -1,0 +1,86 @@
+"""Present mode: the panel is folded, the labels are larger, and the camera goes slowly around the scene."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from viser import ClientHandle
+
+ENLARGED = 1.5
+"""How much larger the labels are in present mode."""
+
+_STEP_S = 0.05
+_TURN_RAD_S = math.tau / 60.0  # once around in a minute
+
+
+class Present:
+    """What a page does while it is presented.
+
+    Args:
+        client: the browser.
+        enlarge: called with how large the labels are to be.
+    """
+
+    def __init__(self, client: ClientHandle, enlarge: Callable[[float], None]) -> None:
+        self._client, self._enlarge = client, enlarge
+        self._ended = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def is_on(self) -> bool:
+        """Whether the page is presented now."""
+        return self._thread is not None
+
+    def begin(self) -> None:
+        """Fold the panel, enlarge the labels, and set the camera going."""
+        if self._thread is None:
+            self._client.gui.main_panel.minimize()
+            self._enlarge(ENLARGED)
+            self._ended.clear()
+            self._thread = threading.Thread(target=self._go_round, name="nullpose-studio-camera", daemon=True)
+            self._thread.start()
+
+    def end(self) -> None:
+        """Give the page back as it was, the camera where it is."""
+        if self._stopped():
+            self._client.gui.main_panel.expand()
+            self._enlarge(1.0)
+
+    def close(self) -> None:
+        """End the camera's way without a word to the browser, which may be gone."""
+        self._stopped()
+
+    def _stopped(self) -> bool:
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._ended.set()
+            thread.join(1.0)
+        return thread is not None
+
+    def _go_round(self) -> None:
+        camera, began = self._client.camera, time.monotonic()
+        middle_m, first_m = np.array(camera.look_at), np.array(camera.position)
+        while not self._ended.wait(_STEP_S):
+            turned = around(first_m - middle_m, _TURN_RAD_S * (time.monotonic() - began))
+            with self._client.atomic():
+                camera.position, camera.look_at = middle_m + turned, middle_m
+
+
+def around(offset_m: ArrayLike, azimuth_rad: float) -> NDArray[np.float64]:
+    """Return a place turned about the vertical, (3,) metres.
+
+    Args:
+        offset_m: (3,) from the axis, metres.
+        azimuth_rad: the angle, counter-clockwise seen from above, radians.
+    """
+    c, s = math.cos(azimuth_rad), math.sin(azimuth_rad)
+    x, y, z = np.asarray(offset_m, dtype=float)
+    return np.array([c * x - s * y, s * x + c * y, z])
