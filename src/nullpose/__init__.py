@@ -65,6 +65,7 @@ if TYPE_CHECKING:
         solve_many,
     )
     from nullpose.solve.robust import RobustSolution, guarantee, solve_robust
+    from nullpose.studio.show import show
     from nullpose.study import (
         AirframeComparison,
         SweepTable,
@@ -120,6 +121,7 @@ __all__ = [
     "min_sinr",
     "pose_frames",
     "poses_from_csv",
+    "show",
     "solve",
     "solve_array",
     "solve_many",
@@ -186,6 +188,7 @@ _ROOMS = {
         "sweep",
         "value_map",
     ),
+    "nullpose.studio.show": ("show",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 

@@ -30,7 +30,7 @@ def idle(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> Session:
 @pytest.fixture
 def proved(idle: Session, paper: Scenario) -> Session:
     """A session with a proved answer."""
-    idle._take(answer_of(idle.version, OPTIMUM, solve(paper)))
+    idle.take(answer_of(idle.version, OPTIMUM, solve(paper)))
     return idle
 
 
@@ -75,7 +75,7 @@ def test_what_is_of_an_older_scene_is_grey(proved: Session) -> None:
 
 def test_while_the_solver_is_compiled_it_says_so(idle: Session) -> None:
     """There is no number then."""
-    idle._take(Notice(version=idle.version, case=None, words="compiling the solver"))
+    idle.take(Notice(version=idle.version, case=None, words="compiling the solver"))
     html = overlay_html(idle)
     assert "compiling the solver" in html
     assert "data-value" not in html
@@ -87,7 +87,7 @@ def test_two_cases_are_both_there(proved: Session, paper: Scenario) -> None:
     vertical = case_named("Vertical")
     proved.change(lambda view: view.with_compared(vertical))
     for case in (OPTIMUM, vertical):
-        proved._take(answer_of(proved.version, case, solve(paper, case.scheme)))
+        proved.take(answer_of(proved.version, case, solve(paper, case.scheme)))
     html = overlay_html(proved)
     assert re.findall(r'class="np-label">(\w: [^<]+)<', html) == [f"A: {OPTIMUM.label}", "B: Vertical"]
     assert len(re.findall("data-value=", html)) == 2
@@ -118,6 +118,6 @@ def test_a_guaranteed_value_is_not_marked_on_a_map_without_errors(proved: Sessio
     proved.history = replace(
         proved.history, present=proved.view.with_scenario(proved.view.scenario).with_case(robust)
     )
-    proved._take(replace(answer, case=robust))
+    proved.take(replace(answer, case=robust))
     assert "overlay-tick" not in overlay_html(proved, _scale(-50.0, 50.0))
     proved.close()

@@ -67,11 +67,11 @@ def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenar
     robust = case_named("Robust pose")
     idle.change(lambda view: view.with_scenario(unsure).with_compared(robust))
     (first,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    idle._take(first)
-    idle._take(replace(first, case=robust))
+    idle.take(first)
+    idle.take(replace(first, case=robust))
     assert 'data-np="difference"' not in readout_html(idle)
     known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
-    idle._take(known)
+    idle.take(known)
     difference = fixed(first.shown_value - known.shown_value, 2)
     text = _Text(readout_html(idle)).text
     assert f"A over B: {difference} dB (B guaranteed, A without errors)" in text
@@ -83,7 +83,7 @@ def test_the_worst_node_has_the_smallest_number(idle: Session, unsure: Scenario)
     robust = case_named("Robust pose")
     idle.change(lambda view: view.with_scenario(unsure).with_case(robust))
     known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
-    idle._take(known)
+    idle.take(known)
     (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
     numbers = {row[0]: float(row[2].replace("&minus;", "-")) for row in found}
@@ -99,7 +99,7 @@ def test_a_margin_stands_beside_the_node_that_it_decides(idle: Session, paper: S
     nodes = (paper.nodes[0].model_copy(update={"min_sinr_db": 3.0}), paper.nodes[1])
     idle.change(lambda view: view.with_scenario(paper.model_copy(update={"nodes": nodes})))
     (answer,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    idle._take(answer)
+    idle.take(answer)
     text = _Text(readout_html(idle)).text
     for link in answer.result.links:
         assert link.margin_db is not None

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from contextlib import redirect_stdout
-from io import BytesIO, StringIO
+from io import BytesIO
+from typing import Any
 
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
+from nullpose.studio.drone import LINK_RANGE_DB, Drone
+from nullpose.studio.field_map import MAPS
+from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.session import Session
 from nullpose.studio.toml_like import toml_like
 
@@ -63,42 +66,65 @@ def figure_png(session: Session) -> bytes:
     return picture.getvalue()
 
 
-def scene_html(session: Session, chosen_map: str, link_range_db: tuple[float, float]) -> bytes:
-    """Return the scene as one HTML file that needs neither a server nor a network.
+def scene_html(
+    session: Session,
+    chosen_map: str,
+    link_range_db: tuple[float, float] = LINK_RANGE_DB,
+    *,
+    look: Look = LIGHT,
+    camera: Any = None,
+    pattern: bool = True,
+) -> bytes:
+    """Return the scene with its card as one HTML file that needs neither a server nor a network.
 
     Args:
         session: whose.
         chosen_map: the map that is shown.
         link_range_db: ends of the links' colours, dB.
+        look: its colours.
+        camera: of the page, to begin with what it sees; None for one that sees the whole scene.
+        pattern: whether the antenna's pattern is shown.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
     from nullpose.studio.camera import aim
     from nullpose.studio.carpet import Carpet
-    from nullpose.studio.drone import Drone
     from nullpose.studio.eye import Eye
+    from nullpose.studio.frame import overlay_style
     from nullpose.studio.labels import Labels
-    from nullpose.studio.opening import LOOPBACK, open_server
+    from nullpose.studio.opening import LOOPBACK, open_server, unannounced
+    from nullpose.studio.overlay import Scale, overlay_html
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
     view, answers, maps = session.view, _current(session), session.field_map
     field = None if maps is None else maps.named(chosen_map)
-    size_m = scene_size_m(view.scenario)
+    size_m, scale = scene_size_m(view.scenario), None
     server, _ = open_server(LOOPBACK, 0)
     try:
-        aim(server.initial_camera, view.scenario, answers[0].result.pose)
+        first = server.initial_camera
+        aim(first, view.scenario, answers[0].result.pose)
+        if camera is not None:
+            first.position, first.look_at, first.fov = camera.position, camera.look_at, camera.fov
+            first.up = camera.up_direction
         labels = Labels(server.scene)
-        Ground(server.scene, labels, None).show(view, answers[0], size_m, freed=False)
+        Ground(server.scene, labels, None, look).show(view, answers[0], size_m, freed=False)
         for slot, answer in enumerate(answers):
-            text = drone_text(session, slot)
-            eye_m = server.initial_camera.position
-            Drone(server.scene, labels, slot).show(answer, text, size_m, link_range_db, eye_m, pattern=True)
+            text, shown = drone_text(session, slot), (size_m, link_range_db, first.position)
+            Drone(server.scene, labels, slot, look).show(answer, text, *shown, pattern=pattern)
         if field is not None:
-            Carpet(server.scene, labels).show(field)
-        labels.arrange(Eye.of(server.initial_camera))
-        return str(server.scene.as_html()).encode()
+            ends = Carpet(server.scene, labels, look).show(field)
+            scale = Scale(field=field, ends=ends, of_value=chosen_map == MAPS[0])
+        labels.arrange(Eye.of(first))
+        page = str(server.scene.as_html(dark_mode=look.dark))
     finally:
-        with redirect_stdout(StringIO()):
+        with unannounced():
             server.stop()
+    card = (
+        f"<style>{overlay_style()}</style><div id=np-overlay>{overlay_html(session, scale)}</div>"
+        "<script>document.documentElement.style.setProperty('--np-height',"
+        "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
+    )
+    head, body, rest = page.rpartition("</body>")
+    return f"{head}{card}{body}{rest}".encode()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import socket
 import sys
-from contextlib import redirect_stdout
-from io import StringIO
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+import rich
 
 from nullpose.errors import UsageError
 from nullpose.studio.guard import Guard
@@ -19,6 +21,17 @@ LOOPBACK = "127.0.0.1"
 
 _PIP = f"{sys.executable} -m pip install"
 _INSTALL = f"the studio needs viser, which is not installed; run: {_PIP} 'nullpose[studio]'"
+
+
+@contextmanager
+def unannounced() -> Iterator[None]:
+    """Let viser say nothing of its server within a block, not in a notebook either."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before
 
 
 def require_viser() -> None:
@@ -46,7 +59,7 @@ def open_server(host: str, port: int) -> tuple[ViserServer, str]:
     guard = Guard(host, _require_free(host, port))
     import viser
 
-    with guard.before_viser(), redirect_stdout(StringIO()):  # to announce it is for the command line
+    with guard.before_viser(), unannounced():  # to announce it is for the command line
         server = viser.ViserServer(host=host, port=port, label="nullpose studio", verbose=False)
     if not guard.stands:
         server.stop()

@@ -89,7 +89,7 @@ class Page:
         self._link_range_db = LINK_RANGE_DB
         self._aimed = False
         self._fit: Eye | None = None
-        look = DARK if dark else LIGHT
+        self._look = look = DARK if dark else LIGHT
         self._labels = Labels(client.scene)
         self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._refresh}
@@ -131,7 +131,7 @@ class Page:
             (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),
             (panel.figure, "figure.png", partial(figure_png, session)),
-            (panel.html, "scene.html", lambda: scene_html(session, panel.map.value, self._link_range_db)),
+            (panel.html, "scene.html", self._html),
         ]
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),
@@ -243,6 +243,11 @@ class Page:
         with self._lock, self._client.atomic():
             self._labels.enlarge(factor)
         self._arrange()
+
+    def _html(self) -> bytes:
+        shown = self.session, self.panel.map.value, self._link_range_db
+        pattern = self.panel.pattern.value
+        return scene_html(*shown, look=self._look, camera=self._client.camera, pattern=pattern)
 
     def _aim(self) -> None:
         answer = self.session.current(self.session.view.case)

@@ -6,8 +6,7 @@ import logging
 import threading
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stdout, suppress
-from io import StringIO
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from nullpose.errors import ScenarioError
@@ -15,7 +14,7 @@ from nullpose.scenario import Scenario
 from nullpose.studio.asked import ASKED, Asked
 from nullpose.studio.autosave import Autosave
 from nullpose.studio.history import History
-from nullpose.studio.opening import LOOPBACK, open_server, require_viser
+from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
 from nullpose.studio.scene_link import SCENE, scenario_from_scene
 
 if TYPE_CHECKING:
@@ -73,7 +72,7 @@ class Studio:
             pages, self.pages, self._tabs = list(self.pages.values()), {}, {}
         for page in pages:
             page.close()
-        with redirect_stdout(StringIO()):
+        with unannounced():
             self._server.stop()
 
     async def _connect(self, client: ClientHandle) -> None:

@@ -55,7 +55,7 @@ class Session:
         begun = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
         self.history = begun if history is None else replace(history, gesture="")
         self._found: dict[tuple[type, Case | None], Event] = {}
-        self._worker = Worker(self._take, rest_s=rest_s)
+        self._worker = Worker(self.take, rest_s=rest_s)
 
     def start(self) -> None:
         """Ask for the first answers."""
@@ -149,7 +149,12 @@ class Session:
             return None
         return found
 
-    def _take(self, event: Event) -> None:
+    def take(self, event: Event) -> None:
+        """Keep what was found for a version of the scene; called by the worker.
+
+        Args:
+            event: what was found.
+        """
         with self.still:
             self._found[type(event), getattr(event, "case", None)] = event
             if isinstance(event, Answer):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import struct
+from base64 import b64decode
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 from playwright.sync_api import Page
+from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
 from nullpose.solve import Scheme
@@ -19,6 +22,7 @@ from nullpose.studio.session import Session
 
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 Open = Callable[[], Page]
+ZSTD = b"\x28\xb5\x2f\xfd"  # how what zstd has compressed begins
 
 
 def _value(page: Page) -> float:
@@ -243,9 +247,12 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     assert load(saved) == session.view.scenario != scenario
 
 
-def test_the_exported_scene_needs_no_server(page: Page, tmp_path: Path) -> None:
-    """The exported HTML draws the scene from a file, and asks for nothing else."""
+def test_the_exported_scene_needs_no_server(page: Page, running: Studio, tmp_path: Path) -> None:
+    """The exported HTML draws what the page shows from a file, with its value, and asks for nothing else."""
     page.wait_for_selector("[data-np=plot][data-state=current]")
+    camera = next(iter(running.pages.values()))._client.camera
+    camera.position = (50.0, 60.0, 25.0)
+    page.wait_for_timeout(2000)
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Export scene").click()
@@ -257,6 +264,10 @@ def test_the_exported_scene_needs_no_server(page: Page, tmp_path: Path) -> None:
     alone.goto(path.as_uri())
     alone.wait_for_selector("canvas")
     alone.wait_for_timeout(6000)
+    assert alone.locator("#np-overlay").inner_text() == page.locator("[data-np=overlay]").first.inner_text()
+    packed = b64decode(path.read_text(encoding="utf-8").split('__VISER_EMBED_DATA__="')[1].split('"')[0])
+    messages = ZstdDecompressor().decompressobj().decompress(packed[packed.index(ZSTD) :])
+    assert all(struct.pack(">d", number) in messages for number in camera.position)
     pixels = imread(io.BytesIO(alone.screenshot()))[..., :3]
     assert (np.abs(pixels - pixels[0, -1]).max(axis=-1) > 0.08).mean() > 0.05
     alone.close()

@@ -1,0 +1,80 @@
+"""A scene in a notebook, or in a browser, without a studio that runs."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import webbrowser
+from html import escape
+from pathlib import Path
+
+from nullpose.errors import UsageError
+from nullpose.scenario import Scenario, require_scenario
+from nullpose.solve import Result, Scheme, solve
+from nullpose.solve.robust import RobustDetails
+from nullpose.studio.answer import answer_of
+from nullpose.studio.case import OPTIMUM, Case
+from nullpose.studio.exports import scene_html
+from nullpose.studio.field_map import MAPS, field_map
+from nullpose.studio.history import History
+from nullpose.studio.look import DARK, LIGHT
+from nullpose.studio.opening import require_viser
+from nullpose.studio.session import Session
+from nullpose.studio.view import View
+
+
+def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> Path | None:
+    """Show a scene in 3-D with its best pose: in a notebook below the cell, otherwise in the browser.
+
+    What is shown can be turned and zoomed. It needs no server and no network, and stays in a saved notebook.
+
+    Args:
+        found: a result, whose pose is shown, or a scenario, which is solved first.
+        height: of the picture in a notebook, pixels.
+        dark: whether its background is dark.
+
+    Returns:
+        The file that was written and opened, which only this user can read; None in a notebook.
+
+    Raises:
+        UsageError: viser is not installed, or the result is of an array.
+        WrongTypeError: given is neither.
+        SolveError: the scenario has no pose.
+
+    Example:
+        >>> import nullpose
+        >>> result = nullpose.solve(nullpose.load("examples/paper.toml"))
+        >>> nullpose.show(result)  # doctest: +SKIP
+    """
+    require_viser()
+    if not isinstance(found, Result):
+        require_scenario(found)
+        found = solve(OPTIMUM.on(found))
+    page = _page(found, dark=dark)
+    ipython = sys.modules.get("IPython")
+    if ipython is not None and hasattr(ipython.get_ipython(), "kernel"):  # IPython in a terminal has none
+        frame = f'<iframe srcdoc="{escape(page)}" width="100%" height="{height}" style="border:0"></iframe>'
+        ipython.display.display(ipython.display.HTML(f"<div>{frame}</div>"))
+        return None
+    handle, name = tempfile.mkstemp(prefix="nullpose-", suffix=".html")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(page)
+    webbrowser.open(Path(name).as_uri())
+    return Path(name)
+
+
+def _page(result: Result, *, dark: bool) -> str:
+    """Return the scene of a result as HTML."""
+    if hasattr(result.details, "weights"):
+        raise UsageError("show: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
+    scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM
+    case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
+    session = Session(result.scenario, history=History(View(scenario=result.scenario, case=case)))
+    try:
+        answer = answer_of(session.version, case, result)
+        session.take(answer)
+        session.take(field_map(answer))
+        return scene_html(session, MAPS[1], look=DARK if dark else LIGHT).decode()
+    finally:
+        session.close()

@@ -1,0 +1,69 @@
+"""A scene is shown in a notebook and in the browser, by itself."""
+
+import stat
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser
+
+import nullpose
+
+PAPER = Path(__file__).parents[3] / "examples" / "paper.toml"
+
+
+def _value(browser: Browser, path: Path) -> float:
+    """Return the value that a page alone shows, once its scene is drawn."""
+    page = browser.new_page(viewport={"width": 640, "height": 400})
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(path.as_uri())
+    frame = page.frames[-1]
+    frame.wait_for_selector("canvas")
+    value = frame.locator("[data-np=overlay-value-0]").get_attribute("data-value")
+    assert "certified to 1e-6" in frame.locator("#np-overlay").inner_text()
+    assert [url for url in asked if url.startswith(("http", "ws"))] == []
+    page.close()
+    return float(value or "nan")
+
+
+def test_elsewhere_it_opens_in_the_browser(
+    browser: Browser, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """From a file of the user's own, with the value of the result; a scenario is solved for it."""
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    scenario = nullpose.load(PAPER)
+    path = nullpose.show(scenario)
+    assert path is not None
+    assert opened == [path.as_uri()]
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert _value(browser, path) == nullpose.solve(scenario).objective.value
+    assert capfd.readouterr() == ("", "")
+    path.unlink()
+
+
+def test_a_result_is_shown_as_it_is(browser: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another case than the best has its own pose and value; an array's result is refused."""
+    monkeypatch.setattr(webbrowser, "open", lambda address: None)
+    scenario = nullpose.load(PAPER)
+    result = nullpose.solve(scenario, "vertical")
+    path = nullpose.show(result, dark=True)
+    assert path is not None
+    assert _value(browser, path) == result.objective.value
+    path.unlink()
+    with pytest.raises(nullpose.UsageError, match="array"):
+        nullpose.show(nullpose.solve(nullpose.load(PAPER.with_name("array.toml"))))
+
+
+def test_in_a_notebook_it_is_below_the_cell(browser: Browser, tmp_path: Path) -> None:
+    """As one output that is saved with the notebook, and draws the scene by itself."""
+    nbclient, v4 = pytest.importorskip("nbclient"), pytest.importorskip("nbformat").v4
+    code = f"import nullpose\nnullpose.show(nullpose.load({str(PAPER)!r}), height=300)"
+    notebook: Any = v4.new_notebook(cells=[v4.new_code_cell(code)])
+    nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
+    (output,) = notebook.cells[0].outputs
+    path = tmp_path / "notebook.html"
+    path.write_text(f"<meta charset=utf-8>{output.data['text/html']}", encoding="utf-8")
+    assert _value(browser, path) == nullpose.solve(nullpose.load(PAPER)).objective.value
