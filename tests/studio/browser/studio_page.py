@@ -274,6 +274,24 @@ def test_the_exported_scene_needs_no_server(page: Page, running: Studio, tmp_pat
     assert [url for url in asked if url.startswith(("http", "ws"))] == []
 
 
+def test_presenting_folds_the_panel_and_goes_round(page: Page, session: Session, running: Studio) -> None:
+    """P begins it and Escape ends it; what the camera looks at stays where it is on the screen."""
+    ours = next(one for one in running.pages.values() if one.session is session)
+    camera = ours._client.camera
+    before, middle = np.array(camera.position), np.array(camera.look_at)
+    page.mouse.click(400, 20)
+    page.keyboard.press("p")
+    page.wait_for_timeout(3000)
+    assert not page.get_by_role("tab", name="Files").is_visible()
+    assert page.locator("#np-overlay").is_visible()
+    after = np.array(camera.position)
+    assert np.linalg.norm(after - before) > 0.02 * np.linalg.norm(before - middle)
+    assert np.linalg.norm(after - middle) == pytest.approx(np.linalg.norm(before - middle), rel=1e-3)
+    page.keyboard.press("Escape")
+    page.get_by_role("tab", name="Files").wait_for()
+    assert not ours.present.is_on
+
+
 def test_the_explanation_can_be_closed(page: Page) -> None:
     """What am I looking at is there at first, and gone when it is closed."""
     assert page.locator("[data-np=about]").is_visible()
