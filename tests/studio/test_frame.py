@@ -30,3 +30,4 @@ def test_viser_has_the_page_that_it_is_added_to() -> None:
     viser = pytest.importorskip("viser")
     page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_bytes()
     assert page.count(b"<head>") == 1
+    assert framed(page).count(b"<title>nullpose studio</title>") == 1

@@ -82,6 +82,14 @@ def test_while_the_solver_is_compiled_it_says_so(idle: Session) -> None:
     idle.close()
 
 
+def test_what_is_left_out_is_said(idle: Session, paper: Scenario) -> None:
+    """As the panel says it."""
+    jammer = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
+    idle.change(lambda view: view.with_scenario(paper.model_copy(update={"jammers": (jammer,)})))
+    assert "The errors of the file are left out" in overlay_html(idle)
+    idle.close()
+
+
 def test_two_cases_are_both_there(proved: Session, paper: Scenario) -> None:
     """Each with its letter."""
     vertical = case_named("Vertical")

@@ -7,13 +7,13 @@ from importlib.resources import files
 
 
 def framed(page: bytes) -> bytes:
-    """Return viser's page with the studio's script and style, which run before anything of viser's.
+    """Return viser's page with the studio's title, style, and script, which runs before anything of viser's.
 
     Args:
         page: viser's page as HTML.
     """
     head = f"<head><style>{overlay_style()}</style><script>{_asset('frame.js')}</script>"
-    return page.replace(b"<head>", head.encode(), 1)
+    return page.replace(b"<head>", head.encode(), 1).replace(b"<title>Viser<", b"<title>nullpose studio<", 1)
 
 
 def overlay_style() -> str:

@@ -50,7 +50,8 @@ def _case_html(session: Session, slot: int) -> str:
     named = f'class="np-status" data-np="overlay-status-{slot}" data-tone="{tone}"'
     numbers = "" if answer is None or tone == "no pose" else _numbers(session, answer, slot)
     label = f'<div class="np-label">{letter}{escape(case.label)}</div>'
-    told = f"{label}{numbers}<div {named}>{mark} {escape(status)}</div>"
+    left_out = f'<div class="np-title">{escape(case.left_out(session.view.scenario))}</div>'
+    told = f"{label}{numbers}{left_out}<div {named}>{mark} {escape(status)}</div>"
     return f'<div class="{"np-second" if slot else "np-first"}">{told}</div>'
 
 

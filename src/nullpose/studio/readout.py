@@ -23,7 +23,7 @@ _TONES = {
     _FAILED: (either("#a02000", "#ff9b80"), "&#10007;"),
     "certified": (either("#00684a", "#4fd6a6"), "&#10003;"),
     "best so far": (either("#005a8c", "#7cc4f5"), "&#9679;"),
-    "": (either("#8a5a00", "#f0b64a"), "&#8987;"),
+    "": (either("#8a5a00", "#f0b64a"), "&#9675;"),
 }
 """Colour and mark of how far a case has come, by how its status begins."""
 
