@@ -37,7 +37,7 @@ largest smallest SINR over the nodes, and proves an upper bound for all other po
 <ul style="margin:4px 0 4px 16px;padding:0">
 <li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
 <li>Doughnut: the antenna's pattern, open towards you; orange: the null.</li>
-<li>Lines: brighter is a higher SINR; the thick ones are the worst nodes.</li>
+<li>Lines: brighter and thicker is a higher SINR; the worst nodes have the largest names.</li>
 <li>Coloured ground: how much the antenna receives from there; <i>Map and view</i> has more.</li></ul>"""
 
 
