@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _WIDTHS = (0.003, 0.005, 0.0075, 0.01)  # by the quarter of the colours' range, sizes of the scene
 _OUTLINE = 0.0022  # beyond both sides of a beam, sizes of the scene
+_ROOM = 16  # nodes
 _NOWHERE = np.zeros((1, 2, 3))
 
 
@@ -38,16 +39,23 @@ class Links:
             add_lines(scene, f"{name}/links-{i}", _NOWHERE, _NOWHERE, width_m, units="world")
             for i, width_m in enumerate(self._widths_m)
         ]
-        tube = revolved_mesh([1.0, 1.0], [0.0, 1.0], 10)
+        self._scene, self._name, self._colour, self._room = scene, f"{name}/links-outline", look.outline, 0
+
+    def _make_room(self, count: int) -> None:
+        """Have outlines for so many beams: a batch that grows in the browser is not drawn there."""
+        if count <= self._room:
+            return
+        self._room = max(_ROOM, 2 * count)
+        tube, still = revolved_mesh([1.0, 1.0], [0.0, 1.0], 10), np.array([1.0, 0.0, 0.0, 0.0])
         # its far side, which is seen beside the beam inside it: the beam stands out on a map of its colour
-        self._outline = scene.add_batched_meshes_simple(
-            f"{name}/links-outline",
+        self._outline = self._scene.add_batched_meshes_simple(
+            self._name,
             tube.vertices.astype(np.float32),
             tube.faces.astype(np.uint32),
-            np.array([[1.0, 0.0, 0.0, 0.0]]),
-            np.zeros((1, 3)),
-            batched_scales=np.ones((1, 3)),
-            batched_colors=look.outline,
+            np.tile(still, (self._room, 1)),
+            np.zeros((self._room, 3)),
+            batched_scales=np.full((self._room, 3), 1e-6),
+            batched_colors=self._colour,
             side="back",
             lod="off",
             **FLAT,
@@ -60,6 +68,7 @@ class Links:
             result: pose and links.
             range_db: ends of the colours, dB.
         """
+        self._make_room(len(result.links))
         sinr_db = np.array([link.sinr_db for link in result.links])
         nodes, here = result.scenario.node_positions_m, result.pose.position_m
         ends = np.stack([nodes, np.broadcast_to(here, nodes.shape)], axis=1).astype(np.float32)
