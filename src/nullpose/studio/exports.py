@@ -33,12 +33,19 @@ def pose_json(session: Session) -> bytes:
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    solved = [{"case": one.case.label} | one.result.to_dict() for one in _current(session)]
+    solved = [{"case": one.case.label} | one.result.to_dict() for one in current_answers(session)]
     return (json.dumps(solved[0] if len(solved) == 1 else solved, indent=2, allow_nan=False) + "\n").encode()
 
 
-def _current(session: Session) -> list[Answer]:
-    """Return the answers of the cases that are shown, all to the present scene."""
+def current_answers(session: Session) -> list[Answer]:
+    """Return the answers of the cases that are shown, all to the present scene.
+
+    Args:
+        session: whose.
+
+    Raises:
+        UsageError: the present scene is not solved yet.
+    """
     current = [answer for answer in map(session.current, session.view.cases) if answer is not None]
     if len(current) < len(session.view.cases):
         raise UsageError("the scene is being solved; try again when its pose is there")
@@ -98,7 +105,7 @@ def scene_html(
     from nullpose.studio.readout import drone_text
     from nullpose.studio.scene import Ground, scene_size_m
 
-    view, answers, maps = session.view, _current(session), session.field_map
+    view, answers, maps = session.view, current_answers(session), session.field_map
     field = None if maps is None else maps.named(chosen_map)
     size_m, scale = scene_size_m(view.scenario), None
     server, _ = open_server(LOOPBACK, 0)

@@ -30,6 +30,7 @@ from nullpose.studio.labels import Labels
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import Scale, overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, show_link
+from nullpose.studio.picture import scene_png
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.present import Present
 from nullpose.studio.readout import drone_text, failure_html, readout_html
@@ -132,6 +133,7 @@ class Page:
             (panel.pose, "pose.json", partial(pose_json, session)),
             (panel.figure, "figure.png", partial(figure_png, session)),
             (panel.html, "scene.html", self._html),
+            (panel.picture, "scene.png", lambda: scene_png(session, self._client, self._scale, self._look)),
         ]
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),

@@ -108,6 +108,12 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "save": ("button", "Save scenario", "Download the scene as a scenario file (TOML).", {}),
         "pose": ("button", "Export pose", "Download the pose and its values (JSON).", {}),
         "figure": ("button", "Export figure", "Download the power plot (PNG).", {}),
+        "picture": (
+            "button",
+            "Export picture",
+            "Download what is seen of the scene as a picture (PNG), with value, bound and colours.",
+            {},
+        ),
         "link": (
             "button",
             "Link to this scene",

@@ -292,6 +292,30 @@ def test_presenting_folds_the_panel_and_goes_round(page: Page, session: Session,
     assert not ours.present.is_on
 
 
+def test_a_picture_of_the_scene_is_exported(
+    page: Page, session: Session, running: Studio, tmp_path: Path
+) -> None:
+    """As the canvas shows it, at twice its size, with the answer below; a camera too far away is told."""
+    page.wait_for_selector("[data-np=plot][data-state=current]")
+    camera = next(iter(running.pages.values()))._client.camera
+    page.get_by_role("tab", name="Files").click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Export picture").click()
+    path = tmp_path / "scene.png"
+    download.value.save_as(path)
+    pixels = imread(path)
+    assert pixels.shape[1] == 2 * camera.image_width
+    drawn, below = np.split(pixels, [2 * camera.image_height])
+    assert _drawn_share(drawn[..., :3]) > 0.1
+    assert below[..., :3].min() < 0.2  # text
+    assert np.array_equal(pixels[..., 3], np.ones(pixels.shape[:2]))
+    near_m = np.array(camera.position)
+    camera.position = 30.0 * near_m
+    page.get_by_role("button", name="Export picture").click()
+    page.locator(".mantine-Notification-root", has_text="a picture holds 1000 m").wait_for()
+    camera.position = near_m
+
+
 def test_the_explanation_can_be_closed(page: Page) -> None:
     """What am I looking at is there at first, and gone when it is closed."""
     assert page.locator("[data-np=about]").is_visible()
