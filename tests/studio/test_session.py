@@ -3,20 +3,24 @@
 import threading
 import time
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
+from nullpose import load
 from nullpose.errors import ScenarioError, SolveError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solve import Status, solve
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import OPTIMUM, case_named
+from nullpose.studio.events import Event, Progress
 from nullpose.studio.session import Session
 from nullpose.studio.view import Key
 
 _PATIENCE_S = 120.0
+EXAMPLES = Path(__file__).parents[2] / "examples"
 JAMMER: Key = ("jammers", 0)
 
 
@@ -184,3 +188,22 @@ def test_a_loaded_file_is_bounded() -> None:
     """More than 10 MB are refused unread."""
     with pytest.raises(ScenarioError, match="larger than 10 MB"):
         scenario_from_text(b"#" * 10_000_001, "mine.toml")
+
+
+def test_a_long_proof_tells_how_far_it_has_come() -> None:
+    """At most ten times a second, and only of the present scene; a new scene ends it."""
+    told: list[tuple[float, Progress]] = []
+
+    def take(event: Event) -> None:
+        if isinstance(event, Progress):
+            told.append((time.monotonic(), event))
+
+    session = Session(load(EXAMPLES / "frame.toml"), rest_s=0.05, on_event=take)
+    session.start()
+    wait(lambda: len(told) > 2)
+    assert session.progress(OPTIMUM) is not None
+    session.change(lambda view: view.moved(JAMMER, (30.0, 30.0, 4.0)))
+    assert session.progress(OPTIMUM) is None
+    assert session.close(_PATIENCE_S)
+    assert all(event.gap > event.target and event.boxes > 0 for _, event in told)
+    assert min(after[0] - before[0] for before, after in pairwise(told)) > 0.09

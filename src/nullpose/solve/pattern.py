@@ -152,7 +152,7 @@ class PatternRun:
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         threads = self.options.threads or processors()
-        workers, keep = WorkerPool(self._roots(gap), threads, orientation=(3, 3)), self.reach.spins
+        workers, keep = WorkerPool(self.roots(gap), threads, orientation=(3, 3)), self.reach.spins
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
                 if time.perf_counter() > until:
@@ -176,8 +176,12 @@ class PatternRun:
         problem = family.arrays, family.domain, antenna.arrays, self.reach
         return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt), keep)
 
-    def _roots(self, gap: float) -> FloatArray:
-        """Return the cells that hold every pose above the best value, or above a gap over it."""
+    def roots(self, gap: float) -> FloatArray:
+        """Return the cells that hold every pose above the best value, or above a gap over it.
+
+        Args:
+            gap: relative; it counts where ratios tend to one far away.
+        """
         level = self.search.best
         if np.any(self.family.numerator_isotropic):  # ratios tend to one far away: the bound that is stated
             level = max(level, 0.0) + math.log1p(gap)

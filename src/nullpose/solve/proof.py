@@ -54,6 +54,7 @@ class Proof:
         reason: why the target gap was not reached; empty if it was.
         nodes: nodes examined.
         is_even: of an antenna that is no dipole: whether opposite directions have the same gain.
+        axes_above: of a dipole: where axes were split, as in the kernels' goal.
     """
 
     incumbent: Incumbent
@@ -63,6 +64,7 @@ class Proof:
     reason: str
     nodes: int
     is_even: bool = False
+    axes_above: float = 0.0
 
 
 class _Run:
@@ -225,6 +227,7 @@ class _Run:
             leaves=self.leaves,
             reason=reason,
             nodes=self.nodes,
+            axes_above=self.axes_above,
         )
 
 

@@ -40,4 +40,23 @@ class PowerCurve:
     complete: bool
 
 
-Event = Answer | Notice | FieldMap | PowerCurve
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a proof that runs has come.
+
+    Args:
+        version: the version of the scene.
+        case: the case that is proved.
+        gap: the bound above the value, relative.
+        target: the gap that is aimed at.
+        boxes: how many were examined.
+    """
+
+    version: int
+    case: Case
+    gap: float
+    target: float
+    boxes: int
+
+
+Event = Answer | Notice | FieldMap | PowerCurve | Progress

@@ -20,9 +20,11 @@ from nullpose.studio.autosave import Left
 from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.case import case_named
+from nullpose.studio.drawing import put
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
+from nullpose.studio.events import Event, Progress
 from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
 from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS, FieldMap
@@ -33,6 +35,7 @@ from nullpose.studio.panel import NO_CASE, Panel, show_link
 from nullpose.studio.picture import scene_png
 from nullpose.studio.plot import power_plot_svg, scale_svg
 from nullpose.studio.present import Present
+from nullpose.studio.proof_view import ProofView
 from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.scene_link import scene_to_text
@@ -93,7 +96,7 @@ class Page:
         self._look = look = DARK if dark else LIGHT
         self._labels = Labels(client.scene)
         self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
-        told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._refresh}
+        told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
         self.session = Session(scenario, text, history=None if left is None else left.history, **told)
         self.panel = Panel(client.gui, dark=dark)
         self._ground = Ground(client.scene, self._labels, self._dragged, look)
@@ -101,6 +104,7 @@ class Page:
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
         self.present = Present(client, self._enlarge)
+        self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay)
         self._listen()
         if left is not None:
             self._go_on(left)
@@ -115,6 +119,7 @@ class Page:
         with self._lock:
             self._open = False
             self._not_late()
+            self._proof.stop()
             if self._moved is not None:
                 self._moved.cancel()
         self.present.close()
@@ -258,8 +263,19 @@ class Page:
         with self._client.atomic():
             self._fit = aim(self._client.camera, self.session.view.scenario, pose)
 
+    def _told(self, event: Event) -> None:
+        if not isinstance(event, Progress):
+            self._refresh()
+            return
+        with self._lock, self.session.still:
+            self._show_overlay()
+
+    def _show_overlay(self) -> None:
+        self.panel.overlay.content = overlay_html(self.session, self._scale, self._proof.bar)
+
     def _view_changed(self) -> None:
         with self._lock:
+            self._proof.stop()
             if self._ground.dragged is None:
                 self._refresh()
             elif self._late is None and self._open:  # each step of a drag has one picture: with its answer
@@ -298,7 +314,8 @@ class Page:
             if answer is None or len(answer.result.links) != len(view.scenario.nodes):
                 drone.hide()
                 continue
-            text, pattern = drone_text(session, slot), self.panel.pattern.value
+            text = drone_text(session, slot)
+            pattern = self.panel.pattern.value and not self._proof.is_playing
             eye_m = np.array(self._client.camera.position)
             drone.show(answer, text, self._size_m, self._link_range_db, eye_m, pattern=pattern)
         if not self._aimed:
@@ -345,7 +362,7 @@ class Page:
         self._editor.show(view)
         answer = session.current(view.case)
         panel.readout.content = readout_html(session)
-        panel.overlay.content = overlay_html(session, self._scale)
+        self._show_overlay()
         at_rest = self._ground.dragged is None  # while a hand moves the plot is grey and stays as it is
         panel.plot.content = power_plot_svg(
             session.curve,
@@ -354,6 +371,7 @@ class Page:
             value=answer.shown_value if answer and at_rest else None,
             unit=Quantity.of(view.scenario).unit,
         )
+        put(panel.replay, disabled=not self._proof.can_play)
         panel.undo.disabled = not session.history.past
         panel.redo.disabled = not session.history.future
 

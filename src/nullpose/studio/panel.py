@@ -90,6 +90,12 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "Let points be dragged up and down too.",
             {"initial_value": False},
         ),
+        "replay": (
+            "button",
+            "Replay the proof",
+            "Show which boxes of positions are left as the bound comes down to the value; again: stop.",
+            {"disabled": True},
+        ),
         "aim": ("button", "Reset the camera", "Look at the whole scene again.", {}),
         "present": (
             "button",
@@ -158,6 +164,7 @@ class Panel(SimpleNamespace):
         close.on_click(lambda event: folder.remove())
         self.overlay = gui.add_html("", visible=False)  # shown by the frame's script
         self.readout = gui.add_html("")
+        self.bar = gui.add_html("")
         self.faults = gui.add_html(failure_html(None))
         self.own_values = gui.add_folder("Selected", visible=False)
         with self.own_values:

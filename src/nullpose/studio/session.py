@@ -10,13 +10,13 @@ from typing import TypeVar
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import Answer, status_words
 from nullpose.studio.case import Case, cases_of
-from nullpose.studio.events import Event, Notice, PowerCurve
+from nullpose.studio.events import Event, Notice, PowerCurve, Progress
 from nullpose.studio.field_map import FieldMap
 from nullpose.studio.history import History
 from nullpose.studio.view import View
 from nullpose.studio.worker import REST_S, Worker
 
-_E = TypeVar("_E", Answer, Notice, FieldMap, PowerCurve)
+_E = TypeVar("_E", Answer, Notice, FieldMap, PowerCurve, Progress)
 
 
 class Session:
@@ -83,6 +83,14 @@ class Session:
     def curve(self) -> PowerCurve | None:
         """The latest power curve, whatever version it is of, or None."""
         return self._last(PowerCurve)
+
+    def progress(self, case: Case) -> Progress | None:
+        """Return how far the proof of a case has come for the present version, or None.
+
+        Args:
+            case: which.
+        """
+        return self._last(Progress, case, current=True)
 
     def answer(self, case: Case) -> Answer | None:
         """Return the latest answer for a case, whatever version it is of; see :meth:`current`.

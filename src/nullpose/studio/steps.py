@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Result, Rigour, Scheme, Status, solve
-from nullpose.solve.robust import solve_robust
+from nullpose.solve import PAPER_SCHEMES, Result, Rigour, Scheme, Status, default_gap_of, solve
+from nullpose.solve.robust import ROBUST_GAP, solve_robust
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve
@@ -81,6 +82,19 @@ def proved_answers(
             scenario, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
         )
         yield answer_of(version, case, guarded)
+
+
+def target_gap(view: View, case: Case) -> float | None:
+    """Return the gap that a case's proof aims at; None of a rate, whose proof tells the gap of the ratio.
+
+    Args:
+        view: the scene.
+        case: what is proved.
+    """
+    scenario = case.on(view.scenario)
+    if Quantity.of(scenario).is_rate:
+        return None
+    return ROBUST_GAP if case.robust else default_gap_of(scenario)
 
 
 def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: None) -> Iterator[PowerCurve]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
+import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import TypeVar
@@ -12,16 +14,18 @@ from nullpose.errors import NullposeError
 from nullpose.solve import announce_compiling
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import Case
-from nullpose.studio.events import Event, Notice
+from nullpose.studio.events import Event, Notice, Progress
 from nullpose.studio.field_map import field_map
 from nullpose.studio.map_kernel import map_kernel_is_ready
-from nullpose.studio.steps import power_curves, proved_answers, quick_answers
+from nullpose.studio.steps import power_curves, proved_answers, quick_answers, target_gap
 from nullpose.studio.view import View
 
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
 _COMPILING = "compiling the solver, once, which takes about 20 s"
+
+_TOLD_S = 0.1  # between two tellings of how far a proof has come
 
 _E = TypeVar("_E", bound=Event)
 
@@ -98,7 +102,8 @@ class Worker:
         self._rest()
         best: Answer | None = None
         for case in view.cases:
-            last = self._tell_all(version, case, proved_answers(version, view, case, self._go_on))
+            told = self._progress(version, view, case)
+            last = self._tell_all(version, case, proved_answers(version, view, case, told))
             best = best or last
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._tell_all(version, view.case, power_curves(version, view, self._go_on))
@@ -120,6 +125,19 @@ class Worker:
             self._publish(Notice(version=version, case=case, words=f"no pose: {error}"))
             return None
         return last
+
+    def _progress(self, version: int, view: View, case: Case) -> Callable[[float, int], None]:
+        """Return what a proof calls now and then, which is told ten times a second at most."""
+        told_at, target = time.monotonic(), target_gap(view, case)
+
+        def told(gap: float, boxes: int) -> None:
+            nonlocal told_at
+            self._go_on()
+            if target is not None and math.isfinite(gap) and time.monotonic() - told_at > _TOLD_S:
+                told_at = time.monotonic()
+                self._publish(Progress(version=version, case=case, gap=gap, target=target, boxes=boxes))
+
+        return told
 
     def _is_superseded(self) -> bool:
         return self._closed or self._pending is not None
