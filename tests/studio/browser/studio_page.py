@@ -306,7 +306,7 @@ def test_a_picture_of_the_scene_is_exported(
     pixels = imread(path)
     assert pixels.shape[1] == 2 * camera.image_width
     drawn, below = np.split(pixels, [2 * camera.image_height])
-    assert _drawn_share(drawn[..., :3]) > 0.1
+    assert _drawn_share(drawn[..., :3]) > 0.03  # wherever the camera is
     assert below[..., :3].min() < 0.2  # text
     assert np.array_equal(pixels[..., 3], np.ones(pixels.shape[:2]))
     near_m = np.array(camera.position)
