@@ -152,7 +152,7 @@ class _Hand:
     def _load(self) -> None:
         scenario = load(_EXAMPLES / f"{self._rng.choice(_SCENES)}.toml")
         self._ours._change(lambda view: view.with_scenario(scenario, ""))
-        self._ours._aim()
+        self._ours._sight.aim()
 
 
 class _Records(logging.Handler):

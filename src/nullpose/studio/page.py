@@ -17,7 +17,6 @@ from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.autosave import Left
-from nullpose.studio.camera import aim
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.case import case_named
 from nullpose.studio.drawing import put
@@ -26,9 +25,7 @@ from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
 from nullpose.studio.events import Event, Progress
 from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
-from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS, FieldMap
-from nullpose.studio.labels import Labels
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import Scale, overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, show_link
@@ -40,6 +37,7 @@ from nullpose.studio.readout import drone_text, failure_html, readout_html
 from nullpose.studio.scene import Ground, scene_size_m
 from nullpose.studio.scene_link import scene_to_text
 from nullpose.studio.session import Session
+from nullpose.studio.sight import Seen, Sight
 from nullpose.studio.view import Key, View
 
 if TYPE_CHECKING:
@@ -48,10 +46,6 @@ if TYPE_CHECKING:
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
-
-_LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
-
-_CARD_PX = np.array([0.0, 0.0, 352.0, 212.0])  # where the overlay is on the canvas, for one case
 
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
@@ -86,21 +80,19 @@ class Page:
         self._gesture = 0
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
-        self._moved: threading.Timer | None = None
         self._size_m = np.inf
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self._scale: Scale | None = None
         self._link_range_db = LINK_RANGE_DB
-        self._aimed = False
-        self._fit: Eye | None = None
+        self._sight = Sight(client, self._lock, self._seen)
         self._look = look = DARK if dark else LIGHT
-        self._labels = Labels(client.scene)
-        self._drones = [Drone(client.scene, self._labels, slot, look) for slot in (0, 1)]
+        labels = self._sight.labels
+        self._drones = [Drone(client.scene, labels, slot, look) for slot in (0, 1)]
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
         self.session = Session(scenario, text, history=None if left is None else left.history, **told)
         self.panel = Panel(client.gui, dark=dark)
-        self._ground = Ground(client.scene, self._labels, self._dragged, look)
-        self._carpet = Carpet(client.scene, self._labels, look)
+        self._ground = Ground(client.scene, labels, self._dragged, look)
+        self._carpet = Carpet(client.scene, labels, look)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self._size_m)
         self.present = Present(client, self._enlarge)
@@ -120,8 +112,7 @@ class Page:
             self._open = False
             self._not_late()
             self._proof.stop()
-            if self._moved is not None:
-                self._moved.cancel()
+            self._sight.close()
         self.present.close()
         return self.session.close(timeout_s)
 
@@ -143,7 +134,7 @@ class Page:
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),
             (panel.redo, session.redo),
-            (panel.aim, self._aim),
+            (panel.aim, self._sight.aim),
             (panel.new, self._new),
             (panel.link, self._link),
             (panel.present, self.present.begin),
@@ -156,7 +147,7 @@ class Page:
         for key, act in (("P", self._toggle_present), ("escape", self.present.end)):
             command: Any = self._client.gui.add_command("Begin or end presenting", hotkey=key)
             command.on_trigger(lambda event, act=act: act())
-        self._client.camera.on_update(self._looked)
+        self._client.camera.on_update(self._sight.looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
         panel.upload.on_upload(lambda event: self._load(event.target.value))
 
@@ -177,11 +168,8 @@ class Page:
         return Left(self.session.history, camera.position, camera.look_at, self.panel.controls)
 
     def _go_on(self, left: Left) -> None:
-        camera, self._aimed = self._client.camera, True
         self.panel.choose(left.controls)
-        with self._client.atomic():
-            aim(camera, self.session.view.scenario)
-            camera.position, camera.look_at = left.eye_m, left.look_at_m
+        self._sight.go_on(left.eye_m, left.look_at_m)
 
     def tell(self, error: ScenarioError, name: str) -> None:
         """Show the faults of what was refused.
@@ -224,14 +212,14 @@ class Page:
 
     def _new(self) -> None:
         self._change(lambda view: view.with_scenario(new_scenario(), ""))
-        self._aimed = False
+        self._sight.aimed = False
 
     def _load(self, file: Any) -> None:
         def loaded(view: View) -> View:
             return view.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
         if self._change(loaded, name=file.name):
-            self._aimed = False
+            self._sight.aimed = False
         else:  # viser has said by now that the file has arrived
             told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
             title = f"{file.name} was not taken"
@@ -248,20 +236,20 @@ class Page:
 
     def _enlarge(self, factor: float) -> None:
         with self._lock, self._client.atomic():
-            self._labels.enlarge(factor)
-        self._arrange()
+            self._sight.labels.enlarge(factor)
+        self._sight.arrange()
 
     def _html(self) -> bytes:
         shown = self.session, self.panel.map.value, self._link_range_db
         pattern = self.panel.pattern.value
         return scene_html(*shown, look=self._look, camera=self._client.camera, pattern=pattern)
 
-    def _aim(self) -> None:
-        answer = self.session.current(self.session.view.case)
-        self._aimed = answer is not None
+    def _seen(self) -> Seen | None:
+        view = self.session.view
+        answer = self.session.current(view.case)
         pose = answer.result.pose if answer else None
-        with self._client.atomic():
-            self._fit = aim(self._client.camera, self.session.view.scenario, pose)
+        seen = Seen(view.scenario, pose, len(view.cases), self._ground.dragged is None)
+        return seen if self._open else None
 
     def _told(self, event: Event) -> None:
         if not isinstance(event, Progress):
@@ -318,27 +306,7 @@ class Page:
             pattern = self.panel.pattern.value and not self._proof.is_playing
             eye_m = np.array(self._client.camera.position)
             drone.show(answer, text, self._size_m, self._link_range_db, eye_m, pattern=pattern)
-        if not self._aimed:
-            self._aim()
-        self._arrange()
-
-    def _arrange(self) -> None:
-        """Put the labels where they do not overlap, but not under a hand that drags a point."""
-        with self._lock, self._client.atomic():
-            if self._open and self._ground.dragged is None:
-                eye = Eye.of(self._client.camera)
-                if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
-                    self._aim()
-                    eye = self._fit
-                card_px = _CARD_PX * np.array([0.0, 0.0, 1.0, len(self.session.view.cases)])
-                self._labels.arrange(eye, card_px[None])
-
-    async def _looked(self, _: object) -> None:
-        """Arrange the labels a little after the camera has moved."""
-        if self._moved is None or not self._moved.is_alive():
-            self._moved = threading.Timer(_LOOKED_S, self._arrange)
-            self._moved.daemon = True
-            self._moved.start()
+        self._sight.arrange()
 
     def _show_map(self) -> None:
         maps, name = self.session.field_map, self.panel.map.value

@@ -1,0 +1,103 @@
+"""What one page's camera sees: aimed until a hand moves it, with labels that do not overlap."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.physics import Pose
+from nullpose.scenario import Scenario
+from nullpose.studio.camera import aim
+from nullpose.studio.eye import Eye
+from nullpose.studio.labels import Labels
+
+if TYPE_CHECKING:
+    from viser import ClientHandle
+
+_LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
+_CARD_PX = (352.0, 212.0)  # what the overlay covers of the canvas's upper left, for one case
+
+
+class Seen(NamedTuple):
+    """What there is to see.
+
+    Args:
+        scenario: the scene.
+        pose: the drone's in it, or None while it is not known.
+        cases: how many cases the overlay shows.
+        at_rest: whether labels may be moved, since no hand drags a point.
+    """
+
+    scenario: Scenario
+    pose: Pose | None
+    cases: int
+    at_rest: bool
+
+
+class Sight:
+    """The camera and the labels of one page.
+
+    Args:
+        client: the browser.
+        lock: under which the page changes.
+        seen: returns what there is to see, or None once the page is closed.
+
+    Attributes:
+        labels: of the page.
+        aimed: whether the camera has been aimed at the scene with its drone.
+    """
+
+    def __init__(self, client: ClientHandle, lock: threading.RLock, seen: Callable[[], Seen | None]) -> None:
+        self._client, self._lock, self._seen = client, lock, seen
+        self._fit: Eye | None = None
+        self._moved: threading.Timer | None = None
+        self.labels, self.aimed = Labels(client.scene), False
+
+    def aim(self) -> None:
+        """Let the camera look at the whole of the scene."""
+        seen = self._seen()
+        if seen is not None:
+            self.aimed = seen.pose is not None
+            with self._client.atomic():
+                self._fit = aim(self._client.camera, seen.scenario, seen.pose)
+
+    def go_on(self, eye_m: ArrayLike, look_at_m: ArrayLike) -> None:
+        """Let the camera see what it saw before.
+
+        Args:
+            eye_m: (3,) where it stood, metres.
+            look_at_m: (3,) what it looked at, metres.
+        """
+        camera = self._client.camera
+        with self._client.atomic():
+            self.aim()  # which says how far it sees
+            camera.position, camera.look_at = np.asarray(eye_m), np.asarray(look_at_m)
+        self.aimed, self._fit = True, None
+
+    def arrange(self) -> None:
+        """Put the labels where they do not overlap; aim again if only the canvas has another size now."""
+        with self._lock, self._client.atomic():
+            seen, eye = self._seen(), Eye.of(self._client.camera)
+            if seen is None or not seen.at_rest:
+                return
+            if not self.aimed or (self._fit is not None and eye.is_resized(self._fit)):
+                self.aim()
+                eye = self._fit or eye
+            width_px, height_px = _CARD_PX
+            self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
+
+    def close(self) -> None:
+        """Arrange nothing more."""
+        if self._moved is not None:
+            self._moved.cancel()
+
+    async def looked(self, _: object) -> None:
+        """Arrange the labels a little after the camera has moved; viser calls it."""
+        if self._moved is None or not self._moved.is_alive():
+            self._moved = threading.Timer(_LOOKED_S, self.arrange)
+            self._moved.daemon = True
+            self._moved.start()
