@@ -54,8 +54,9 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
 def _floor_m(scenario: Scenario) -> NDArray[np.float64]:
     """Return points, (n, 3) metres, around the ground's grid and the numbers beside it."""
     (west, south), (east, north), step_m = grid_m(scenario)
-    numbers = [[west, south - step_m], [east, south - step_m], [east + step_m, south], [east + step_m, north]]
-    return np.insert([*numbers, [west, north]], 2, 0.0, axis=1)
+    below, beside = south - 1.3 * step_m, east + 1.5 * step_m
+    outline = [[west, below], [east, below], [beside, south], [beside, north], [west, north]]
+    return np.insert(outline, 2, 0.0, axis=1)
 
 
 def _behind(eye: Eye, points_m: NDArray[np.float64], drone_m: NDArray[np.float64]) -> int:

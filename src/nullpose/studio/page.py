@@ -297,6 +297,8 @@ class Page:
         chosen = {"selected": self._editor.selected, "freed": self.panel.freed.value}
         self._ground.show(view, session.current(view.case), self._size_m, **chosen)
         self._show_map()
+        if not self._sight.aimed:
+            self._sight.aim()  # first, since the pattern is open towards the camera
         for slot, drone in enumerate(self._drones):
             answer = session.answer(view.cases[slot]) if slot < len(view.cases) else None
             if answer is None or len(answer.result.links) != len(view.scenario.nodes):

@@ -84,9 +84,9 @@ class Sight:
             seen, eye = self._seen(), Eye.of(self._client.camera)
             if seen is None or not seen.at_rest:
                 return
-            if not self.aimed or (self._fit is not None and eye.is_resized(self._fit)):
+            if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
-                eye = self._fit or eye
+                eye = self._fit
             width_px, height_px = _CARD_PX
             self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
 
