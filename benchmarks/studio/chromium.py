@@ -13,15 +13,17 @@ __all__ = ["CERTIFIED", "on_screen", "opened"]
 
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+_VIEWPORT = {"width": 1280, "height": 800}
 
 
 @contextmanager
-def opened(address: str, *, scale: float = 0.5) -> Iterator[Any]:
+def opened(address: str, *, scale: float = 0.5, **more: Any) -> Iterator[Any]:
     """Give a page of the studio, its first proof being there.
 
     Args:
         address: what the studio says to open, with its token.
         scale: pixels along each side for one of the page's; without a graphics card they take the time.
+        more: of what Playwright takes for a page, as ``viewport``.
     """
     from playwright.sync_api import sync_playwright
 
@@ -30,7 +32,7 @@ def opened(address: str, *, scale: float = 0.5) -> Iterator[Any]:
         raise SystemExit("Chromium is needed: apt-get install chromium")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=_FLAGS)
-        page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=scale)
+        page = browser.new_page(**{"viewport": _VIEWPORT, "device_scale_factor": scale} | more)
         page.set_default_timeout(120_000)
         page.goto(address)
         page.wait_for_function(CERTIFIED)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
 from nullpose.studio.eye import Eye
-from nullpose.studio.scene import grid_m, scene_size_m
+from nullpose.studio.scene import axis_texts, grid_m, scene_size_m
 
 _FAR = 100.0  # sizes of the scene that the camera sees, which leaves room to move away from it
 _FROM = [(0.82, -0.52, 0.64), (-0.52, -0.82, 0.64), (0.52, 0.82, 0.64), (-0.82, 0.52, 0.64)]
@@ -53,10 +53,9 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
 
 def _floor_m(scenario: Scenario) -> NDArray[np.float64]:
     """Return points, (n, 3) metres, around the ground's grid and the numbers beside it."""
-    (west, south), (east, north), step_m = grid_m(scenario)
-    below, beside = south - 1.3 * step_m, east + 1.5 * step_m
-    outline = [[west, below], [east, below], [beside, south], [beside, north], [west, north]]
-    return np.insert(outline, 2, 0.0, axis=1)
+    (west, south), (east, north), _ = grid_m(scenario)
+    texts = [[x, y] for _, x, y in axis_texts(scenario)]
+    return np.insert([[west, south], [east, south], [east, north], [west, north], *texts], 2, 0.0, axis=1)
 
 
 def _behind(eye: Eye, points_m: NDArray[np.float64], drone_m: NDArray[np.float64]) -> int:

@@ -88,7 +88,7 @@ class Labels:
             label.handle.position = position
 
     def enlarge(self, factor: float) -> None:
-        """Show all labels larger, those to come too.
+        """Show all labels larger, those to come too, and none of the scales where they are.
 
         Args:
             factor: how much; 1 for the usual size.
@@ -120,7 +120,7 @@ class Labels:
                 continue
             boxes = {anchor: _box_px(label.handle, anchor, x, y) for anchor in label.anchors}
             free = (anchor for anchor, box in boxes.items() if not _overlap(box, taken))
-            anchor = next(free, None)
+            anchor = None if label.rank is Rank.SCALE and self._larger > 1.0 else next(free, None)
             put(label.handle, visible=anchor is not None)
             if anchor is not None:
                 put(label.handle, anchor=anchor)

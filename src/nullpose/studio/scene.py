@@ -64,6 +64,24 @@ def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
     return step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m), step_m
 
 
+def axis_texts(scenario: Scenario) -> list[tuple[str, float, float]]:
+    """Return the numbers and the titles beside the grid: each text, and its east and north, metres.
+
+    Args:
+        scenario: the scene.
+    """
+    (west, south), (east, north), step_m = grid_m(scenario)
+    ways = [np.arange(low, high + 0.5 * step_m, step_m) for low, high in ((west, east), (south, north))]
+    every = max(1, (max(map(len, ways)) + 2) // 4)
+    titles = [
+        ("east (m)", 0.5 * (west + east), south - 1.05 * step_m),
+        ("north (m)", east + 1.3 * step_m, 0.5 * (south + north)),
+    ]
+    below = [(f"{x:g}", float(x), south - 0.45 * step_m) for x in ways[0][::every]]
+    beside = [(f"{y:g}", east + 0.45 * step_m, float(y)) for y in ways[1][::every]]
+    return [*titles, *below, *beside]
+
+
 class Ground:
     """What a scenario states, drawn: grid, points, arrows on one of them, airspace, zones, fence, keep-outs.
 
@@ -212,17 +230,9 @@ class Ground:
         lines = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
         lines += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
         add_lines(self._scene, "/ground/grid", lines, self._look.grid, 1.2)
-        every = max(1, (max(len(east), len(north)) + 2) // 4)
-        middle = 0.5 * (low + high)
-        ticks = [
-            ("east (m)", middle[0], low[1] - 1.05 * step_m),
-            ("north (m)", high[0] + 1.3 * step_m, middle[1]),
-        ]
-        ticks += [(f"{x:g}", x, low[1] - 0.45 * step_m) for x in east[::every]]
-        ticks += [(f"{y:g}", high[0] + 0.45 * step_m, y) for y in north[::every]]
-        for i, (text, x, y) in enumerate(ticks):
-            text = text.replace("-", MINUS)
+        for i, (text, x, y) in enumerate(axis_texts(scenario)):
             name, place_m = f"/ground/tick-{i}", (x, y, 0.0)
+            text = text.replace("-", MINUS)
             self._labels.put(name, text, place_m, Rank.SCALE, scale=0.8, anchors=("center-center",))
 
     def _draw_airspace(self, scenario: Scenario) -> None:

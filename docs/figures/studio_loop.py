@@ -1,0 +1,133 @@
+"""Makes the loop that README shows; needs the extra ``studiotest`` and Chromium, and some minutes.
+
+Eight seconds of the paper's scene in the studio: the jammer's power rises from 1 to 100 times a node's, the
+jammer is dragged in an arc and back, and the boxes of the proof close on the drone. Each frame waits for the
+proof of its own scene, so that every number in it is certified.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports below this line
+
+from benchmarks.studio.chromium import opened  # noqa: E402
+
+from nullpose import load  # noqa: E402
+from nullpose.solve.proof_steps import proof_steps  # noqa: E402
+from nullpose.studio.present import around  # noqa: E402
+from nullpose.studio.proof_bar import step_bar  # noqa: E402
+from nullpose.studio.replay import Replay, drawn_airspace_m  # noqa: E402
+from nullpose.studio.server import studio  # noqa: E402
+
+LOOP = ROOT / "docs" / "images" / "studio-loop.webp"
+WIDTH, HEIGHT = 960, 540
+VIEWPORT = {"width": WIDTH + 40, "height": HEIGHT}  # the folded panel is cut off
+EACH_MS = 80
+RISES, DRAGS, PROVES, HOLDS = 26, 40, 24, 10  # frames: 100 of 80 ms
+MOST_DB = 20.0
+TURN_RAD = np.radians(14.0)  # of the camera, forth and back
+QUALITY = 62
+NEARER, ASIDE = 0.82, 0.16  # of the camera's distance, of the scene's size
+MOST_BYTES = 4_000_000
+
+
+def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
+    """Yield the frames."""
+    session, client = ours.session, ours._client
+    start = np.array(session.view.scenario.jammers[0].position_m)
+    look_at, eye = np.array(client.camera.look_at), np.array(client.camera.position)
+    total = RISES + DRAGS + PROVES + HOLDS
+
+    def shot(frame: int) -> Image.Image:
+        turned = around(eye - look_at, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
+        with client.atomic():
+            client.camera.position, client.camera.look_at = look_at + turned, look_at
+        page.wait_for_timeout(350)
+        ours._sight.arrange()
+        page.wait_for_timeout(350)
+        return Image.open(BytesIO(page.screenshot(clip={"x": 0, "y": 0, "width": WIDTH, "height": HEIGHT})))
+
+    for i in range(RISES):
+        session.change(lambda view, i=i: view.with_power_db(MOST_DB * i / (RISES - 1)))
+        settle(page, session)
+        yield shot(i)
+    for i in range(DRAGS):
+        turn = np.sin(np.pi * (i + 1) / DRAGS)
+        place = start + turn * np.array([7.0, 20.0, 0.0]) + (1.0 - turn) * turn * np.array([22.0, 0.0, 0.0])
+        session.change(lambda view, place=place: view.moved(("jammers", 0), place))
+        settle(page, session)
+        yield shot(RISES + i)
+    yield from proof(ours, lambda i: shot(RISES + DRAGS + i))
+
+
+def proof(ours: Any, shot: Any) -> Iterator[Image.Image]:
+    """Yield the frames of the proof: its boxes close on the drone, whose pattern then comes back."""
+    answer = ours.session.current(ours.session.view.case)
+    steps = proof_steps(answer.result)
+    replay = Replay(ours._client.scene, steps, drawn_airspace_m(answer.result.scenario))
+    ours.panel.pattern.value = False
+    ours._refresh()
+    for i in range(PROVES):
+        step = replay.show(steps[round(i * (len(steps) - 1) / (PROVES - 1))].gap)
+        ours._proof._step_bar = step_bar(answer.result, step, steps[-1])
+        ours._show_overlay()
+        yield shot(i)
+    replay.clear()
+    ours._proof._step_bar, ours.panel.pattern.value = "", True
+    ours._refresh()
+    for i in range(HOLDS):
+        yield shot(PROVES + i)
+
+
+def nearer(client: Any, size_m: float) -> None:
+    """Bring the scene nearer, and to the right of the card."""
+    camera = client.camera
+    look_at, eye = np.array(camera.look_at), np.array(camera.position)
+    ahead = look_at - eye
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    aside = -ASIDE * size_m * right
+    with client.atomic():
+        camera.position, camera.look_at = look_at + aside - NEARER * ahead, look_at + aside
+
+
+def settle(page: Any, session: Any) -> None:
+    """Wait for the proof and the maps of the present scene."""
+    while session.field_map is None or not session.status(session.view.case).startswith("certified"):
+        page.wait_for_timeout(50)
+
+
+def main() -> None:
+    """Write the loop."""
+    with (
+        studio(load(ROOT / "examples" / "paper.toml"), port=0) as running,
+        opened(running.address, scale=1.0, viewport=VIEWPORT, color_scheme="dark") as page,
+    ):
+        page.get_by_role("button", name="Got it").click()
+        ours: Any = next(iter(running.pages.values()))
+        ours._client.gui.main_panel.minimize()
+        page.wait_for_timeout(3000)
+        ours._sight.aim()
+        ours._enlarge(1.25)
+        nearer(ours._client, ours._size_m)
+        page.mouse.move(600, 20)
+        page.wait_for_timeout(3000)
+        first, *others = frames(page, ours)
+    more = {"duration": EACH_MS, "loop": 0, "quality": QUALITY, "method": 6}
+    first.save(LOOP, save_all=True, append_images=others, **more)
+    size = LOOP.stat().st_size
+    print(f"{LOOP.relative_to(ROOT)}: {1 + len(others)} frames, {size / 1e6:.2f} MB")
+    assert size < MOST_BYTES
+
+
+if __name__ == "__main__":
+    main()
