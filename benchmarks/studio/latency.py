@@ -23,7 +23,7 @@ _EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def latency(steps: int) -> dict[str, Any]:
-    """Return the times of the paper's scene, and of ten nodes and three jammers, milliseconds.
+    """Return the times of the paper's scene, of ten nodes and three jammers, and of fifty and five, ms.
 
     Beside them stands the floor: a page with nothing but a handle and a box, whose server answers at once.
 
@@ -31,6 +31,7 @@ def latency(steps: int) -> dict[str, Any]:
         steps: drag steps of each.
     """
     scenes = {"paper": load(_EXAMPLES / "paper.toml"), "ten nodes, three jammers": _ten_and_three()}
+    scenes["fifty nodes, five jammers"] = _fifty_and_five()
     found: dict[str, Any] = {"a handle and a box, no solver": _floor(steps)}
     for name, scene in scenes.items():
         found[name] = {"server": _server(scene, 3 * steps), **_browser(scene, steps)}
@@ -43,6 +44,16 @@ def _ten_and_three() -> Scenario:
     jammers = (*field.jammers, third)[:3]
     assert (len(field.nodes), len(jammers)) == (10, 3)
     return field.model_copy(update={"jammers": jammers})
+
+
+def _fifty_and_five() -> Scenario:
+    rng = np.random.default_rng(0)
+    return Scenario.from_arrays(
+        np.column_stack([rng.uniform(0.0, 300.0, (50, 2)), np.zeros(50)]),
+        np.column_stack([rng.uniform(0.0, 300.0, (5, 2)), np.full(5, 2.0)]),
+        noise_w=1e-6,
+        altitude_m=(20.0, 120.0),
+    )
 
 
 def _server(scene: Scenario, steps: int) -> dict[str, float]:
@@ -75,6 +86,9 @@ def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
     with studio(scene, port=0) as running, opened(running.address, scale=1.0) as page:
         page.wait_for_timeout(6000)
         ours = next(iter(running.pages.values()))
+        ours._editor.selected = ("jammers", 0)  # which has arrows then
+        ours._refresh()
+        page.wait_for_timeout(2000)
         marks = Marks()
         change, told = ours.session.change, ours.session._on_event
 
