@@ -104,8 +104,8 @@ def _browser(scene: Scenario, steps: int) -> dict[str, Any]:
 
         ours.session.change, ours.session._on_event = changed, tell
         start = np.array(scene.jammers[0].position_m)
-        grip = start + np.array([0.06 * ours._size_m, 0.0, 0.0])
-        to = grip + np.array([0.1 * ours._size_m, 0.0, 0.0])
+        grip = start + np.array([0.06 * ours.stage.size_m, 0.0, 0.0])
+        to = grip + np.array([0.1 * ours.stage.size_m, 0.0, 0.0])
         return {
             how: dragged(page, ours._client.camera, grip, to, marks, steps, how, "/drone-a/body")
             for how in STEPS

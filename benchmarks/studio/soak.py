@@ -117,7 +117,7 @@ class _Hand:
         keys = [key for key, _ in ours.session.view.points()]
         key = keys[self._rng.integers(len(keys))]
         place = np.array(dict(ours.session.view.points())[key].position_m)
-        step = 0.004 * ours._size_m * self._rng.normal(size=3) * (1.0, 1.0, 0.0)
+        step = 0.004 * ours.stage.size_m * self._rng.normal(size=3) * (1.0, 1.0, 0.0)
         for i in range(_DRAG):
             ours._dragged(key, place + i * step, {0: "start", _DRAG - 1: "end"}.get(i, "update"))
             time.sleep(0.03)
@@ -152,7 +152,7 @@ class _Hand:
     def _load(self) -> None:
         scenario = load(_EXAMPLES / f"{self._rng.choice(_SCENES)}.toml")
         self._ours._change(lambda view: view.with_scenario(scenario, ""))
-        self._ours._sight.aim()
+        self._ours.stage.sight.aim()
 
 
 class _Records(logging.Handler):

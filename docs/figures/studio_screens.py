@@ -56,7 +56,7 @@ def take(name: str) -> None:
             camera = ours._client.camera
             look_at = np.array(camera.look_at)  # which moves with the position
             with ours._client.atomic():
-                camera.position = look_at + ours._size_m * np.array(_FROM[name])
+                camera.position = look_at + ours.stage.size_m * np.array(_FROM[name])
                 camera.look_at = look_at
         page.mouse.move(300, 30)  # away from what would show its help
         page.wait_for_timeout(_QUIET_MS)

@@ -9,7 +9,7 @@ import pytest
 
 from nullpose.scenario import Scenario
 from nullpose.studio.events import PowerCurve
-from nullpose.studio.plot import power_plot_svg, scale_svg
+from nullpose.studio.plot import power_plot_svg
 from nullpose.studio.steps import power_curves
 from nullpose.studio.view import POWER_DB, View
 
@@ -80,9 +80,3 @@ def test_an_old_curve_is_marked(paper: Scenario) -> None:
 def test_without_a_jammer_there_is_no_plot() -> None:
     """A sentence takes the plot's place."""
     assert "No jammer" in power_plot_svg(None, version=1, power_db=None, value=1.0, unit="dB")
-
-
-def test_the_scale_names_its_ends() -> None:
-    """Both ends and the middle stand at the scale."""
-    texts = [text.text for text in _drawn(scale_svg(-12.0, 2.0, "value", "dB")).iter("text")]
-    assert texts == ["value", "\N{MINUS SIGN}12", "\N{MINUS SIGN}5", "2 dB"]

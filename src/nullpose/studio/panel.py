@@ -77,7 +77,6 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "Colour a plane: the best possible at each place, or where the pattern falls on the ground.",
             {"options": ("no map", *MAPS), "initial_value": MAPS[1]},
         ),
-        "scale": ("html", "", "", {}),
         "pattern": (
             "checkbox",
             "Radiation pattern",

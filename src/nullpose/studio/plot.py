@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from nullpose.report.figures.style import CURVES
 from nullpose.schemes import Curve, Scheme
-from nullpose.studio.colours import css, round_steps, scale_colours
+from nullpose.studio.colours import round_steps
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.look import either, lit
 from nullpose.studio.view import POWER_DB
@@ -137,29 +137,3 @@ def _legend(lines: Iterable[str]) -> Iterator[str]:
         yield f'<line x1="{x:.0f}" y1="10" x2="{x + 20:.0f}" y2="10" {look} stroke-width="2.4"/>'
         yield _text(x + 24, 14, "start", short)
         x += 30 + 5.6 * len(short)
-
-
-def scale_svg(low: float, high: float, title: str, unit: str) -> str:
-    """Return a colour scale with its numbers.
-
-    Args:
-        low: value of the dark end.
-        high: value of the bright end.
-        title: what it is a scale of.
-        unit: as in "dB".
-    """
-    colours = scale_colours([i / 8 for i in range(9)], 0.0, 1.0)
-    stops = "".join(
-        f'<stop offset="{i / 8:.2f}" stop-color="{css(colour)}"/>' for i, colour in enumerate(colours)
-    )
-    texts = (
-        _text(10, 40, "start", f"{low:g}")
-        + _text(170, 40, "middle", f"{0.5 * (low + high):g}")
-        + _text(330, 40, "end", f"{high:g} {unit}")
-    )
-    return (
-        '<div data-np="scale" style="padding:0 6px"><svg viewBox="0 0 340 44" width="100%" '
-        'font-family="sans-serif" font-size="11"><defs><linearGradient id="np-scale">'
-        f'{stops}</linearGradient></defs><text x="10" y="11" fill="{_INK}">{escape(title)}</text>'
-        f'<rect x="10" y="15" width="320" height="12" fill="url(#np-scale)"/>{texts}</svg></div>'
-    )

@@ -39,6 +39,10 @@ class Present:
         """Whether the page is presented now."""
         return self._thread is not None
 
+    def toggle(self) -> None:
+        """Begin, or end."""
+        (self.end if self.is_on else self.begin)()
+
     def begin(self) -> None:
         """Fold the panel, enlarge the labels, and set the camera going."""
         if self._thread is None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from viser import ClientHandle
 
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
-_CARD_PX = (352.0, 212.0)  # what the overlay covers of the canvas's upper left, for one case
+_CARD_PX = (352.0, 256.0)  # what the overlay covers of the canvas's upper left, for one case
 
 
 class Seen(NamedTuple):
@@ -44,26 +44,26 @@ class Sight:
     Args:
         client: the browser.
         lock: under which the page changes.
-        seen: returns what there is to see, or None once the page is closed.
+        seen: returns what there is to see.
 
     Attributes:
         labels: of the page.
         aimed: whether the camera has been aimed at the scene with its drone.
     """
 
-    def __init__(self, client: ClientHandle, lock: threading.RLock, seen: Callable[[], Seen | None]) -> None:
+    def __init__(self, client: ClientHandle, lock: threading.RLock, seen: Callable[[], Seen]) -> None:
         self._client, self._lock, self._seen = client, lock, seen
         self._fit: Eye | None = None
         self._moved: threading.Timer | None = None
+        self._open = True
         self.labels, self.aimed = Labels(client.scene), False
 
     def aim(self) -> None:
         """Let the camera look at the whole of the scene."""
         seen = self._seen()
-        if seen is not None:
-            self.aimed = seen.pose is not None
-            with self._client.atomic():
-                self._fit = aim(self._client.camera, seen.scenario, seen.pose)
+        self.aimed = seen.pose is not None
+        with self._client.atomic():
+            self._fit = aim(self._client.camera, seen.scenario, seen.pose)
 
     def go_on(self, eye_m: ArrayLike, look_at_m: ArrayLike) -> None:
         """Let the camera see what it saw before.
@@ -82,7 +82,7 @@ class Sight:
         """Put the labels where they do not overlap; aim again if only the canvas has another size now."""
         with self._lock, self._client.atomic():
             seen, eye = self._seen(), Eye.of(self._client.camera)
-            if seen is None or not seen.at_rest:
+            if not self._open or not seen.at_rest:
                 return
             if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
@@ -90,8 +90,19 @@ class Sight:
             width_px, height_px = _CARD_PX
             self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
 
+    def enlarge(self, factor: float) -> None:
+        """Show the labels larger.
+
+        Args:
+            factor: how much; 1 for the usual size.
+        """
+        with self._lock, self._client.atomic():
+            self.labels.enlarge(factor)
+            self.arrange()
+
     def close(self) -> None:
         """Arrange nothing more."""
+        self._open = False
         if self._moved is not None:
             self._moved.cancel()
 

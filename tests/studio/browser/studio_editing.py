@@ -97,6 +97,8 @@ def hand(page: Page, session: Session, running: Studio) -> Hand:
     page.mouse.move(400, 20)
     hand = Hand(page, next(one for one in running.pages.values() if one.session is session))
     page.keyboard.press("Escape")
+    hand.ours.stage.sight.aim()  # another test may have turned the camera
+    page.wait_for_timeout(1000)
     return hand
 
 
@@ -188,7 +190,7 @@ def test_a_scene_built_with_the_mouse_alone_is_solved_alike(hand: Hand, tmp_path
     page.get_by_role("button", name="New scene").click()
     hand.until(lambda: len(hand.session.view.scenario.nodes) == 1)
     page.wait_for_timeout(1500)
-    size_m = hand.ours._size_m
+    size_m = hand.ours.stage.size_m
     hand.add("node", 0.3 * size_m, 0.0)
     hand.add("node", 0.0, 0.3 * size_m)
     hand.add("jammer", 0.2 * size_m, 0.15 * size_m)

@@ -149,7 +149,7 @@ def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running
     version = _version(page)
     start = np.asarray(session.view.scenario.jammers[0].position_m)
     page.wait_for_timeout(3000)
-    size_m = ours._size_m
+    size_m = ours.stage.size_m
     _click(page, ours, start + np.array([0.0, 0.0, 0.01 * size_m]))
     page.get_by_text("Selected: M").wait_for()
     page.wait_for_timeout(1000)
