@@ -36,7 +36,8 @@ RISES, DRAGS, PROVES, HOLDS = 26, 40, 24, 10  # frames: 100 of 80 ms
 MOST_DB = 20.0
 TURN_RAD = np.radians(14.0)  # of the camera, forth and back
 QUALITY = 62
-NEARER, ASIDE = 0.82, 0.16  # of the camera's distance, of the scene's size
+NEARER = 0.95  # of the camera's distance
+ASIDE, ABOVE = 0.13, 0.06  # of the scene's size
 MOST_BYTES = 4_000_000
 
 
@@ -62,7 +63,7 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
         yield shot(i)
     for i in range(DRAGS):
         turn = np.sin(np.pi * (i + 1) / DRAGS)
-        place = start + turn * np.array([7.0, 20.0, 0.0]) + (1.0 - turn) * turn * np.array([22.0, 0.0, 0.0])
+        place = start + turn * np.array([4.0, 17.0, 0.0]) + (1.0 - turn) * turn * np.array([14.0, 0.0, 0.0])
         session.change(lambda view, place=place: view.moved(("jammers", 0), place))
         settle(page, session)
         yield shot(RISES + i)
@@ -95,7 +96,7 @@ def nearer(client: Any, size_m: float) -> None:
     ahead = look_at - eye
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
-    aside = -ASIDE * size_m * right
+    aside = size_m * np.array([-ASIDE * right[0], -ASIDE * right[1], ABOVE])
     with client.atomic():
         camera.position, camera.look_at = look_at + aside - NEARER * ahead, look_at + aside
 
