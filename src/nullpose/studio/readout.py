@@ -35,7 +35,7 @@ _ABOUT = """<b>A drone receives from ground nodes while jammers transmit.</b> It
 receives nothing along its own axis: the <b>null</b>. nullpose finds the position and the attitude with the
 largest smallest SINR over the nodes, and proves an upper bound for all other poses.
 <ul style="margin:4px 0 4px 16px;padding:0">
-<li>Blue boxes: nodes; orange spikes: jammers. Drag their arrows.</li>
+<li>Blue boxes: nodes; orange spikes: jammers. Click one, then drag its arrows; <i>Edit</i> adds more.</li>
 <li>Doughnut: the antenna's pattern, open towards you; orange: the null.</li>
 <li>Lines: brighter and thicker is a higher SINR; the worst nodes have the largest names.</li>
 <li>Coloured ground: how much the antenna receives from there; <i>Map and view</i> has more.</li></ul>"""
