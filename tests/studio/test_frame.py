@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from nullpose.studio.frame import framed, overlay_style
+from nullpose.studio.frame import framed, look_html
 
 PAGE = b"<!doctype html><html><head><script>viser()</script></head><body></body></html>"
 
@@ -21,7 +21,7 @@ def test_it_runs_before_viser_and_changes_nothing_else() -> None:
 
 def test_it_loads_nothing_from_elsewhere() -> None:
     """Neither in the page nor in the style that an export takes."""
-    for text in (framed(PAGE).decode(), overlay_style()):
+    for text in (framed(PAGE).decode(), look_html()):
         assert re.findall(r"https?://|@import|url\(", text) == []
 
 

@@ -45,7 +45,7 @@ def _scale(low: float, high: float) -> Scale:
         title="best <SINR>",
         name="best",
     )
-    return Scale(field=field, ends=(low, high), of_value=True)
+    return Scale(field=field, ends=(low, high), of_value=True, links_db=(low, high))
 
 
 def test_it_says_what_the_panel_says(proved: Session) -> None:
@@ -112,7 +112,9 @@ def test_the_value_is_marked_where_it_is_on_the_scale(proved: Session) -> None:
     assert "best &lt;SINR&gt;" in html
     whole = overlay_html(proved, _scale(-10.0, 2.0))
     assert f"<span>{MINUS}10</span><span>2 dB</span>" in whole
-    other = _scale(value - 3.0, value + 1.0)._replace(of_value=False)
+    other = _scale(value - 3.0, value + 1.0)._replace(of_value=False, links_db=(-6.0, 12.0))
+    assert "lines to nodes: the same colours<" in whole
+    assert f"lines to nodes: the same colours from {MINUS}6 to 12 dB<" in overlay_html(proved, other)
     for unmarked in (other, _scale(value + 1.0, value + 2.0)):
         assert "overlay-tick" not in overlay_html(proved, unmarked)
     proved.close()

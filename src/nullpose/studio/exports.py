@@ -98,7 +98,7 @@ def scene_html(
     from nullpose.studio.camera import aim
     from nullpose.studio.carpet import Carpet
     from nullpose.studio.eye import Eye
-    from nullpose.studio.frame import overlay_style
+    from nullpose.studio.frame import look_html
     from nullpose.studio.labels import Labels
     from nullpose.studio.opening import LOOPBACK, open_server, unannounced
     from nullpose.studio.overlay import Scale, overlay_html
@@ -122,14 +122,14 @@ def scene_html(
             Drone(server.scene, labels, slot, look).show(answer, text, *shown, pattern=pattern)
         if field is not None:
             ends = Carpet(server.scene, labels, look).show(field)
-            scale = Scale(field=field, ends=ends, of_value=chosen_map == MAPS[0])
+            scale = Scale(field=field, ends=ends, of_value=chosen_map == MAPS[0], links_db=link_range_db)
         labels.arrange(Eye.of(first))
         page = str(server.scene.as_html(dark_mode=look.dark))
     finally:
         with unannounced():
             server.stop()
     card = (
-        f"<style>{overlay_style()}</style><div id=np-overlay>{overlay_html(session, scale)}</div>"
+        f"{look_html()}<div id=np-overlay>{overlay_html(session, scale)}</div>"
         "<script>document.documentElement.style.setProperty('--np-height',"
         "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
     )

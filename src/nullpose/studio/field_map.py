@@ -60,5 +60,5 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
         name="footprint_db",
     )
     unlike = " without errors" if answer.case.robust else ""
-    best = replace(best, title=f"{best.title}{unlike}; lines to nodes")
+    best = replace(best, title=f"{best.title}{unlike}")
     return FieldMap(version=answer.version, best=best, footprint=footprint)

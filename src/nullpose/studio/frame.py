@@ -12,13 +12,13 @@ def framed(page: bytes) -> bytes:
     Args:
         page: viser's page as HTML.
     """
-    head = f"<head><style>{overlay_style()}</style><script>{_asset('frame.js')}</script>"
+    head = f"<head>{look_html()}<script>{_asset('frame.js')}</script>"
     return page.replace(b"<head>", head.encode(), 1).replace(b"<title>Viser<", b"<title>nullpose studio<", 1)
 
 
-def overlay_style() -> str:
-    """Return the style sheet of the overlay, which an exported page needs too."""
-    return _asset("frame.css")
+def look_html() -> str:
+    """Return the overlay's style and what keeps the colours of lines, for an exported page too."""
+    return f"<style>{_asset('frame.css')}</style><script>{_asset('lines.js')}</script>"
 
 
 @cache

@@ -22,15 +22,17 @@ class Scale(NamedTuple):
         field: the map.
         ends: values of the dark and of the bright end.
         of_value: whether it is of the value that is maximised, so that the pose's own has a place on it.
+        links_db: SINRs of the dark and of the bright end of the links' colours, dB.
     """
 
     field: Field
     ends: tuple[float, float]
     of_value: bool
+    links_db: tuple[float, float]
 
 
 def overlay_html(session: Session, scale: Scale | None = None, bar: str = "") -> str:
-    """Return the card; its look is :func:`nullpose.studio.frame.overlay_style`.
+    """Return the card; its look is :func:`nullpose.studio.frame.look_html`.
 
     Args:
         session: whose.
@@ -75,6 +77,9 @@ def _scale_html(scale: Scale, answer: Answer | None) -> str:
     if scale.of_value and answer is not None and not answer.case.robust and low <= answer.shown_value <= high:
         share = (answer.shown_value - low) / (high - low)
         tick = f'<i data-np="overlay-tick" style="left:{100.0 * share:.1f}%"></i>'
+    low_db, high_db = scale.links_db
+    shared = scale.of_value and unit == "dB"
+    links = "lines to nodes: the same colours" + ("" if shared else f" from {low_db:g} to {high_db:g} dB")
     ends = "".join(
         f"<span>{end:g}{more}</span>".replace("-", MINUS) for end, more in ((low, ""), (high, f" {unit}"))
     )
@@ -82,6 +87,7 @@ def _scale_html(scale: Scale, answer: Answer | None) -> str:
         f'<div class="np-scale" style="background:linear-gradient(90deg,{_gradient()})">{tick}</div>'
         f'<div class="np-ends" data-np="overlay-ends">{ends}</div>'
         f'<div class="np-title">{escape(scale.field.title)}</div>'
+        f'<div class="np-title" data-np="overlay-links">{links.replace("-", MINUS)}</div>'
     )
 
 

@@ -124,7 +124,14 @@ class Ground:
             freed: whether it can be dragged off its altitude.
         """
         points = self._points = dict(view.points())
-        ground = (size_m, view.scenario.airspace, tuple(points))
+        (west_m, south_m), (east_m, north_m), _ = grid_m(view.scenario)
+        corners_m = (
+            west_m,
+            south_m,
+            east_m,
+            north_m,
+        )  # in whole steps, so that few steps of a drag change them
+        ground = (size_m, view.scenario.airspace, tuple(points), corners_m)
         if ground != self._ground:
             self._ground = ground
             self._draw_ground(view.scenario)
@@ -237,7 +244,7 @@ class Ground:
 
     def _draw_airspace(self, scenario: Scenario) -> None:
         airspace = scenario.airspace
-        low, high = ground_m(scenario)
+        low, high, _ = grid_m(scenario)
         west, south = np.maximum(low, airspace.lower_m[:2])
         east, north = np.minimum(high, airspace.upper_m[:2])
         outline = np.array([[west, south], [east, south], [east, north], [west, north]])

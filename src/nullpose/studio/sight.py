@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from viser import ClientHandle
 
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
-_CARD_PX = (352.0, 256.0)  # what the overlay covers of the canvas's upper left, for one case
+_CARD_PX = (352.0, 272.0)  # what the overlay covers of the canvas's upper left, for one case
 
 
 class Seen(NamedTuple):

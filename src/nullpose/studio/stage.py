@@ -94,9 +94,10 @@ class Stage:
             self._carpet.hide()
             self.scale = None
             return
-        self.scale = Scale(field=field, ends=self._carpet.show(field), of_value=name == MAPS[0])
-        if name == MAPS[0] and field.unit == "dB":
-            self.link_range_db = self.scale.ends
+        ends, of_value = self._carpet.show(field), name == MAPS[0]
+        if of_value and field.unit == "dB":
+            self.link_range_db = ends
+        self.scale = Scale(field=field, ends=ends, of_value=of_value, links_db=self.link_range_db)
 
     def _seen(self) -> Seen:
         view = self._session.view

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -25,6 +26,7 @@ _CURVE_SHOWN = 4  # a growing plot is drawn after so many points more
 _QUICKLY_PROVED = 2  # nodes up to which a rough proof takes half the time of a thorough search
 _QUICK_GAP = 1e-2
 _QUICK_BOXES = 1000
+_proved = threading.Event()  # of this process: before its first proof the proof may have to be compiled
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
 
@@ -51,7 +53,7 @@ def quick_answers(version: int, view: View, case: Case) -> Iterator[Answer]:
 
 def _quick_result(scenario: Scenario, scheme: Scheme) -> Result:
     """Return a rough proof's pose where that is quick, else that of a search which needs none."""
-    if len(scenario.nodes) <= _QUICKLY_PROVED:
+    if len(scenario.nodes) <= _QUICKLY_PROVED and _proved.is_set():
         proved = solve(scenario, scheme, gap=_QUICK_GAP, node_limit=_QUICK_BOXES, threads=1)
         if proved.status is Status.CERTIFIED:
             return proved
@@ -75,6 +77,7 @@ def proved_answers(
     scenario = case.on(view.scenario)
     if not case.robust:
         proved = solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress)
+        _proved.set()
         yield answer_of(version, case, proved)
         return
     for certify in (False, True):
