@@ -1,14 +1,20 @@
 """What is taken away."""
 
+import ast
 import json
 import time
+from graphlib import TopologicalSorter
+from pathlib import Path
 
 import pytest
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario
+from nullpose.studio import exports
 from nullpose.studio.exports import figure_png, pose_json
 from nullpose.studio.session import Session
+
+STUDIO = Path(exports.__file__).parent
 
 
 def test_pose_and_figure_are_of_the_present_scene(paper: Scenario) -> None:
@@ -29,3 +35,17 @@ def test_pose_and_figure_are_of_the_present_scene(paper: Scenario) -> None:
     assert solved["status"] == "certified"
     assert figure_png(session).startswith(b"\x89PNG")
     assert session.close(120.0)
+
+
+def test_no_module_of_the_studio_needs_itself_by_way_of_others() -> None:
+    """Neither as it is loaded nor later: pages export, and what exports knows nothing of pages."""
+    needs = {
+        path.stem: {
+            node.module.removeprefix("nullpose.studio.")
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("nullpose.studio.")
+        }
+        for path in STUDIO.glob("*.py")
+    }
+    assert "exports" in needs["page"]
+    TopologicalSorter(needs).prepare()

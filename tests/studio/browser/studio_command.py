@@ -11,6 +11,7 @@ import sys
 import urllib.error
 import urllib.request
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -75,11 +76,12 @@ def test_interrupt_ends_it_without_a_trace() -> None:
     assert alone
 
 
-def test_the_printed_address_opens_in_a_browser(browser: Browser) -> None:
+def test_the_printed_address_opens_in_a_browser(browser: Browser, words: Any) -> None:
     """The scene with its proof, also loaded again, from nowhere else; the bare address shows nothing."""
+    words.expected = ["Forbidden"]
     process = _command("--port", str(_free_port()))
     address = _address(process)
-    page = browser.new_page()
+    page = browser.new_context().new_page()
     page.set_default_timeout(90_000)
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
@@ -95,7 +97,7 @@ def test_the_printed_address_opens_in_a_browser(browser: Browser) -> None:
     assert bare is not None
     assert bare.status == 403
     assert "open the whole address" in page.content()
-    page.close()
+    page.context.close()
     process.send_signal(signal.SIGINT)
     assert _ended(process)[1] == ""
 

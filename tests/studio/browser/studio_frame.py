@@ -207,8 +207,9 @@ def test_a_phone_shows_the_scene_first(browser: Browser, alone: Studio) -> None:
         assert _value(page, "value-0") == _value(page, "overlay-value-0")
 
 
-def test_the_end_of_a_studio_is_told(browser: Browser, paper: Scenario) -> None:
+def test_the_end_of_a_studio_is_told(browser: Browser, paper: Scenario, words: Any) -> None:
     """Also that another one has taken its place, whose address is another."""
+    words.expected = ["ERR_CONNECTION_REFUSED", "Forbidden", "WebSocket connection", "403"]
     with studio(paper, port=0) as first:
         port = urlsplit(first.address).port
         context = browser.new_context(viewport=WIDE, device_scale_factor=0.5)

@@ -217,7 +217,7 @@ def test_the_ninth_page_is_told_and_gets_no_thread(browser: Browser, paper: Scen
     with studio(paper, port=0) as running, ExitStack() as stack:
         pages = [stack.enter_context(_page(running.address)) for _ in range(MOST_PAGES)]
         _until(lambda: len(running.pages) == MOST_PAGES)
-        ninth = browser.new_page()
+        ninth = browser.new_context().new_page()
         ninth.set_default_timeout(60_000)
         ninth.goto(running.address)
         ninth.get_by_text(f"{MOST_PAGES} pages are open").wait_for()
@@ -227,7 +227,7 @@ def test_the_ninth_page_is_told_and_gets_no_thread(browser: Browser, paper: Scen
         ninth.reload()
         _until(lambda: len(running.pages) == MOST_PAGES)
         assert _threads() - before == MOST_PAGES
-        ninth.close()
+        ninth.context.close()
     _until(lambda: _threads() == before)
 
 

@@ -127,6 +127,13 @@ def test_a_typed_power_is_taken_with_enter(page: Page, session: Session) -> None
     assert session.view.power_db == pytest.approx(12.3456, abs=1e-9)
     assert field.input_value() == "12.3456"
     version = _version(page)
+    _type_power(page, "1e1")
+    _settled(page, version)
+    assert session.view.power_db == pytest.approx(10.0, abs=1e-9)
+    version = _version(page)
+    _type_power(page, "12.3456")
+    _settled(page, version)
+    version = _version(page)
     for refused in ("-99", "1e3"):
         _type_power(page, refused)
         page.wait_for_function(
