@@ -12,6 +12,7 @@ import numpy as np
 __all__ = ["CERTIFIED", "on_screen", "opened"]
 
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
+_PROVED = "/(certified|proved) to/.test(document.querySelector('[data-np=status-0]')?.innerText)"
 _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 _VIEWPORT = {"width": 1280, "height": 800}
 
@@ -35,7 +36,7 @@ def opened(address: str, *, scale: float = 0.5, **more: Any) -> Iterator[Any]:
         page = browser.new_page(**{"viewport": _VIEWPORT, "device_scale_factor": scale} | more)
         page.set_default_timeout(120_000)
         page.goto(address)
-        page.wait_for_function(CERTIFIED)
+        page.wait_for_function(_PROVED)
         for button in page.locator("button.mantine-Notification-closeButton").all():
             button.click()  # the notice that there is no graphics card
         yield page

@@ -36,7 +36,26 @@ SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
     ),
 }
 _FROM = {"studio-ten-nodes": (-0.72, -0.66, 0.58)}  # where the camera stands, for a drone at the near edge
-_QUIET_MS = 9000  # without a graphics card a frame takes long
+_QUIET_MS = 1500  # without a graphics card a frame takes long
+_MOST_LOOKS = 12
+
+
+def at_rest(page: Any, session: Session) -> None:
+    """Wait until all of a scene is found and the page changes no more.
+
+    Args:
+        page: the browser's side.
+        session: the server's side.
+    """
+    page.mouse.move(300, 30)  # away from what would show its help
+    while session.field_map is None or session.status(session.view.case).startswith("solving"):
+        page.wait_for_timeout(200)
+    before, now = b"", page.screenshot()
+    for _ in range(_MOST_LOOKS):
+        if before == now:
+            return
+        page.wait_for_timeout(_QUIET_MS)
+        before, now = now, page.screenshot()
 
 
 def take(name: str) -> None:
@@ -50,16 +69,13 @@ def take(name: str) -> None:
         ours: Any = next(iter(running.pages.values()))
         session: Any = ours.session
         change(session)
-        while session.field_map is None or session.status(session.view.case).startswith("solving"):
-            page.wait_for_timeout(200)
         if name in _FROM:
             camera = ours._client.camera
             look_at = np.array(camera.look_at)  # which moves with the position
             with ours._client.atomic():
                 camera.position = look_at + ours.stage.size_m * np.array(_FROM[name])
                 camera.look_at = look_at
-        page.mouse.move(300, 30)  # away from what would show its help
-        page.wait_for_timeout(_QUIET_MS)
+        at_rest(page, session)
         page.screenshot(path=IMAGES / f"{name}.png")
 
 

@@ -1,0 +1,76 @@
+"""Takes a picture of every example in the studio, at three sizes, light and dark, with contact sheets.
+
+``python docs/figures/studio_gallery.py [folder] [example ...]`` writes ``<size>-<scheme>/<example>.png`` and
+``<size>-<scheme>.png`` into the folder, which is ``out/screens`` if none is given.
+"""
+
+from __future__ import annotations
+
+import sys
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from benchmarks.studio.chromium import opened
+from PIL import Image, ImageDraw
+from studio_screens import ROOT, at_rest  # which makes the benchmarks known too: hence the order
+
+from nullpose import load
+from nullpose.studio.server import Studio, studio
+
+SIZES = ((1280, 800), (1920, 1080), (390, 844))
+SCHEMES = ("light", "dark")
+_NO_SCENE = "study"
+_ACROSS, _THUMB_PX, _HEAD_PX = 4, 480, 24
+
+
+def take(running: Studio, path: Path, size: tuple[int, int], scheme: str) -> None:
+    """Take one picture of what a studio shows to a browser that opens it.
+
+    Args:
+        running: the studio.
+        path: of the picture.
+        size: of the browser's window, pixels.
+        scheme: light or dark.
+    """
+    viewport = dict(zip(("width", "height"), size, strict=True))
+    with opened(running.address, scale=1.0, viewport=viewport, color_scheme=scheme) as page:
+        close = page.get_by_role("button", name="Got it")
+        if close.is_visible():  # which it is not where the panel is folded
+            close.click()
+        ours: Any = next(reversed(running.pages.values()))
+        at_rest(page, ours.session)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=path)
+
+
+def sheet(folder: Path) -> None:
+    """Write the contact sheet of a folder's pictures beside it.
+
+    Args:
+        folder: with pictures of one size.
+    """
+    paths = sorted(folder.glob("*.png"))
+    pictures = [Image.open(path).convert("RGB") for path in paths]
+    high_px = _THUMB_PX * pictures[0].height // pictures[0].width
+    rows = -(-len(paths) // _ACROSS)
+    whole = Image.new("RGB", (_ACROSS * _THUMB_PX, rows * (high_px + _HEAD_PX)), "white")
+    for i, (path, picture) in enumerate(zip(paths, pictures, strict=True)):
+        x, y = i % _ACROSS * _THUMB_PX, i // _ACROSS * (high_px + _HEAD_PX)
+        ImageDraw.Draw(whole).text((x + 6, y + 6), path.stem, fill="black")
+        whole.paste(picture.resize((_THUMB_PX, high_px)), (x, y + _HEAD_PX))
+    whole.save(folder.with_suffix(".png"))
+
+
+if __name__ == "__main__":
+    into = Path(sys.argv[1]) if sys.argv[1:] else ROOT / "out" / "screens"
+    found = sorted(path.stem for path in (ROOT / "examples").glob("*.toml"))
+    folders = {
+        (size, scheme): into / f"{size[0]}x{size[1]}-{scheme}" for size, scheme in product(SIZES, SCHEMES)
+    }
+    for name in sys.argv[2:] or [one for one in found if one != _NO_SCENE]:
+        with studio(load(ROOT / "examples" / f"{name}.toml", allow_outside=True), port=0) as one:
+            for (size, scheme), folder in folders.items():
+                take(one, folder / f"{name}.png", size, scheme)
+    for folder in folders.values():
+        sheet(folder)
