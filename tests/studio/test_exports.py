@@ -47,5 +47,5 @@ def test_no_module_of_the_studio_needs_itself_by_way_of_others() -> None:
         }
         for path in STUDIO.glob("*.py")
     }
-    assert "exports" in needs["page"]
+    assert "exports" in set().union(*needs.values())
     TopologicalSorter(needs).prepare()

@@ -220,14 +220,13 @@ def test_the_map_holds_the_drones_place_and_value(
 def test_a_link_has_the_legends_colour(
     page: Page, session: Session, ours: Any, shown: Shown, paper: Scenario, case: str
 ) -> None:
-    """That of its SINR in the panel's scale, along the part of it that nothing hides."""
+    """That of its SINR in the card's scale, along the part of it that nothing hides."""
     shown(View(scenario=paper, case=case_named(case)))
     page.wait_for_timeout(AFTER_A_SECOND)
     low, high = _card_ends(page)
     assert page.locator("[data-np=overlay-links]").last.inner_text() == "lines to nodes: the same colours"
-    stops = page.locator("#np-scale stop").evaluate_all(
-        "all => all.map(one => getComputedStyle(one).stopColor.match(/\\d+/g).slice(0, 3).map(Number))"
-    )
+    gradient = page.locator(".np-scale").last.evaluate("bar => getComputedStyle(bar).backgroundImage")
+    stops = [[float(part) for part in rgb.split(",")] for rgb in re.findall(r"rgb\((.*?)\)", gradient)]
     _choose_map(page, "no map")  # the links are seen through the plane of this one
     page.wait_for_timeout(AFTER_A_SECOND)
     answer = session.current(session.view.case)
