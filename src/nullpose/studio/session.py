@@ -147,6 +147,8 @@ class Session:
                 return
             self.history = history
             self.version += 1
+            shown = {None, *history.present.cases}  # the proofs of the others would only take up memory
+            self._found = {key: event for key, event in self._found.items() if key[1] in shown}
             self._worker.request(self.version, history.present)
         self._on_view()
 
