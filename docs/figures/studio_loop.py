@@ -37,8 +37,28 @@ MOST_DB = 20.0
 TURN_RAD = np.radians(14.0)  # of the camera, forth and back
 QUALITY = 62
 NEARER = 0.95  # of the camera's distance
-ASIDE, ABOVE = 0.13, 0.06  # of the scene's size
+ASIDE, ABOVE = 0.19, 0.06  # of the scene's size
 MOST_BYTES = 4_000_000
+CAPTIONS = (  # until which frame
+    (
+        RISES,
+        "1  The jammer M becomes 100 times as strong as a node. The drone turns its null, orange, to it.",
+    ),
+    (RISES + DRAGS, "2  M is moved. Position and attitude follow; each pose is proved best."),
+    (RISES + DRAGS + PROVES, "3  The proof again: only inside the pink boxes may a better position be left."),
+    (RISES + DRAGS + PROVES + HOLDS, "No box is left: no pose is better by more than a millionth."),
+)
+CAPTION = """words => {
+  let line = document.getElementById('loop-caption');
+  if (!line) {
+    line = document.createElement('div');
+    line.id = 'loop-caption';
+    line.style = 'position:fixed;left:14px;bottom:14px;width:230px;z-index:9;color:#f2f2f2;'
+      + 'font:600 15px/1.35 sans-serif';
+    document.body.append(line);
+  }
+  line.textContent = words;
+}"""
 
 
 def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
@@ -49,6 +69,8 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
     total = RISES + DRAGS + PROVES + HOLDS
 
     def shot(frame: int) -> Image.Image:
+        told = next(words for last, words in CAPTIONS if frame < last)
+        page.evaluate(CAPTION, told)
         turned = around(eye - look_at, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
         with client.atomic():
             client.camera.position, client.camera.look_at = look_at + turned, look_at

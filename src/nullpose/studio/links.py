@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.solve import Result
 from nullpose.studio.colours import linear_colours, scale_colours
-from nullpose.studio.drawing import FLAT, add_lines, put
+from nullpose.studio.drawing import add_lines, add_mesh, put
 from nullpose.studio.look import Look
-from nullpose.studio.meshes import revolved_mesh
+from nullpose.studio.meshes import Mesh, merged, revolved_mesh
 
 if TYPE_CHECKING:
     from viser import SceneApi
 
 _WIDTHS = (0.003, 0.005, 0.0075, 0.01)  # by the quarter of the colours' range, sizes of the scene
 _OUTLINE = 0.0022  # beyond both sides of a beam, sizes of the scene
-_ROOM = 16  # nodes
+_AROUND = 8  # sides of an outline
 _NOWHERE = np.zeros((1, 2, 3))
 
 
@@ -39,27 +39,18 @@ class Links:
             add_lines(scene, f"{name}/links-{i}", _NOWHERE, _NOWHERE, width_m, units="world")
             for i, width_m in enumerate(self._widths_m)
         ]
-        self._scene, self._name, self._colour, self._room = scene, f"{name}/links-outline", look.outline, 0
+        self._scene, self._name, self._colour = scene, f"{name}/links-outline", look.outline
+        self._outline: Any = None
 
-    def _make_room(self, count: int) -> None:
-        """Have outlines for so many beams: a batch that grows in the browser is not drawn there."""
-        if count <= self._room:
-            return
-        self._room = max(_ROOM, 2 * count)
-        tube, still = revolved_mesh([1.0, 1.0], [0.0, 1.0], 10), np.array([1.0, 0.0, 0.0, 0.0])
-        # its far side, which is seen beside the beam inside it: the beam stands out on a map of its colour
-        self._outline = self._scene.add_batched_meshes_simple(
-            self._name,
-            tube.vertices.astype(np.float32),
-            tube.faces.astype(np.uint32),
-            np.tile(still, (self._room, 1)),
-            np.zeros((self._room, 3)),
-            batched_scales=np.full((self._room, 3), 1e-6),
-            batched_colors=self._colour,
-            side="back",
-            lod="off",
-            **FLAT,
-        )
+    def _show_outlines(self, tubes: Mesh) -> None:
+        """Draw the far sides of tubes, which are seen beside the beams inside them.
+
+        One mesh, and no batch of instances: of those the browser misses a picture when their count changes.
+        """
+        if self._outline is None or len(self._outline.faces) != len(tubes.faces):
+            self._outline = add_mesh(self._scene, self._name, tubes, self._colour, side="back")
+        else:
+            self._outline.vertices = tubes.vertices.astype(np.float32)
 
     def show(self, result: Result, range_db: tuple[float, float]) -> None:
         """Draw the links of a result.
@@ -68,7 +59,6 @@ class Links:
             result: pose and links.
             range_db: ends of the colours, dB.
         """
-        self._make_room(len(result.links))
         sinr_db = np.array([link.sinr_db for link in result.links])
         nodes, here = result.scenario.node_positions_m, result.pose.position_m
         ends = np.stack([nodes, np.broadcast_to(here, nodes.shape)], axis=1).astype(np.float32)
@@ -79,17 +69,17 @@ class Links:
             put(beams, visible=bool(own.any()))
             if beams.visible:
                 beams.points, beams.colors = ends[own], colours[own]
-        radius_m = 0.5 * self._widths_m[quarter] + self._outline_m
-        way = ends[:, 1] - ends[:, 0]
-        length_m = np.linalg.norm(way, axis=1)
-        self._outline.batched_positions = ends[:, 0]
-        self._outline.batched_wxyzs = _turned_up(way / np.maximum(length_m, 1e-9)[:, None])
-        self._outline.batched_scales = np.stack([radius_m, radius_m, length_m], axis=-1).astype(np.float32)
+        self._show_outlines(_tubes(ends, 0.5 * self._widths_m[quarter] + self._outline_m))
 
 
-def _turned_up(ways: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return rotations as unit quaternions, (n, 4), that turn the z axis onto unit vectors, (n, 3)."""
-    x, y, z = ways.T
-    half = np.stack([np.maximum(1.0 + z, 1e-6), -y, x, 0.0 * z], axis=-1)
-    turned: NDArray[np.float32] = half / np.linalg.norm(half, axis=1, keepdims=True)
-    return turned
+def _tubes(ends_m: NDArray[np.float32], radius_m: NDArray[np.float64]) -> Mesh:
+    """Return tubes around lines, (n, 2, 3), of radii, (n,), as one shape."""
+    way = (ends_m[:, 1] - ends_m[:, 0]).astype(float)
+    across = np.cross(
+        way, np.where(np.abs(way[:, :1]) < np.abs(way[:, 1:2]), [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    )
+    across *= radius_m[:, None] / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
+    other = np.cross(way, across) / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
+    tube = revolved_mesh([1.0, 1.0], [0.0, 1.0], _AROUND)
+    turned = tube.vertices @ np.stack([across, other, way], axis=1)
+    return merged(Mesh(one + start, tube.faces) for one, start in zip(turned, ends_m[:, 0], strict=True))

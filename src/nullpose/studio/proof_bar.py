@@ -21,7 +21,7 @@ _ENDS = "display:flex;justify-content:space-between"
 _TRACK = "height:9px;border-radius:5px;overflow:hidden;background:rgba(128,128,128,.25);margin:2px 0"
 
 
-def bar_html(bound: str, gap: float, target: float, words: str) -> str:
+def bar_html(bound: str, gap: float, target: float, words: str, *, again: bool = False) -> str:
     """Return a bar from a value, at its left, to the bound on it; on a log scale from 100 % to a target.
 
     Args:
@@ -29,13 +29,14 @@ def bar_html(bound: str, gap: float, target: float, words: str) -> str:
         gap: the bound above the value, relative.
         target: the gap at which the bar is closed.
         words: what to say below.
+        again: whether it is of a proof that is shown again, whose bound is not the one proved.
     """
     share = 100.0
     if gap < _WIDEST_GAP:
         share = _CLOSED + (100.0 - _CLOSED) * max(0.0, math.log(gap / target) / math.log(1.0 / target))
     fill = f"width:{share:.1f}%;height:100%;background:{css(BOX_COLOUR)}"
     return (
-        f'<div data-np="proof" data-gap="{gap!r}" style="{_STYLE}">'
+        f'<div data-np="proof"{" data-again" * again} data-gap="{gap!r}" style="{_STYLE}">'
         f'<div style="{_ENDS}"><span>value</span><span>{escape(bound)}</span></div>'
         f'<div style="{_TRACK}"><div style="{fill}"></div></div>'
         f'<div data-np="proof-words">{escape(words)}</div></div>'
@@ -86,7 +87,7 @@ def step_bar(result: Result, step: ProofStep, last: ProofStep) -> str:
     target = min(quantity.gap(value, quantity.of_ratio(ratio * (1.0 + last.gap))), 0.5)
     shown = f"bound {fixed(quantity.in_unit(bound), 4)} {quantity.unit}".replace("-", MINUS)
     words = f"Replay, bound {gap_words(gap)} above: {open_words(step, result)}"
-    return bar_html(shown, max(gap, target), target, words)
+    return bar_html(shown, max(gap, target), target, words, again=True)
 
 
 def open_words(step: ProofStep, result: Result) -> str:
