@@ -7,8 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports below this line
 
@@ -35,7 +33,6 @@ SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
         lambda session: session.change(lambda view: view.with_case(case_named("Robust pose"))),
     ),
 }
-_FROM = {"studio-ten-nodes": (-0.72, -0.66, 0.58)}  # where the camera stands, for a drone at the near edge
 _QUIET_MS = 1500  # without a graphics card a frame takes long
 _MOST_LOOKS = 12
 
@@ -69,12 +66,6 @@ def take(name: str) -> None:
         ours: Any = next(iter(running.pages.values()))
         session: Any = ours.session
         change(session)
-        if name in _FROM:
-            camera = ours._client.camera
-            look_at = np.array(camera.look_at)  # which moves with the position
-            with ours._client.atomic():
-                camera.position = look_at + ours.stage.size_m * np.array(_FROM[name])
-                camera.look_at = look_at
         at_rest(page, session)
         page.screenshot(path=IMAGES / f"{name}.png")
 
