@@ -8,7 +8,7 @@ import pytest
 
 from nullpose import load, solve
 from nullpose.scenario import Scenario
-from nullpose.studio.camera import aim
+from nullpose.studio.camera import CARD_PX, aim
 from nullpose.studio.eye import Eye
 from nullpose.studio.scene import ground_m, scene_size_m
 
@@ -47,3 +47,4 @@ def test_all_that_matters_is_seen(name: str, canvas: tuple[int, int]) -> None:
     pixels = Eye.of(camera).pixels(np.vstack([points, pose.position_m + reach_m]))
     assert np.all(pixels[:, 2] > camera.near)
     assert np.all((pixels[:, :2] > 0.0) & (pixels[:, :2] < canvas))
+    assert not np.any(np.all(pixels[: len(points), :2] < CARD_PX, axis=1)), "the card covers a point"

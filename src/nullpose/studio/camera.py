@@ -19,6 +19,9 @@ _FROM = [(0.82, -0.52, 0.64), (-0.52, -0.82, 0.64), (0.52, 0.82, 0.64), (-0.82, 
 _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
 """Its label and its pattern, from where it is, sizes of the scene."""
 
+CARD_PX = (352.0, 272.0)
+"""What the overlay covers of the canvas's upper left, for one case, pixels."""
+
 _TALL = 0.08  # of a point with its label, sizes of the scene
 
 
@@ -40,6 +43,9 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
     matter = np.vstack([_floor_m(scenario), points, np.add(points, [0.0, 0.0, _TALL * size_m]), drone])
     eyes = [eye._replace(position_m=way, look_at_m=np.zeros(3)).fitted(matter) for way in _FROM]
     eye = min(eyes, key=lambda one: _behind(one, points, drone))  # of the best ones the first
+    under = eye.pixels(np.vstack([points, drone]))[:, :2] < CARD_PX
+    if np.any(np.all(under, axis=1)):
+        eye = eye.beside(matter, CARD_PX)
     way_m = np.subtract(eye.look_at_m, eye.position_m)
     # turned by hand, it goes around a point that is on the ground
     eye = eye._replace(look_at_m=eye.position_m - way_m * np.asarray(eye.position_m)[2] / way_m[2])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _CANVAS = 1000.0, 800.0  # pixels, where none is known
+_STEPS = 40  # after which a camera is turned and moved well enough
 _MARGIN = 0.9  # of half the canvas, which leaves room for labels
 
 
@@ -80,6 +81,33 @@ class Eye(NamedTuple):
         position = np.array([*middle, behind]) @ axes
         away_m = float(np.mean(ahead)) - behind
         return self._replace(position_m=position, look_at_m=position + away_m * axes[2])
+
+    def beside(self, points_m: ArrayLike, card_px: tuple[float, float]) -> Eye:
+        """Return the camera farther away and turned, so that all points are right of a card, or below it.
+
+        Args:
+            points_m: (n, 3) metres.
+            card_px: width and height of what covers the canvas's upper left, pixels.
+        """
+        points, (right_of, below) = np.asarray(points_m, dtype=float), card_px
+        eyes = [self._within(points, right_of, 0.0), self._within(points, 0.0, below)]
+        return min(eyes, key=lambda eye: float(np.linalg.norm(points.mean(axis=0) - eye.position_m)))
+
+    def _within(self, points_m: NDArray[np.float64], left_px: float, top_px: float) -> Eye:
+        """Return the camera that has points in the canvas from a left and an upper edge on."""
+        size = np.array([self.width_px - left_px, self.height_px - top_px])
+        goal, room = np.array([left_px, top_px]) + 0.5 * size, _MARGIN * size
+        middle, eye = 0.5 * (points_m.min(axis=0) + points_m.max(axis=0)), self
+        for _ in range(_STEPS):
+            seen = eye.pixels(points_m)[:, :2]
+            low, high = seen.min(axis=0), seen.max(axis=0)
+            # half of the way at a time: turning and moving change what the other sees
+            aside, below = (0.5 * (low + high) - goal) * math.tan(0.5 * self.fov_rad) / self.height_px
+            right, up, ahead = _axes(np.subtract(eye.look_at_m, eye.position_m))
+            farther = math.sqrt(float(np.max((high - low) / room)))
+            position = middle + farther * np.subtract(eye.position_m, middle)
+            eye = eye._replace(position_m=position, look_at_m=position + ahead + aside * right - below * up)
+        return eye
 
 
 def _middle(side: NDArray[np.float64], ahead: NDArray[np.float64]) -> float:

@@ -107,7 +107,7 @@ class Labels:
             self._all.pop(name).handle.remove()
 
     def arrange(self, eye: Eye, taken: FloatArray | None = None) -> None:
-        """Hide the labels that would be over one that matters more, and put each beside it if it can be.
+        """Hide the labels that would be cut off or over one that matters more, or put them beside it.
 
         Args:
             eye: the camera.
@@ -119,7 +119,8 @@ class Labels:
             if not ahead > 0.0:
                 continue
             boxes = {anchor: _box_px(label.handle, anchor, x, y) for anchor in label.anchors}
-            free = (anchor for anchor, box in boxes.items() if not _overlap(box, taken))
+            whole = np.array([0.0, 0.0, eye.width_px, eye.height_px])
+            free = (a for a, box in boxes.items() if _is_inside(box, whole) and not _overlap(box, taken))
             anchor = None if label.rank is Rank.SCALE and self._larger > 1.0 else next(free, None)
             put(label.handle, visible=anchor is not None)
             if anchor is not None:
@@ -138,6 +139,10 @@ def _box_px(handle: Any, anchor: str, x: float, y: float) -> FloatArray:
     share = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
     corner = np.array([x, y]) - size * [share[horizontal], share[vertical]]
     return np.concatenate([corner, corner + size])
+
+
+def _is_inside(box: FloatArray, whole: FloatArray) -> bool:
+    return bool(np.all(box[:2] >= whole[:2]) and np.all(box[2:] <= whole[2:]))
 
 
 def _overlap(box: FloatArray, others: FloatArray) -> bool:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.studio.camera import aim
+from nullpose.studio.camera import CARD_PX, aim
 from nullpose.studio.eye import Eye
 from nullpose.studio.labels import Labels
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from viser import ClientHandle
 
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
-_CARD_PX = (352.0, 272.0)  # what the overlay covers of the canvas's upper left, for one case
 
 
 class Seen(NamedTuple):
@@ -87,7 +86,7 @@ class Sight:
             if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
                 eye = self._fit
-            width_px, height_px = _CARD_PX
+            width_px, height_px = CARD_PX
             self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
 
     def enlarge(self, factor: float) -> None:
