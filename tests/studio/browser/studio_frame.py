@@ -38,8 +38,16 @@ def _opened(browser: Browser, address: str, **more: Any) -> Iterator[Page]:
     page.set_default_timeout(90_000)
     page.goto(address)
     page.wait_for_function(CERTIFIED)
-    yield page
-    context.close()
+    try:
+        yield page
+    finally:
+        context.close()
+
+
+def _notices_are_below_the_card(page: Page) -> bool:
+    card = page.locator("#np-overlay").bounding_box()
+    notices = [notice.bounding_box() for notice in page.locator(".mantine-Notification-root").all()]
+    return card is not None and all(one is None or one["y"] >= card["y"] + card["height"] for one in notices)
 
 
 def _until(met: Callable[[], object], seconds: float = 30.0) -> None:
@@ -199,9 +207,7 @@ def test_a_phone_shows_the_scene_first(browser: Browser, alone: Studio) -> None:
         assert card is not None
         assert card["x"] >= 0
         assert card["x"] + card["width"] <= PHONE["width"]
-        for notice in page.locator(".mantine-Notification-root").all():
-            box = notice.bounding_box()
-            assert box is None or box["y"] >= card["y"] + card["height"]
+        _until(lambda: _notices_are_below_the_card(page))
         page.get_by_text("nullpose studio").click()
         readout.wait_for(state="visible")
         assert _value(page, "value-0") == _value(page, "overlay-value-0")
