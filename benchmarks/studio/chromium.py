@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
+from nullpose.studio.eye import Eye
 
 __all__ = ["CERTIFIED", "on_screen", "opened"]
 
@@ -51,12 +51,6 @@ def on_screen(page: Any, camera: Any, point_m: Any) -> tuple[float, float]:
         camera: the same page's camera as the server knows it.
         point_m: (3,) metres.
     """
-    forward = np.asarray(camera.look_at) - camera.position
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    away = np.asarray(point_m) - camera.position
-    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov) / (away @ forward)
     box = page.locator("canvas").first.bounding_box()
-    across, up = float(away @ right), float(away @ np.cross(right, forward))
-    return (box["x"] + 0.5 * box["width"] + scale * across, box["y"] + 0.5 * box["height"] - scale * up)
+    x, y, _ = Eye.of(camera).pixels([point_m])[0]
+    return box["x"] + float(x), box["y"] + float(y)

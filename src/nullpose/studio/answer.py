@@ -42,6 +42,19 @@ class Answer:
         objective = self.result.objective
         return objective.quantity.in_unit(objective.value)
 
+    @property
+    def shown_bound(self) -> float | None:
+        """The upper bound in the unit that is shown, or None."""
+        objective = self.result.objective
+        bound = objective.upper_bound
+        return None if bound is None else objective.quantity.in_unit(bound)
+
+    @property
+    def value_words(self) -> str:
+        """What the value is called."""
+        quantity = self.result.objective.quantity
+        return quantity.smallest if self.guarded is None else f"guaranteed {quantity.noun}"
+
 
 def answer_of(version: int, case: Case, result: Result) -> Answer:
     """Return the answer that a result is.

@@ -114,12 +114,12 @@ class Labels:
             taken: (n, 4) left, upper, right and lower edges of what else is over the canvas, pixels.
         """
         taken = np.empty((0, 4)) if taken is None else taken
+        whole = np.array([0.0, 0.0, eye.width_px, eye.height_px])
         for label in sorted(self._all.values(), key=lambda one: one.rank):
             x, y, ahead = eye.pixels(label.place_m[None])[0]
             if not ahead > 0.0:
                 continue
             boxes = {anchor: _box_px(label.handle, anchor, x, y) for anchor in label.anchors}
-            whole = np.array([0.0, 0.0, eye.width_px, eye.height_px])
             free = (a for a, box in boxes.items() if _is_inside(box, whole) and not _overlap(box, taken))
             anchor = None if label.rank is Rank.SCALE and self._larger > 1.0 else next(free, None)
             put(label.handle, visible=anchor is not None)

@@ -58,16 +58,14 @@ def _case_html(session: Session, slot: int) -> str:
 
 
 def _numbers(session: Session, answer: Answer, slot: int) -> str:
-    objective, quantity = answer.result.objective, answer.result.objective.quantity
-    words = quantity.smallest if answer.guarded is None else f"guaranteed {quantity.noun}"
+    value, unit = answer.result.objective.value, answer.result.objective.quantity.unit
     old = "" if session.current(answer.case) is answer else " np-old"
-    bound = ""
-    if objective.upper_bound is not None:
-        bound = f"upper bound {_number(quantity.in_unit(objective.upper_bound))} {quantity.unit}"
+    proved = answer.shown_bound
+    bound = "" if proved is None else f"upper bound {_number(proved)} {unit}"
     return (
         f'<div class="np-numbers{old}"><span class="np-value" data-np="overlay-value-{slot}" '
-        f'data-value="{objective.value!r}">{_number(answer.shown_value)} {quantity.unit}</span>'
-        f'{escape(words)}<div class="np-bound">{bound}</div></div>'
+        f'data-value="{value!r}">{_number(answer.shown_value)} {unit}</span>'
+        f'{escape(answer.value_words)}<div class="np-bound">{bound}</div></div>'
     )
 
 

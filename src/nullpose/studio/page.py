@@ -120,8 +120,12 @@ class Page:
             control.on_update(_by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
-        for key, act in (("P", self.present.toggle), ("escape", self.present.end)):
-            command: Any = self._client.gui.add_command("Begin or end presenting", hotkey=key)
+        presenting = (
+            ("Begin or end presenting", "P", self.present.toggle),
+            ("End presenting", "escape", self.present.end),
+        )
+        for label, key, act in presenting:
+            command: Any = self._client.gui.add_command(label, hotkey=key)
             command.on_trigger(lambda event, act=act: act())
         self._client.camera.on_update(self.stage.sight.looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))

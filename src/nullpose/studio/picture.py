@@ -65,11 +65,9 @@ def scene_png(session: Session, client: ClientHandle, scale: Scale | None, look:
 
 def _rows(session: Session, answer: Answer) -> tuple[str, str]:
     """Return what the page says of an answer."""
-    objective, unit = answer.result.objective, answer.result.objective.quantity.unit
-    words = objective.quantity.smallest if answer.guarded is None else f"guaranteed {objective.quantity.noun}"
-    bound = objective.upper_bound
-    above = "" if bound is None else f", upper bound {fixed(objective.quantity.in_unit(bound), 4)} {unit}"
-    numbers = f"{fixed(answer.shown_value, 4)} {unit} {words}{above}".replace("-", MINUS)
+    bound, unit = answer.shown_bound, answer.result.objective.quantity.unit
+    above = "" if bound is None else f", upper bound {fixed(bound, 4)} {unit}"
+    numbers = f"{fixed(answer.shown_value, 4)} {unit} {answer.value_words}{above}".replace("-", MINUS)
     return numbers, f"{answer.case.label}: {session.status(answer.case)}"
 
 

@@ -98,12 +98,10 @@ def _letter(session: Session, slot: int) -> str:
 
 def _value(answer: Answer, slot: int) -> str:
     objective, quantity = answer.result.objective, answer.result.objective.quantity
-    words = quantity.smallest if answer.guarded is None else f"guaranteed {quantity.noun}"
-    proved = ""
-    if objective.upper_bound is not None:
-        proved = f", upper bound {_signed(quantity.in_unit(objective.upper_bound), 4)}"
+    bound = answer.shown_bound
+    proved = "" if bound is None else f", upper bound {_signed(bound, 4)}"
     return (
-        f'<div>{escape(words)} <b data-np="value-{slot}" data-value="{objective.value!r}">'
+        f'<div>{escape(answer.value_words)} <b data-np="value-{slot}" data-value="{objective.value!r}">'
         f"{_signed(answer.shown_value, 4)}</b>{proved} {quantity.unit}</div>"
     )
 

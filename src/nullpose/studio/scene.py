@@ -124,13 +124,8 @@ class Ground:
             freed: whether it can be dragged off its altitude.
         """
         points = self._points = dict(view.points())
-        (west_m, south_m), (east_m, north_m), _ = grid_m(view.scenario)
-        corners_m = (
-            west_m,
-            south_m,
-            east_m,
-            north_m,
-        )  # in whole steps, so that few steps of a drag change them
+        # in whole steps, so that few steps of a drag change them
+        corners_m = tuple(np.ravel(grid_m(view.scenario)[:2]).tolist())
         ground = (size_m, view.scenario.airspace, tuple(points), corners_m)
         if ground != self._ground:
             self._ground = ground

@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from nullpose import load, solve
+from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
 
@@ -30,17 +31,10 @@ class Hand:
         self.page, self.ours, self.session = page, ours, ours.session
 
     def _screen(self, point_m: Any) -> tuple[float, float]:
-        camera = self.ours._client.camera
-        forward = np.asarray(camera.look_at) - camera.position
-        forward /= np.linalg.norm(forward)
-        right = np.cross(forward, [0.0, 0.0, 1.0])
-        right /= np.linalg.norm(right)
-        away = np.asarray(point_m) - camera.position
-        scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov) / (away @ forward)
         canvas = self.page.locator("canvas").first.bounding_box()
         assert canvas is not None
-        x = canvas["x"] + 0.5 * canvas["width"] + scale * float(away @ right)
-        y = canvas["y"] + 0.5 * canvas["height"] - scale * float(away @ np.cross(right, forward))
+        right, down, _ = Eye.of(self.ours._client.camera).pixels([point_m])[0]
+        x, y = canvas["x"] + float(right), canvas["y"] + float(down)
         assert canvas["x"] < x < canvas["x"] + canvas["width"], "it is out of sight"
         assert canvas["y"] < y < canvas["y"] + canvas["height"], "it is out of sight"
         return x, y

@@ -74,9 +74,15 @@ def _value(page: Page, where: str) -> str:
 
 
 def _ink_on_ground(page: Page, selector: str) -> float:
-    """Returns the contrast (WCAG) of a text in the card with the card."""
-    read = "e => [e, document.querySelector('#np-overlay')].map((one, i) => getComputedStyle(one)"
-    colours = page.locator(selector).evaluate(f"{read}[i ? 'backgroundColor' : 'color'])")
+    """Returns the contrast (WCAG) of a text in the card with the card.
+
+    The browser finds and reads the text in one step, since the card may be written anew between two.
+    """
+    colours = page.evaluate(
+        """text => [[text, 'color'], ['#np-overlay', 'backgroundColor']].map(
+            ([one, what]) => getComputedStyle(document.querySelector(one))[what])""",
+        selector,
+    )
     share = [np.array([float(part) for part in re.findall(r"[\d.]+", one)[:3]]) / 255 for one in colours]
     linear = [np.where(one <= 0.04045, one / 12.92, ((one + 0.055) / 1.055) ** 2.4) for one in share]
     low, high = sorted(float(one @ (0.2126, 0.7152, 0.0722)) for one in linear)

@@ -83,7 +83,6 @@ def test_the_page_has_the_numbers_of_the_command_line(
     assert value == pytest.approx(solved["objective"]["value"], rel=1e-12)
     card = page.locator("[data-np=overlay-value-0]").last.get_attribute("data-value")
     assert float(card or "nan") == value
-    page.wait_for_function("document.querySelector('[data-np=plot]') !== null")
     for _ in range(300):
         if session.field_map is not None:
             break

@@ -17,6 +17,7 @@ from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
 from nullpose.solve import Scheme
+from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
 
@@ -50,17 +51,10 @@ def _type_power(page: Page, decibel: str) -> None:
 
 def _on_screen(page: Page, camera: Any, point_m: Any) -> tuple[float, float]:
     """Return where a point of the scene is on the canvas, from the camera as the server knows it."""
-    forward = np.asarray(camera.look_at) - camera.position
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    away = np.asarray(point_m) - camera.position
-    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov) / (away @ forward)
     canvas = page.locator("canvas").first.bounding_box()
     assert canvas is not None
-    x = canvas["x"] + 0.5 * canvas["width"] + scale * float(away @ right)
-    return x, canvas["y"] + 0.5 * canvas["height"] - scale * float(away @ up)
+    x, y, _ = Eye.of(camera).pixels([point_m])[0]
+    return canvas["x"] + float(x), canvas["y"] + float(y)
 
 
 def _pixels(page: Page) -> np.ndarray:
