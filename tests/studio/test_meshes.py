@@ -125,7 +125,7 @@ def test_the_multirotor_is_in_one_piece() -> None:
 def test_pattern() -> None:
     """Every vertex is as far out as the gain in its direction, over the largest."""
     antenna = PatternAntenna("pattern", "any", harmonics_of_rows([[1.0], [0.1, 0.2, 0.3]]))
-    mesh, _ = meshes.pattern_mesh(antenna, 2.0)
+    mesh, _ = meshes.pattern_mesh(antenna, 2.0, 60, 96)
     distance = np.linalg.norm(mesh.vertices, axis=1)
     gain = antenna.gain(mesh.vertices / distance[:, None])
     np.testing.assert_allclose(distance, 2.0 * gain / antenna.peak, rtol=1e-9)

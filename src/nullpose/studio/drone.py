@@ -142,7 +142,7 @@ class Drone:
         towards_rad = 0.0 if _turns(antenna) else _azimuth_rad(pose, eye_m)
         self._add_pattern(frames["pattern"], antenna, 0.13 * size_m, towards_rad)
         beam = beam_mesh(np.zeros(3), [0.0, 0.0, -1.0], _BEAM_RAD)
-        self._parts["beam"] = add_mesh(scene, f"{name}/beam", beam, look.null, opacity=0.22, side="double")
+        self._parts["beam"] = add_mesh(scene, f"{name}/beam", beam, look.null, opacity=0.3, side="back")
         lines: dict[str, tuple[ArrayLike, float]] = {"null": (look.null, 3.0), "drop": (look.drop, 1.2)}
         for line, (colour, width_px) in lines.items():
             self._parts[line] = add_lines(scene, f"{name}/{line}", np.zeros((1, 2, 3)), colour, width_px)
@@ -154,7 +154,9 @@ class Drone:
             wires, _ = pattern_mesh(antenna, radius_m, 18, 24)
             add_mesh(self._scene, f"{name}/wires", wires, self._look.slots[1], wireframe=True)
             return
-        surface, gain = pattern_mesh(antenna, radius_m, open_rad=_OPEN_RAD, towards_rad=towards_rad)
+        rings = min(60, 24 + 3 * antenna.harmonics.degree) if isinstance(antenna, PatternAntenna) else 24
+        opened = {"open_rad": _OPEN_RAD, "towards_rad": towards_rad}
+        surface, gain = pattern_mesh(antenna, radius_m, rings, 3 * rings // 2, **opened)
         add_coloured_mesh(self._scene, f"{name}/surface", surface, scale_colours(gain, 0.0, 1.0))
 
 

@@ -78,8 +78,8 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_ra
 def pattern_mesh(
     antenna: Antenna,
     radius_m: float,
-    rings: int = 60,
-    around: int = 96,
+    rings: int,
+    around: int,
     *,
     open_rad: float = 0.0,
     towards_rad: float = 0.0,
@@ -91,7 +91,7 @@ def pattern_mesh(
     Args:
         antenna: whose pattern it is.
         radius_m: where the gain is largest, metres.
-        rings: steps from pole to pole.
+        rings: steps from pole to pole. Without a graphics card 12,000 triangles take a sixtieth of a second.
         around: steps about the z axis.
         open_rad: angle about z that is left out, so that the inside is seen, radians.
         towards_rad: azimuth of the middle of that angle, radians.

@@ -140,7 +140,7 @@ class Ground:
             if drawn != self._drawn.get(key):
                 self._drawn[key] = drawn
                 self._handles[key] = self._handle(key, size_m, drawn[1])
-                self._draw_point(key, size_m, keep_out_m)
+                self._draw_point(key, size_m, keep_out_m if key == selected else 0.0)
             handle = self._handles[key]
             if key != self.dragged and not np.allclose(handle.position, point.position_m, atol=1e-6):
                 handle.position = point.position_m
@@ -184,9 +184,9 @@ class Ground:
         name, colour, point = _name(key), self._look.kinds[key[0]], self._points[key]
         mark = MARKS[key[0]].placed(0.022 * size_m)
         add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
-        # wires: what is see-through below the map would be hidden by it
-        keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
-        add_mesh(self._scene, f"{name}/keep-out", keep_out, self._look.wire, wireframe=True)
+        if keep_out_m > 0.0:  # wires: what is see-through below the map would be hidden by it
+            keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
+            add_mesh(self._scene, f"{name}/keep-out", keep_out, self._look.wire, wireframe=True)
         if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
             near = ellipsoid_mesh(point.uncertainty_matrix_m, 10, 16)
             add_mesh(self._scene, f"{name}/uncertainty", near, colour, wireframe=True)
