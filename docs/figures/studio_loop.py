@@ -75,7 +75,7 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
         with client.atomic():
             client.camera.position, client.camera.look_at = look_at + turned, look_at
         page.wait_for_timeout(350)
-        ours.stage.sight.arrange()
+        ours.sight.arrange()
         page.wait_for_timeout(350)
         return Image.open(BytesIO(page.screenshot(clip={"x": 0, "y": 0, "width": WIDTH, "height": HEIGHT})))
 
@@ -139,8 +139,8 @@ def main() -> None:
         ours: Any = next(iter(running.pages.values()))
         ours._client.gui.main_panel.minimize()
         page.wait_for_timeout(3000)
-        ours.stage.sight.aim()
-        ours.stage.sight.enlarge(1.25)
+        ours.sight.aim()
+        ours.sight.enlarge(1.25)
         nearer(ours._client, ours.stage.size_m)
         page.mouse.move(600, 20)
         page.wait_for_timeout(3000)

@@ -14,6 +14,7 @@ from nullpose.studio.panel import Panel, show_link
 from nullpose.studio.picture import scene_png
 from nullpose.studio.scene_link import scene_to_text
 from nullpose.studio.session import Session
+from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import View
 
@@ -33,6 +34,7 @@ class Exchange:
         session: whose scene it is.
         panel: the page's panel.
         stage: what is drawn.
+        sight: the page's camera.
         look: the page's colours.
         address: of the studio as this browser reaches it.
         change: how the view is changed.
@@ -44,12 +46,19 @@ class Exchange:
         session: Session,
         panel: Panel,
         stage: Stage,
+        sight: Sight,
         look: Look,
         address: str,
         change: Change,
     ) -> None:
         self._client, self._session, self._panel = client, session, panel
-        self._stage, self._look, self._address, self._change = stage, look, address, change
+        self._stage, self._sight, self._look, self._address, self._change = (
+            stage,
+            sight,
+            look,
+            address,
+            change,
+        )
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
             (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),
@@ -86,7 +95,7 @@ class Exchange:
             return view.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
         if self._change(loaded, name=file.name):
-            self._stage.sight.aimed = False
+            self._sight.aimed = False
         else:  # viser has said by now that the file has arrived
             told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
             self._tell(f"{file.name} was not taken", told)

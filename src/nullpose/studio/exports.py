@@ -8,8 +8,7 @@ from typing import Any
 
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
-from nullpose.studio.drone import LINK_RANGE_DB, Drone
-from nullpose.studio.field_map import MAPS
+from nullpose.studio.drone import LINK_RANGE_DB
 from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.session import Session
 from nullpose.studio.toml_like import toml_like
@@ -96,40 +95,32 @@ def scene_html(
         UsageError: the present scene is not solved yet.
     """
     from nullpose.studio.camera import aim
-    from nullpose.studio.carpet import Carpet
     from nullpose.studio.eye import Eye
     from nullpose.studio.frame import look_html
     from nullpose.studio.labels import Labels
     from nullpose.studio.opening import LOOPBACK, open_server, unannounced
-    from nullpose.studio.overlay import Scale, overlay_html
-    from nullpose.studio.readout import drone_text
-    from nullpose.studio.scene import Ground, scene_size_m
+    from nullpose.studio.overlay import overlay_html
+    from nullpose.studio.stage import Stage
 
-    view, answers, maps = session.view, current_answers(session), session.field_map
-    field = None if maps is None else maps.named(chosen_map)
-    size_m, scale = scene_size_m(view.scenario), None
+    best = current_answers(session)[0]
     server, _ = open_server(LOOPBACK, 0)
     try:
         first = server.initial_camera
-        aim(first, view.scenario, answers[0].result.pose)
+        aim(first, session.view.scenario, best.result.pose)
         if camera is not None:
             first.position, first.look_at, first.fov = camera.position, camera.look_at, camera.fov
             first.up = camera.up_direction
         labels = Labels(server.scene)
-        Ground(server.scene, labels, None, look).show(view, answers[0], size_m, freed=False)
-        for slot, answer in enumerate(answers):
-            text, shown = drone_text(session, slot), (size_m, link_range_db, first.position)
-            Drone(server.scene, labels, slot, look).show(answer, text, *shown, pattern=pattern)
-        if field is not None:
-            ends = Carpet(server.scene, labels, look).show(field)
-            scale = Scale(field=field, ends=ends, of_value=chosen_map == MAPS[0], links_db=link_range_db)
+        stage = Stage(server.scene, labels, session, look)
+        stage.link_range_db = link_range_db
+        stage.show(first.position, chosen_map=chosen_map, pattern=pattern)
         labels.arrange(Eye.of(first))
         page = str(server.scene.as_html(dark_mode=look.dark))
     finally:
         with unannounced():
             server.stop()
     card = (
-        f"{look_html()}<div id=np-overlay>{overlay_html(session, scale)}</div>"
+        f"{look_html()}<div id=np-overlay>{overlay_html(session, stage.scale)}</div>"
         "<script>document.documentElement.style.setProperty('--np-height',"
         "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
     )

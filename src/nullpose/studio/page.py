@@ -29,6 +29,7 @@ from nullpose.studio.present import Present
 from nullpose.studio.proof_view import ProofView
 from nullpose.studio.readout import failure_html, readout_html
 from nullpose.studio.session import Session
+from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import Key, View
 
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
-
-_OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -76,11 +75,12 @@ class Page:
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
         self.session = Session(scenario, text, history=None if left is None else left.history, **told)
         self.panel = Panel(client.gui, dark=dark)
-        self.stage = Stage(client, self.session, look, self._lock, self._dragged)
+        self.sight = Sight(client, self.session, self._lock, lambda: self.stage.ground.dragged is not None)
+        self.stage = Stage(client.scene, self.sight.labels, self.session, look, self._dragged)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
-        self._exchange = Exchange(*own, self.stage, look, address, self._change)
-        self.present = Present(client, self.stage.sight.enlarge)
+        self._exchange = Exchange(*own, self.stage, self.sight, look, address, self._change)
+        self.present = Present(client, self.sight.enlarge)
         self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay)
         self._listen()
         if left is not None:
@@ -97,7 +97,7 @@ class Page:
             self._open = False
             self._not_late()
             self._proof.stop()
-            self.stage.sight.close()
+            self.sight.close()
         self.present.close()
         return self.session.close(timeout_s)
 
@@ -112,7 +112,7 @@ class Page:
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),
             (panel.redo, session.redo),
-            (panel.aim, self.stage.sight.aim),
+            (panel.aim, self.sight.aim),
             (panel.new, self._new),
             (panel.present, self.present.begin),
         ]
@@ -127,7 +127,7 @@ class Page:
         for label, key, act in presenting:
             command: Any = self._client.gui.add_command(label, hotkey=key)
             command.on_trigger(lambda event, act=act: act())
-        self._client.camera.on_update(self.stage.sight.looked)
+        self._client.camera.on_update(self.sight.looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
 
     def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
@@ -148,7 +148,7 @@ class Page:
 
     def _go_on(self, left: Left) -> None:
         self.panel.choose(left.controls)
-        self.stage.sight.go_on(left.eye_m, left.look_at_m)
+        self.sight.go_on(left.eye_m, left.look_at_m)
 
     def tell(self, error: ScenarioError, name: str) -> None:
         """Show the faults of what was refused.
@@ -185,7 +185,7 @@ class Page:
 
     def _new(self) -> None:
         self._change(lambda view: view.with_scenario(new_scenario(), ""))
-        self.stage.sight.aimed = False
+        self.sight.aimed = False
 
     def _told(self, event: Event) -> None:
         if not isinstance(event, Progress):
@@ -234,8 +234,15 @@ class Page:
     def _refresh_scene(self) -> None:
         panel = self.panel
         pattern = panel.pattern.value and not self._proof.is_playing
-        chosen = {"chosen_map": panel.map.value, "selected": self._editor.selected}
-        self.stage.show(**chosen, freed=panel.freed.value, pattern=pattern)
+        if not self.sight.aimed:
+            self.sight.aim()  # first, since the pattern is open towards the camera
+        chosen = {
+            "chosen_map": panel.map.value,
+            "selected": self._editor.selected,
+            "freed": panel.freed.value,
+        }
+        self.stage.show(self._client.camera.position, **chosen, pattern=pattern)
+        self.sight.arrange()
 
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.physics import Pose
-from nullpose.scenario import Scenario
 from nullpose.studio.camera import CARD_PX, aim
 from nullpose.studio.eye import Eye
 from nullpose.studio.labels import Labels
+from nullpose.studio.session import Session
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -21,37 +20,24 @@ if TYPE_CHECKING:
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
 
 
-class Seen(NamedTuple):
-    """What there is to see.
-
-    Args:
-        scenario: the scene.
-        pose: the drone's in it, or None while it is not known.
-        cases: how many cases the overlay shows.
-        at_rest: whether labels may be moved, since no hand drags a point.
-    """
-
-    scenario: Scenario
-    pose: Pose | None
-    cases: int
-    at_rest: bool
-
-
 class Sight:
     """The camera and the labels of one page.
 
     Args:
         client: the browser.
+        session: whose scene it is.
         lock: under which the page changes.
-        seen: returns what there is to see.
+        is_dragging: returns whether a hand drags a point, while which no label is moved.
 
     Attributes:
         labels: of the page.
         aimed: whether the camera has been aimed at the scene with its drone.
     """
 
-    def __init__(self, client: ClientHandle, lock: threading.RLock, seen: Callable[[], Seen]) -> None:
-        self._client, self._lock, self._seen = client, lock, seen
+    def __init__(
+        self, client: ClientHandle, session: Session, lock: threading.RLock, is_dragging: Callable[[], bool]
+    ) -> None:
+        self._client, self._session, self._lock, self._is_dragging = client, session, lock, is_dragging
         self._fit: Eye | None = None
         self._moved: threading.Timer | None = None
         self._open = True
@@ -59,10 +45,11 @@ class Sight:
 
     def aim(self) -> None:
         """Let the camera look at the whole of the scene."""
-        seen = self._seen()
-        self.aimed = seen.pose is not None
+        view = self._session.view
+        answer = self._session.current(view.case)
+        self.aimed = answer is not None
         with self._client.atomic():
-            self._fit = aim(self._client.camera, seen.scenario, seen.pose)
+            self._fit = aim(self._client.camera, view.scenario, answer.result.pose if answer else None)
 
     def go_on(self, eye_m: ArrayLike, look_at_m: ArrayLike) -> None:
         """Let the camera see what it saw before.
@@ -80,14 +67,14 @@ class Sight:
     def arrange(self) -> None:
         """Put the labels where they do not overlap; aim again if only the canvas has another size now."""
         with self._lock, self._client.atomic():
-            seen, eye = self._seen(), Eye.of(self._client.camera)
-            if not self._open or not seen.at_rest:
+            if not self._open or self._is_dragging():
                 return
+            eye = Eye.of(self._client.camera)
             if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
                 eye = self._fit
-            width_px, height_px = CARD_PX
-            self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
+            (width_px, height_px), cases = CARD_PX, len(self._session.view.cases)
+            self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, cases * height_px]]))
 
     def enlarge(self, factor: float) -> None:
         """Show the labels larger.

@@ -1,69 +1,81 @@
-"""What one page draws in 3-D: ground, map and drones, with its camera and its labels."""
+"""What is drawn of a session in 3-D, in a page and in an exported scene: ground, map and drones."""
 
 from __future__ import annotations
 
-import threading
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.field_map import MAPS, FieldMap
+from nullpose.studio.labels import Labels
 from nullpose.studio.look import Look
 from nullpose.studio.overlay import Scale
 from nullpose.studio.readout import drone_text
 from nullpose.studio.scene import Ground, OnDrag, scene_size_m
 from nullpose.studio.session import Session
-from nullpose.studio.sight import Seen, Sight
 from nullpose.studio.view import Key
 
 if TYPE_CHECKING:
-    from viser import ClientHandle
+    from viser import SceneApi
 
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
 
 class Stage:
-    """The 3-D part of one page.
+    """All that is drawn of one session.
 
     Args:
-        client: the browser.
-        session: whose scene it is.
-        look: the page's colours.
-        lock: under which the page changes.
-        on_drag: called with a point's key, its new position and the phase of the drag.
+        scene: of viser's.
+        labels: in that scene.
+        session: whose.
+        look: the colours.
+        on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
+            whose points are not dragged.
 
     Attributes:
         ground: what the scenario states.
-        sight: camera and labels.
         scale: the map that is shown and its colours, or None.
         size_m: of the scene as it is drawn, metres.
         link_range_db: ends of the links' colours, dB.
     """
 
     def __init__(
-        self, client: ClientHandle, session: Session, look: Look, lock: threading.RLock, on_drag: OnDrag
+        self,
+        scene: SceneApi,
+        labels: Labels,
+        session: Session,
+        look: Look,
+        on_drag: OnDrag | None = None,
     ) -> None:
-        self._client, self._session = client, session
-        self.sight = Sight(client, lock, self._seen)
-        labels = self.sight.labels
-        self.ground = Ground(client.scene, labels, on_drag, look)
-        self._carpet = Carpet(client.scene, labels, look)
-        self._drones = [Drone(client.scene, labels, slot, look) for slot in (0, 1)]
+        self._session = session
+        self.ground = Ground(scene, labels, on_drag, look)
+        self._carpet = Carpet(scene, labels, look)
+        self._drones = [Drone(scene, labels, slot, look) for slot in (0, 1)]
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self.scale: Scale | None = None
         self.size_m = np.inf
         self.link_range_db = LINK_RANGE_DB
 
-    def show(self, *, chosen_map: str, selected: Key | None, freed: bool, pattern: bool) -> None:
+    def show(
+        self,
+        eye_m: ArrayLike,
+        *,
+        chosen_map: str,
+        pattern: bool,
+        selected: Key | None = None,
+        freed: bool = False,
+    ) -> None:
         """Draw the session's view and what is known of it.
 
         Args:
+            eye_m: (3,) where the camera stands, towards which the patterns are open, metres.
             chosen_map: which map, one of ``MAPS``, or any other for none.
+            pattern: whether the radiation patterns are shown.
             selected: the point that has arrows to drag it by, or None.
             freed: whether it can be dragged off its altitude.
-            pattern: whether the radiation patterns are shown.
         """
         session, view = self._session, self._session.view
         size_m = scene_size_m(view.scenario)
@@ -72,17 +84,13 @@ class Stage:
         answer = session.current(view.case)
         self.ground.show(view, answer, self.size_m, selected=selected, freed=freed)
         self._show_map(chosen_map)
-        if not self.sight.aimed:
-            self.sight.aim()  # first, since the pattern is open towards the camera
         for slot, drone in enumerate(self._drones):
             answer = session.answer(view.cases[slot]) if slot < len(view.cases) else None
             if answer is None or len(answer.result.links) != len(view.scenario.nodes):
                 drone.hide()
                 continue
-            eye_m = np.array(self._client.camera.position)
             shown = drone_text(session, slot), self.size_m, self.link_range_db, eye_m
             drone.show(answer, *shown, pattern=pattern)
-        self.sight.arrange()
 
     def _show_map(self, name: str) -> None:
         maps = self._session.field_map
@@ -98,9 +106,3 @@ class Stage:
         if of_value and field.unit == "dB":
             self.link_range_db = ends
         self.scale = Scale(field=field, ends=ends, of_value=of_value, links_db=self.link_range_db)
-
-    def _seen(self) -> Seen:
-        view = self._session.view
-        answer = self._session.current(view.case)
-        pose = answer.result.pose if answer else None
-        return Seen(view.scenario, pose, len(view.cases), self.ground.dragged is None)

@@ -91,7 +91,7 @@ def hand(page: Page, session: Session, running: Studio) -> Hand:
     page.mouse.move(400, 20)
     hand = Hand(page, next(one for one in running.pages.values() if one.session is session))
     page.keyboard.press("Escape")
-    hand.ours.stage.sight.aim()  # another test may have turned the camera
+    hand.ours.sight.aim()  # another test may have turned the camera
     page.wait_for_timeout(1000)
     return hand
 
