@@ -22,10 +22,10 @@ sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports bel
 from benchmarks.studio.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
+from nullpose.physics import rotation_world_from_body  # noqa: E402
 from nullpose.solve.proof_steps import proof_steps  # noqa: E402
-from nullpose.studio.present import around  # noqa: E402
 from nullpose.studio.proof_bar import step_bar  # noqa: E402
-from nullpose.studio.replay import Replay, drawn_airspace_m  # noqa: E402
+from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m  # noqa: E402
 from nullpose.studio.server import studio  # noqa: E402
 
 LOOP = ROOT / "docs" / "images" / "studio-loop.webp"
@@ -71,7 +71,8 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
     def shot(frame: int) -> Image.Image:
         told = next(words for last, words in CAPTIONS if frame < last)
         page.evaluate(CAPTION, told)
-        turned = around(eye - look_at, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
+        turn = rotation_world_from_body(0.0, 0.0, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
+        turned = turn @ (eye - look_at)
         with client.atomic():
             client.camera.position, client.camera.look_at = look_at + turned, look_at
         page.wait_for_timeout(350)
@@ -96,15 +97,16 @@ def proof(ours: Any, shot: Any) -> Iterator[Image.Image]:
     """Yield the frames of the proof: its boxes close on the drone, whose pattern then comes back."""
     answer = ours.session.current(ours.session.view.case)
     steps = proof_steps(answer.result)
-    replay = Replay(ours._client.scene, steps, drawn_airspace_m(answer.result.scenario))
+    replay = Replay(ours._client.scene, drawn_airspace_m(answer.result.scenario))
     ours.panel.pattern.value = False
     ours._refresh()
     for i in range(PROVES):
-        step = replay.show(steps[round(i * (len(steps) - 1) / (PROVES - 1))].gap)
+        step = steps[round(i * (len(steps) - 1) / (PROVES - 1))]
+        replay.show(step)
         ours._proof._step_bar = step_bar(answer.result, step, steps[-1])
         ours._show_overlay()
         yield shot(i)
-    replay.clear()
+    ours._client.scene.remove_by_name(BOXES)
     ours._proof._step_bar, ours.panel.pattern.value = "", True
     ours._refresh()
     for i in range(HOLDS):

@@ -25,10 +25,6 @@ class Scene:
         self.batches.append(SimpleNamespace(**props))
         return self.batches[-1]
 
-    def remove_by_name(self, name: str) -> None:
-        """Take everything out."""
-        self.batches.clear()
-
     def drawn(self) -> tuple[np.ndarray, np.ndarray]:
         """Return places and sizes of all boxes that can be seen."""
         seen = [one for one in self.batches if one.visible]
@@ -39,9 +35,9 @@ class Scene:
         )
 
 
-def step(gap: float, centre_m: Any, half_m: Any) -> ProofStep:
+def step(centre_m: Any, half_m: Any) -> ProofStep:
     """Return a step of some boxes."""
-    return ProofStep(gap=gap, centre_m=np.array(centre_m, float), half_m=np.array(half_m, float))
+    return ProofStep(gap=1.0, centre_m=np.array(centre_m, float), half_m=np.array(half_m, float))
 
 
 @pytest.fixture
@@ -53,24 +49,17 @@ def scene() -> Scene:
 def test_every_open_box_is_drawn_with_its_place_and_size(scene: Scene, paper: Scenario) -> None:
     """The boxes in the scene are those of the step, cut off where the airspace drawn ends."""
     steps = proof_steps(solve(paper))
-    replay = Replay(scene, steps, np.array([[-1e3] * 3, [1e3] * 3]))
+    replay = Replay(scene, np.array([[-1e3] * 3, [1e3] * 3]))
     for one in steps:
-        assert replay.show(one.gap) is one
+        replay.show(one)
         places, sizes = scene.drawn()
         assert sorted(map(tuple, places)) == sorted(map(tuple, one.centre_m.astype(np.float32)))
         assert np.sum(sizes, axis=0) == pytest.approx(np.sum(2.0 * one.half_m, axis=0), rel=1e-3, abs=1e-3)
 
 
-def test_between_two_steps_the_earlier_one_is_drawn(scene: Scene) -> None:
-    """What is drawn was proved with the bound that is told."""
-    steps = [step(1.0, [[0, 0, 20]], [[9, 9, 9]]), step(0.1, [[0, 0, 20]], [[1, 1, 1]])]
-    replay = Replay(scene, steps, ROOM_M)
-    assert [replay.show(gap).gap for gap in (2.0, 1.0, 0.5, 0.1, 0.01)] == [1.0, 1.0, 1.0, 0.1, 0.1]
-
-
 def test_boxes_are_cut_off_at_the_airspace_that_is_drawn(scene: Scene) -> None:
     """One that is all outside is not drawn."""
-    Replay(scene, [step(1.0, [[50, 0, 20], [90, 0, 20]], [[10, 5, 30], [5, 5, 5]])], ROOM_M).show(1.0)
+    Replay(scene, ROOM_M).show(step([[50, 0, 20], [90, 0, 20]], [[10, 5, 30], [5, 5, 5]]))
     places, sizes = scene.drawn()
     assert places.tolist() == [[45.0, 0.0, 19.0]]
     assert sizes.tolist() == [[10.0, 10.0, 22.0]]
@@ -79,18 +68,10 @@ def test_boxes_are_cut_off_at_the_airspace_that_is_drawn(scene: Scene) -> None:
 def test_of_very_many_boxes_the_largest_are_drawn(scene: Scene) -> None:
     """A browser without a graphics card keeps up."""
     half_m = np.linspace(0.01, 1.0, 9_000)[:, None] * np.ones(3)
-    Replay(scene, [step(1.0, np.full((9_000, 3), 20.0), half_m)], ROOM_M).show(1.0)
+    Replay(scene, ROOM_M).show(step(np.full((9_000, 3), 20.0), half_m))
     _, sizes = scene.drawn()
     assert len(sizes) == 4_000
     assert sizes.min() > 1.0
-
-
-def test_nothing_is_left_when_it_is_cleared(scene: Scene) -> None:
-    """The drone stands alone."""
-    replay = Replay(scene, [step(1.0, [[0, 0, 20]], [[9, 9, 9]])], ROOM_M)
-    replay.show(1.0)
-    replay.clear()
-    assert not scene.batches
 
 
 def test_the_airspace_drawn_holds_the_altitudes_and_the_nodes(paper: Scenario) -> None:

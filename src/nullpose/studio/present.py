@@ -9,7 +9,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+
+from nullpose.physics import rotation_world_from_body
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -54,15 +55,12 @@ class Present:
 
     def end(self) -> None:
         """Give the page back as it was, the camera where it is."""
-        if self._stopped():
+        if self.close():
             self._client.gui.main_panel.expand()
             self._enlarge(1.0)
 
-    def close(self) -> None:
-        """End the camera's way without a word to the browser, which may be gone."""
-        self._stopped()
-
-    def _stopped(self) -> bool:
+    def close(self) -> bool:
+        """Return whether the camera was going, which ends; the browser, which may be gone, is not told."""
         thread, self._thread = self._thread, None
         if thread is not None:
             self._ended.set()
@@ -73,18 +71,6 @@ class Present:
         camera, began = self._client.camera, time.monotonic()
         middle_m, first_m = np.array(camera.look_at), np.array(camera.position)
         while not self._ended.wait(_STEP_S):
-            turned = around(first_m - middle_m, _TURN_RAD_S * (time.monotonic() - began))
+            turn = rotation_world_from_body(0.0, 0.0, _TURN_RAD_S * (time.monotonic() - began))
             with self._client.atomic():
-                camera.position, camera.look_at = middle_m + turned, middle_m
-
-
-def around(offset_m: ArrayLike, azimuth_rad: float) -> NDArray[np.float64]:
-    """Return a place turned about the vertical, (3,) metres.
-
-    Args:
-        offset_m: (3,) from the axis, metres.
-        azimuth_rad: the angle, counter-clockwise seen from above, radians.
-    """
-    c, s = math.cos(azimuth_rad), math.sin(azimuth_rad)
-    x, y, z = np.asarray(offset_m, dtype=float)
-    return np.array([c * x - s * y, s * x + c * y, z])
+                camera.position, camera.look_at = middle_m + turn @ (first_m - middle_m), middle_m

@@ -47,15 +47,15 @@ OPEN_BAR = bar_html("no bound yet", math.inf, _WIDEST_GAP, "Not proved yet")
 """The bar of what is not proved; the same at each step of a drag, so that it is sent once."""
 
 
-def answer_bar(answer: Answer) -> str | None:
-    """Return the bar of an answer; None if nothing is proved of it.
+def answer_bar(answer: Answer) -> str:
+    """Return the bar of an answer; empty if nothing is proved of it.
 
     Args:
         answer: to the present scene.
     """
     gap = answer.result.objective.relative_gap
     if gap is None:
-        return None
+        return ""
     target = min(float(answer.result.provenance["gap"]), 0.5)
     words = f"Gap {gap_words(gap)}: proved in {answer.result.stats.boxes:,} boxes"
     return bar_html("bound", max(gap, target), target, words)

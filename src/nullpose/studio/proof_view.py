@@ -8,11 +8,12 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from nullpose.solve import Result
 from nullpose.solve.proof_steps import ProofStep, has_proof_steps, proof_steps
 from nullpose.studio.answer import Answer
 from nullpose.studio.panel import Panel
 from nullpose.studio.proof_bar import OPEN_BAR, answer_bar, progress_bar, step_bar
-from nullpose.studio.replay import Replay, drawn_airspace_m
+from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m
 from nullpose.studio.session import Session
 
 if TYPE_CHECKING:
@@ -73,12 +74,8 @@ class ProofView:
         """How far the proof of the present scene has come, or the step that is shown again, as HTML."""
         session, case = self._session, self._session.view.case
         answer, progress = session.current(case), session.progress(case)
-        if self._step_bar and answer is not None:
-            return self._step_bar
-        bar = None if answer is None else answer_bar(answer)
-        if bar is None:
-            bar = OPEN_BAR if progress is None else progress_bar(progress)
-        return bar
+        bar = "" if answer is None else self._step_bar or answer_bar(answer)
+        return bar or (OPEN_BAR if progress is None else progress_bar(progress))
 
     def press(self) -> None:
         """Begin to show the boxes of the proof, or stop if they are being shown."""
@@ -86,7 +83,7 @@ class ProofView:
             answer = self._session.current(self._session.view.case)
             if self._stop is not None:
                 self.stop()
-            elif answer is not None and self.can_play:
+            elif answer is not None and has_proof_steps(answer.result):
                 self._stop = threading.Event()
                 self._refresh()
                 run, given = self._run, (answer, self._stop)
@@ -98,45 +95,43 @@ class ProofView:
             self._stop.set()
 
     def _run(self, answer: Answer, stop: threading.Event) -> None:
-        replay: Replay | None = None
-
         def go_on() -> None:
             if stop.is_set() or self._session.version != answer.version:
                 raise _StoppedError
 
         try:
             steps = proof_steps(answer.result, go_on)
-            go_on()
             if steps:
-                replay = Replay(self._client.scene, steps, drawn_airspace_m(answer.result.scenario))
-                self._play(replay, steps, answer, stop)
+                self._play(steps, answer.result, stop, go_on)
         except _StoppedError:
             pass
         except Exception:
             _log.exception("the proof could not be shown")
         with self._lock:
             self._stop, self._step_bar = None, ""
-            if replay is not None:
-                replay.clear()
+            self._client.scene.remove_by_name(BOXES)
             self._refresh()
 
     def _play(
-        self, replay: Replay, steps: tuple[ProofStep, ...], answer: Answer, stop: threading.Event
+        self,
+        steps: tuple[ProofStep, ...],
+        result: Result,
+        stop: threading.Event,
+        go_on: Callable[[], None],
     ) -> None:
         """Show the steps one after another; those that are late are left out."""
+        replay = Replay(self._client.scene, drawn_airspace_m(result.scenario))
         began, every_s = time.monotonic() + _REST_S, REPLAY_S / len(steps)
         due = 0
         while due < len(steps):
-            step = steps[due]
             with self._lock:
-                if stop.is_set() or self._session.version != answer.version:
-                    return
+                go_on()
                 with self._client.atomic():
-                    replay.show(step.gap)
-                    self._step_bar = step_bar(answer.result, step, steps[-1])
+                    replay.show(steps[due])
+                    self._step_bar = step_bar(result, steps[due], steps[-1])
                     self._show_bar()
                 self._client.flush()
             stop.wait(max(0.0, began + due * every_s - time.monotonic()))
             passed = int((time.monotonic() - began) / every_s)
-            due = due + 1 if due + 1 == len(steps) else min(max(due + 1, passed), len(steps) - 1)
+            due = max(due + 1, min(passed, len(steps) - 1))
         stop.wait(_REST_S)

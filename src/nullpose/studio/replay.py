@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,12 +9,15 @@ from numpy.typing import NDArray
 
 from nullpose.scenario import Scenario
 from nullpose.solve.proof_steps import ProofStep
-from nullpose.studio.drawing import FLAT
+from nullpose.studio.drawing import FLAT, put
 from nullpose.studio.meshes import Mesh
-from nullpose.study.value_map import map_extent_m
+from nullpose.studio.scene import ground_m
 
 if TYPE_CHECKING:
     from viser import SceneApi
+
+BOXES = "/proof"
+"""Where they are in the scene's tree."""
 
 BOX_COLOUR = (214, 51, 132)
 """A pink that stands out from all else in the scene, on light ground and on dark."""
@@ -32,36 +34,34 @@ def drawn_airspace_m(scenario: Scenario) -> NDArray[np.float64]:
     Args:
         scenario: the scene.
     """
-    low, high = map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
-    airspace = scenario.airspace
+    (low, high), airspace = ground_m(scenario), scenario.airspace
     return np.array(
         [np.maximum(airspace.lower_m, [*low, 0.0]), np.minimum(airspace.upper_m, [*high, np.inf])]
     )
 
 
 class Replay:
-    """The steps of a proof as boxes in a scene; see :meth:`show`.
+    """The boxes of a proof in a scene; see :meth:`show`.
 
     There is one batch of boxes for each width of edges, whose places and sizes are set anew at each step. Of
     a step with more than 4,000 boxes the largest are drawn.
 
     Args:
         scene: the page's scene.
-        steps: the gaps falling.
         within_m: (2, 3) corners, metres; what of a box is outside is not drawn.
     """
 
-    def __init__(self, scene: SceneApi, steps: Sequence[ProofStep], within_m: NDArray[np.float64]) -> None:
-        self._scene, self._steps, self._within_m = scene, steps, within_m
-        self._batches = [self._batch(edge) for edge in _EDGES]
+    def __init__(self, scene: SceneApi, within_m: NDArray[np.float64]) -> None:
+        self._within_m = within_m
+        self._batches = [_batch(scene, edge) for edge in _EDGES]
 
-    def show(self, gap: float) -> ProofStep:
-        """Draw the boxes that are open when the bound is a gap above the value; return their step.
+    def show(self, step: ProofStep) -> None:
+        """Draw the boxes that are open at a step.
 
         Args:
-            gap: relative; between two steps it is the earlier one that holds.
+            step: of the proof.
         """
-        step, (least, most) = self._step(gap), self._within_m
+        least, most = self._within_m
         low, high = (
             np.maximum(step.centre_m - step.half_m, least),
             np.minimum(step.centre_m + step.half_m, most),
@@ -78,33 +78,25 @@ class Replay:
                 batch.batched_wxyzs = np.tile(_UPRIGHT, (int(np.sum(own)), 1))
                 batch.batched_positions = middle[own].astype(np.float32)
                 batch.batched_scales = np.maximum(side[own], 1e-6).astype(np.float32)
-            if batch.visible != np.any(own):
-                batch.visible = bool(np.any(own))
-        return step
+            put(batch, visible=bool(np.any(own)))
 
-    def clear(self) -> None:
-        """Take all boxes out of the scene."""
-        self._scene.remove_by_name("/proof")
 
-    def _step(self, gap: float) -> ProofStep:
-        return self._steps[max(0, sum(step.gap >= gap for step in self._steps) - 1)]
-
-    def _batch(self, edge: float) -> Any:
-        """Return the handle of boxes with edges of a width; of none as yet."""
-        frame, one = _frame_mesh(edge), np.zeros((1, 3), dtype=np.float32)
-        return self._scene.add_batched_meshes_simple(
-            f"/proof/{edge:g}",
-            frame.vertices.astype(np.float32),
-            frame.faces.astype(np.uint32),
-            batched_wxyzs=_UPRIGHT[None],
-            batched_positions=one,
-            batched_scales=one,
-            batched_colors=BOX_COLOUR,
-            lod="off",
-            side="double",
-            visible=False,
-            **FLAT,
-        )
+def _batch(scene: SceneApi, edge: float) -> Any:
+    """Return the handle of boxes with edges of a width; of none as yet."""
+    frame, one = _frame_mesh(edge), np.zeros((1, 3), dtype=np.float32)
+    return scene.add_batched_meshes_simple(
+        f"{BOXES}/{edge:g}",
+        frame.vertices.astype(np.float32),
+        frame.faces.astype(np.uint32),
+        batched_wxyzs=_UPRIGHT[None],
+        batched_positions=one,
+        batched_scales=one,
+        batched_colors=BOX_COLOUR,
+        lod="off",
+        side="double",
+        visible=False,
+        **FLAT,
+    )
 
 
 def _frame_mesh(edge: float) -> Mesh:
