@@ -107,10 +107,10 @@ class _Hand:
     def _add(self) -> None:
         ours, tool = self._ours, str(self._rng.choice(_TOOLS))
         if len(list(ours.session.view.points())) < _MOST_POINTS:
-            ours._editor._begin(tool)
+            ours._editor.begin(tool)
             for _ in range(4 if tool == "fence" else 1):
                 self._click()
-            ours._editor._begin("")
+            ours._editor.begin("")
 
     def _drag(self) -> None:
         ours = self._ours

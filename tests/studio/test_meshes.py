@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from nullpose.antenna import SHORT_DIPOLE, PatternAntenna
 from nullpose.antenna.pattern import harmonics_of_rows
 from nullpose.physics import Pose, antenna_gain
+from nullpose.report.geometry import outline_m
 from nullpose.scenario import NoFlyZone
 from nullpose.studio import meshes
 from nullpose.studio.meshes import Mesh
@@ -109,7 +110,7 @@ def test_zones_are_drawn_where_they_forbid() -> None:
         NoFlyZone(centre_m=(1.0, 1.0), radius_m=2.0, altitude_m=(0.0, 5.0)),
         NoFlyZone(polygon_m=((0.0, 0.0), (0.0, 4.0), (1.0, 1.0), (4.0, 0.0))),
     ):
-        mesh = meshes.zone_mesh(zone, 0.0, 10.0)
+        mesh = meshes.prism_mesh(outline_m(zone), 0.0, min(10.0, zone.ceiling_m))
         assert _volume(mesh) > 0.0
         assert np.all(np.abs(zone.depth_m(mesh.vertices)) < 0.02 * 2.0 + 1e-9)
 

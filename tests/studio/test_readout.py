@@ -86,7 +86,7 @@ def test_the_worst_node_has_the_smallest_number(idle: Session, unsure: Scenario)
     idle.take(known)
     (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
-    numbers = {row[0]: float(row[2].replace("&minus;", "-")) for row in found}
+    numbers = {row[0]: float(row[2].replace(MINUS, "-")) for row in found}
     (worst,) = (row[0] for row in found if "worst" in row[3])
     assert list(numbers) == [link.node for link in known.result.links]
     assert numbers[worst] == min(numbers.values()) == pytest.approx(known.shown_value, abs=0.006)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from nullpose.report.numbers import short
+from nullpose.report.numbers import MINUS, fixed, short
 from nullpose.report.results import binding_nodes
 from nullpose.solve import Result, Status
 from nullpose.solve.robust import GuardedPose, RobustDetails
@@ -43,17 +43,27 @@ class Answer:
         return objective.quantity.in_unit(objective.value)
 
     @property
-    def shown_bound(self) -> float | None:
-        """The upper bound in the unit that is shown, or None."""
+    def bound_text(self) -> str:
+        """The upper bound as a text, as in "upper bound 4.1234"; empty without one."""
         objective = self.result.objective
         bound = objective.upper_bound
-        return None if bound is None else objective.quantity.in_unit(bound)
+        return "" if bound is None else f"upper bound {signed(objective.quantity.in_unit(bound), 4)}"
 
     @property
     def value_words(self) -> str:
         """What the value is called."""
         quantity = self.result.objective.quantity
         return quantity.smallest if self.guarded is None else f"guaranteed {quantity.noun}"
+
+
+def signed(number: float, digits: int = 2) -> str:
+    """Return a number as a page writes it.
+
+    Args:
+        number: any.
+        digits: how many decimals.
+    """
+    return fixed(number, digits).replace("-", MINUS).replace("inf", "\N{INFINITY}")
 
 
 def answer_of(version: int, case: Case, result: Result) -> Answer:

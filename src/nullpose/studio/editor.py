@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
+from viser import ClientHandle
 
-from nullpose.studio.drawing import add_lines
+from nullpose.studio.drawing import add_lines, put
 from nullpose.studio.edits import (
     ADDED,
     Entry,
@@ -20,11 +21,9 @@ from nullpose.studio.edits import (
 from nullpose.studio.inspector import Inspector
 from nullpose.studio.panel import FENCE, Panel
 from nullpose.studio.picking import ground_place_m, picked
+from nullpose.studio.readout import tool_html
 from nullpose.studio.session import Session
 from nullpose.studio.view import Key, View
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 _SKETCH = (213, 94, 0)
 _CLOSE = 0.03  # of the scene's size: so near its first corner a click closes a fence
@@ -73,16 +72,8 @@ class Editor:
         self._corners: list[Any] = []
         self._own = Inspector(client.gui, panel.own_values, lambda texts: self._typed(self.selected, texts))
         self._vehicle = Inspector(client.gui, panel.vehicle_values, lambda texts: self._typed(None, texts))
-        panel.add.on_click(lambda event: self._begin(event.target.value))
-        panel.delete.on_click(lambda event: self._delete())
-        for label, act, key, modifier in (
-            ("Undo", session.undo, "Z", "cmd/ctrl"),
-            ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
-            ("Delete what is selected", self._delete, "delete", None),
-            ("End adding, select nothing", lambda: self._begin(""), "escape", None),
-        ):
-            command: Any = client.gui.add_command(label, hotkey=key, modifier=modifier)
-            command.on_trigger(lambda event, act=act: act())
+        panel.add.on_click(lambda event: self.begin(event.target.value))
+        panel.delete.on_click(lambda event: self.delete())
 
         async def clicked(event: Any) -> None:  # in order, since it runs in the loop
             self._clicked(np.array(event.ray_origin), np.array(event.ray_direction))
@@ -99,14 +90,20 @@ class Editor:
         if key is not None and key[1] >= len(view.members(key[0])):
             key = self.selected = None
         entries: tuple[Entry, ...] = () if key is None else entries_of(view, key)
-        panel.show_selected(entries[0].text if entries else "")
+        put(panel.own_values, visible=bool(entries))
+        if entries:
+            put(panel.own_values, label=f"Selected: {entries[0].text}")
         self._own.show(entries)
         self._vehicle.show(entries_of(view, None))
         told = _FENCE_HOW.format(len(self._corners)) if self._tool == FENCE else _HOW.format(self._tool)
-        panel.show_tool(told if self._tool else "")
+        put(panel.tool, content=tool_html(told if self._tool else ""))
 
-    def _begin(self, tool: str) -> None:
-        """Take up a tool, or none, which selects nothing either."""
+    def begin(self, tool: str) -> None:
+        """Take up a tool, or none, which selects nothing either.
+
+        Args:
+            tool: what is to be added; empty for nothing.
+        """
         self._tool, self.selected = tool, None
         self._sketch([])
         self._refresh()
@@ -131,7 +128,7 @@ class Editor:
         if not closes:
             self._sketch([*corners, place_m])
         elif self._change(lambda view: with_fence(view, corners), name="The fence"):
-            self._begin("")
+            self.begin("")
 
     def _sketch(self, corners: list[Any]) -> None:
         """Draw the fence as far as it is drawn by now."""
@@ -143,7 +140,8 @@ class Editor:
             lines = np.concatenate([first, np.stack([points[:-1], points[1:]], axis=1)])
             add_lines(self._client.scene, "/sketch", lines, _SKETCH, 4.0)
 
-    def _delete(self) -> None:
+    def delete(self) -> None:
+        """Take what is selected out of the scene."""
         key = self.selected
         if key is not None and self._change(lambda view: without(view, key), name="Deleting"):
             self.selected = None

@@ -73,11 +73,6 @@ class Entry:
     text: str
     options: tuple[str, ...] = ()
 
-    @property
-    def key(self) -> str:
-        """The key of a scenario file that it is of."""
-        return self.path.rpartition(".")[2]
-
 
 def new_scenario() -> Scenario:
     """Return the scene to build another in: one node, and the paper's noise and altitudes."""

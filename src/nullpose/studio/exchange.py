@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from viser import ClientHandle
 
 from nullpose.errors import NullposeError
 from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio.editor import Change
 from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
 from nullpose.studio.look import Look
 from nullpose.studio.panel import Panel, show_link
@@ -17,11 +20,6 @@ from nullpose.studio.session import Session
 from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import View
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
-
-    from nullpose.studio.editor import Change
 
 _TOLD_S = 8.0  # how long a notice stays
 

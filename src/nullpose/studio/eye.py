@@ -112,12 +112,13 @@ class Eye(NamedTuple):
 
 def _middle(side: NDArray[np.float64], ahead: NDArray[np.float64]) -> float:
     """Return from where points are seen as far to one side as to the other."""
-    low, high = float(side.min()), float(side.max())
-    for _ in range(40):
-        middle = 0.5 * (low + high)
+    from scipy.optimize import brentq
+
+    def aside(middle: float) -> float:
         seen = (side - middle) / np.maximum(ahead, 1e-9)
-        low, high = (middle, high) if seen.max() + seen.min() > 0.0 else (low, middle)
-    return middle
+        return float(seen.max() + seen.min())
+
+    return float(brentq(aside, side.min(), side.max()))
 
 
 def _axes(ahead: NDArray[np.float64]) -> NDArray[np.float64]:

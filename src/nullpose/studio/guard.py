@@ -1,23 +1,26 @@
-"""Who is let in: requests with this run's token, to the studio's own address, that no foreign page sent."""
+"""Who is let in, and what for: requests with the token, to the own address, that no foreign page sent."""
 
 from __future__ import annotations
 
 import hmac
 import logging
+import re
 import secrets
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import partial
 from http import HTTPStatus
 from ipaddress import ip_address
 from typing import Any
 from urllib.parse import parse_qs
 
-from nullpose.studio.asked import ASKED, asked_of
 from nullpose.studio.frame import framed
 
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
+_TAB = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _ALIVE = "/alive"  # where a page asks whether its studio still runs
 _HEADERS = {"Referrer-Policy": "no-referrer", "Content-Security-Policy": "frame-ancestors 'none'"}
 
@@ -28,6 +31,39 @@ _patching = threading.Lock()
 _log = logging.getLogger("nullpose.studio.requests")
 # what others send that is no HTTP is no fault of ours, and fills no terminal
 _log.addFilter(lambda record: record.getMessage() != "opening handshake failed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """What one browser's tab asks for.
+
+    Args:
+        page: a name that the tab keeps when it is loaded again; empty if it has none.
+        dark: whether the browser prefers dark pages.
+        scene: the scene in the page's address as a text; empty without one.
+        address: the studio's address as this browser reaches it, with the token.
+    """
+
+    page: str = ""
+    dark: bool = False
+    scene: str = ""
+    address: str = ""
+
+
+ASKED: ContextVar[Asked] = ContextVar("asked")
+"""What is asked for by the websocket that the running task serves."""
+
+
+def asked_of(given: Mapping[str, Sequence[str]], address: str) -> Asked:
+    """Return what a websocket's request asks for; what is not understood is left out.
+
+    Args:
+        given: the query's values by name.
+        address: the studio's address as this browser reaches it.
+    """
+    page, dark, scene = (given.get(name, [""])[0] for name in ("page", "dark", "scene"))
+    known = page if _TAB.fullmatch(page) else ""
+    return Asked(page=known, dark=dark == "1", scene=scene, address=address)
 
 
 class Guard:

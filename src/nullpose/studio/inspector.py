@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from nullpose.studio.drawing import put
 from nullpose.studio.edits import Entry
 
 if TYPE_CHECKING:
@@ -38,13 +39,11 @@ class Inspector:
         """
         if entries == self._entries:
             return
-        before, self._entries = _shape(self._entries), entries
-        if before != _shape(entries) and before:
-            self._forms[before][0].visible = False
-        if entries:
-            if _shape(entries) not in self._forms:
-                self._forms[_shape(entries)] = self._built(entries)
-            self._forms[_shape(entries)][0].visible = True
+        self._entries, shape = entries, _shape(entries)
+        if entries and shape not in self._forms:
+            self._forms[shape] = self._built(entries)
+        for own, (form, _) in self._forms.items():
+            put(form, visible=own == shape)
         self._put_back()
 
     @property
@@ -58,7 +57,8 @@ class Inspector:
             form = gui.add_form(None)
         with form:
             for entry in entries:
-                more: dict[str, Any] = {"initial_value": entry.text, "hint": f"{entry.key}; Enter takes it."}
+                hint = f"{entry.path.rpartition('.')[2]}; Enter takes it."
+                more: dict[str, Any] = {"initial_value": entry.text, "hint": hint}
                 if entry.options:
                     control: Any = gui.add_dropdown(entry.label, entry.options, **more)
                     control.on_update(self._chosen)
@@ -81,8 +81,7 @@ class Inspector:
 
     def _put_back(self) -> None:
         for entry, control in zip(self._entries, self._controls, strict=True):
-            if control.value != entry.text:
-                control.value = entry.text
+            put(control, value=entry.text)
 
 
 def _shape(entries: Sequence[Entry]) -> _Shape:

@@ -84,8 +84,7 @@ class Labels:
             label = self._all[name] = _Label(handle, position, rank, anchors, scale)
         label.place_m, label.rank, label.scale = np.array(place_m, dtype=float), rank, scale
         put(label.handle, text=text, font_screen_scale=self._larger * scale)
-        if not np.allclose(label.handle.position, position, atol=1e-6):
-            label.handle.position = position
+        label.handle.position = position
 
     def enlarge(self, factor: float) -> None:
         """Show all labels larger, those to come too, and none of the scales where they are.

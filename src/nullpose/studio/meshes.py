@@ -12,8 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
-from nullpose.report.geometry import outline_m
-from nullpose.scenario import NoFlyZone
 
 
 class Mesh(NamedTuple):
@@ -166,19 +164,6 @@ def prism_edges(
     loops = [_raised(outline, height_m) for height_m in (low_m, high_m)]
     ends = [np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in loops]
     return np.concatenate([*ends, np.stack(loops, axis=1)[:: -(-len(outline) // most_posts)]])
-
-
-def zone_mesh(zone: NoFlyZone, low_m: float, high_m: float) -> Mesh:
-    """Return a no-fly zone as far as it lies between two altitudes.
-
-    Args:
-        zone: box, cylinder or polygon.
-        low_m: lowest altitude drawn, metres.
-        high_m: highest altitude drawn, metres.
-    """
-    floor_m = max(low_m, zone.floor_m)
-    ceiling_m = max(floor_m, min(high_m, zone.ceiling_m))
-    return prism_mesh(outline_m(zone), floor_m, ceiling_m)
 
 
 def _tube(radius_m: float, bottom_m: float, top_m: float, around: int = 16) -> Mesh:

@@ -14,7 +14,7 @@ from nullpose.errors import UsageError
 from nullpose.studio.guard import Guard
 
 if TYPE_CHECKING:
-    from viser import SceneApi, ViserServer
+    from viser import ViserServer
 
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
@@ -71,15 +71,11 @@ def open_server(host: str, port: int) -> tuple[ViserServer, str]:
         server.stop()
         raise UsageError(_port_in_use(port))
     server.request_share_url = lambda verbose=True: None  # a page could ask for a tunnel from the internet
-    _light(server.scene)
-    return server, guard.address(server.get_port())
-
-
-def _light(scene: SceneApi) -> None:
     # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture
-    scene.configure_default_lights(cast_shadow=False)
-    scene.configure_environment_map(hdri=None)
-    scene.add_light_ambient("/light", intensity=1.6)
+    server.scene.configure_default_lights(cast_shadow=False)
+    server.scene.configure_environment_map(hdri=None)
+    server.scene.add_light_ambient("/light", intensity=1.6)
+    return server, guard.address(server.get_port())
 
 
 def _port_in_use(port: int) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from html import escape
 from typing import NamedTuple
 
-from nullpose.report.numbers import MINUS, fixed
-from nullpose.studio.answer import Answer
+from nullpose.report.numbers import MINUS
+from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css, scale_colours
 from nullpose.studio.readout import status_look
 from nullpose.studio.session import Session
@@ -60,11 +59,10 @@ def _case_html(session: Session, slot: int) -> str:
 def _numbers(session: Session, answer: Answer, slot: int) -> str:
     value, unit = answer.result.objective.value, answer.result.objective.quantity.unit
     old = "" if session.current(answer.case) is answer else " np-old"
-    proved = answer.shown_bound
-    bound = "" if proved is None else f"upper bound {_number(proved)} {unit}"
+    bound = answer.bound_text and f"{answer.bound_text} {unit}"
     return (
         f'<div class="np-numbers{old}"><span class="np-value" data-np="overlay-value-{slot}" '
-        f'data-value="{value!r}">{_number(answer.shown_value)} {unit}</span>'
+        f'data-value="{value!r}">{signed(answer.shown_value, 4)} {unit}</span>'
         f'{escape(answer.value_words)}<div class="np-bound">{bound}</div></div>'
     )
 
@@ -92,11 +90,3 @@ def _scale_html(scale: Scale, answer: Answer | None) -> str:
 @cache
 def _gradient() -> str:
     return ",".join(css(colour) for colour in scale_colours([share / 8 for share in range(9)], 0.0, 1.0))
-
-
-def _number(number: float) -> str:
-    return (
-        fixed(number, 4).replace("-", MINUS)
-        if math.isfinite(number)
-        else f"{number:g}".replace("inf", "\u221e")
-    )

@@ -6,10 +6,11 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from viser import ClientHandle
 
 from nullpose.errors import ScenarioError
 from nullpose.objectives import Quantity
@@ -33,12 +34,11 @@ from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import Key, View
 
-if TYPE_CHECKING:
-    from viser import ClientHandle
-
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+
+_KEPT = ("map", "pattern", "freed")  # controls that a page leaves to the one that comes back
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -52,7 +52,11 @@ class Page:
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
         address: of the studio as this browser reaches it.
+        tab: name of the browser's tab; empty if it has none.
         left: what to go on from, in place of the scene; None to begin anew.
+
+    Attributes:
+        begun: the history that was gone on from, or None.
     """
 
     def __init__(
@@ -63,9 +67,10 @@ class Page:
         *,
         dark: bool = False,
         address: str = "",
+        tab: str = "",
         left: Left | None = None,
     ) -> None:
-        self._client = client
+        self._client, self.tab, self.begun = client, tab, left and left.history
         self._lock = threading.RLock()
         self._open = True
         self._gesture = 0
@@ -73,7 +78,7 @@ class Page:
         self._late: threading.Timer | None = None
         look = DARK if dark else LIGHT
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
-        self.session = Session(scenario, text, history=None if left is None else left.history, **told)
+        self.session = Session(scenario, text, history=self.begun, **told)
         self.panel = Panel(client.gui, dark=dark)
         self.sight = Sight(client, self.session, self._lock, lambda: self.stage.ground.dragged is not None)
         self.stage = Stage(client.scene, self.sight.labels, self.session, look, self._dragged)
@@ -84,7 +89,9 @@ class Page:
         self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay)
         self._listen()
         if left is not None:
-            self._go_on(left)
+            for name, value in left.controls.items():
+                put(getattr(self.panel, name), value=value)
+            self.sight.go_on(left.eye_m, left.look_at_m)
         self.session.start()
 
     def close(self, timeout_s: float = 5.0) -> bool:
@@ -120,12 +127,16 @@ class Page:
             control.on_update(_by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
-        presenting = (
-            ("Begin or end presenting", "P", self.present.toggle),
-            ("End presenting", "escape", self.present.end),
-        )
-        for label, key, act in presenting:
-            command: Any = self._client.gui.add_command(label, hotkey=key)
+        commands: list[tuple[str, Callable[[], object], Any, Any]] = [
+            ("Undo", session.undo, "Z", "cmd/ctrl"),
+            ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
+            ("Delete what is selected", self._editor.delete, "delete", None),
+            ("End adding, select nothing", lambda: self._editor.begin(""), "escape", None),
+            ("Begin or end presenting", self.present.toggle, "P", None),
+            ("End presenting", self.present.end, "escape", None),
+        ]
+        for label, act, key, modifier in commands:
+            command = self._client.gui.add_command(label, hotkey=key, modifier=modifier)
             command.on_trigger(lambda event, act=act: act())
         self._client.camera.on_update(self.sight.looked)
         panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
@@ -144,11 +155,8 @@ class Page:
     def left(self) -> Left:
         """What a later page of the same tab goes on from."""
         camera = self._client.camera
-        return Left(self.session.history, camera.position, camera.look_at, self.panel.controls)
-
-    def _go_on(self, left: Left) -> None:
-        self.panel.choose(left.controls)
-        self.sight.go_on(left.eye_m, left.look_at_m)
+        controls = {name: getattr(self.panel, name).value for name in _KEPT}
+        return Left(self.session.history, camera.position, camera.look_at, controls)
 
     def tell(self, error: ScenarioError, name: str) -> None:
         """Show the faults of what was refused.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import nullcontext
 from html import escape
 from types import SimpleNamespace
@@ -12,7 +11,7 @@ from nullpose.studio.case import cases_of
 from nullpose.studio.drawing import put
 from nullpose.studio.edits import ADDED
 from nullpose.studio.field_map import MAPS
-from nullpose.studio.readout import about_html, failure_html, tool_html
+from nullpose.studio.readout import about_html, failure_html
 from nullpose.studio.view import POWER_DB, View
 
 if TYPE_CHECKING:
@@ -136,9 +135,6 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
 """What each tab holds, by name: the kind of control, its label, its help, and more of what viser takes."""
 
 
-_KEPT = ("map", "pattern", "freed")
-
-
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
@@ -163,7 +159,6 @@ class Panel(SimpleNamespace):
         close.on_click(lambda event: folder.remove())
         self.overlay = gui.add_html("", visible=False)  # shown by the frame's script
         self.readout = gui.add_html("")
-        self.bar = gui.add_html("")
         self.faults = gui.add_html(failure_html(None))
         self.own_values = gui.add_folder("Selected", visible=False)
         with self.own_values:
@@ -178,20 +173,6 @@ class Panel(SimpleNamespace):
                     with self.form if kind == "text" else nullcontext():
                         setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
 
-    @property
-    def controls(self) -> dict[str, object]:
-        """What is chosen for the picture, by the controls' names."""
-        return {name: getattr(self, name).value for name in _KEPT}
-
-    def choose(self, controls: Mapping[str, object]) -> None:
-        """Choose for the picture what was chosen before.
-
-        Args:
-            controls: as :attr:`controls` has it.
-        """
-        for name, value in controls.items():
-            put(getattr(self, name), value=value)
-
     def show(self, view: View) -> None:
         """Offer the cases that have a meaning for a view, and show those chosen, and the jamming power.
 
@@ -205,22 +186,6 @@ class Panel(SimpleNamespace):
         if view is not self._shown:  # what is being typed stays while the answers to a view come in
             self.show_power(view)
         self._shown = view
-
-    def show_selected(self, name: str) -> None:
-        """Show the fields of what is selected, or none.
-
-        Args:
-            name: of what is selected; empty if nothing is.
-        """
-        put(self.own_values, visible=bool(name), **({"label": f"Selected: {name}"} if name else {}))
-
-    def show_tool(self, told: str) -> None:
-        """Say what the next click on the ground does.
-
-        Args:
-            told: a sentence; empty if it adds nothing.
-        """
-        put(self.tool, content=tool_html(told))
 
     def show_power(self, view: View) -> None:
         """Show the jamming power that holds, in place of one that was typed and not taken.

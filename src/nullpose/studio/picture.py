@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from io import BytesIO
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from viser import ClientHandle
 
 from nullpose.errors import UsageError
-from nullpose.report.numbers import MINUS, fixed
-from nullpose.studio.answer import Answer
+from nullpose.report.numbers import MINUS
+from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import scale_colours
 from nullpose.studio.exports import current_answers
 from nullpose.studio.look import Look
 from nullpose.studio.overlay import Scale
 from nullpose.studio.scene import grid_m
 from nullpose.studio.session import Session
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 _FINER = 2  # pixels of the picture for each of the canvas
 _FAR_M = 1000.0  # what is farther from the camera is not in viser's pictures
@@ -65,9 +63,9 @@ def scene_png(session: Session, client: ClientHandle, scale: Scale | None, look:
 
 def _rows(session: Session, answer: Answer) -> tuple[str, str]:
     """Return what the page says of an answer."""
-    bound, unit = answer.shown_bound, answer.result.objective.quantity.unit
-    above = "" if bound is None else f", upper bound {fixed(bound, 4)} {unit}"
-    numbers = f"{fixed(answer.shown_value, 4)} {unit} {answer.value_words}{above}".replace("-", MINUS)
+    unit = answer.result.objective.quantity.unit
+    bound = answer.bound_text and f", {answer.bound_text} {unit}"
+    numbers = f"{signed(answer.shown_value, 4)} {unit} {answer.value_words}{bound}"
     return numbers, f"{answer.case.label}: {session.status(answer.case)}"
 
 

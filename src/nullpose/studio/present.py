@@ -6,14 +6,11 @@ import math
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
+from viser import ClientHandle
 
 from nullpose.physics import rotation_world_from_body
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 ENLARGED = 1.5
 """How much larger the labels are in present mode."""

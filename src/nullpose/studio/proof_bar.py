@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from html import escape
 
-from nullpose.report.numbers import MINUS, fixed, short
+from nullpose.report.numbers import fixed, short
 from nullpose.solve import Result
 from nullpose.solve.proof_steps import ProofStep
-from nullpose.studio.answer import Answer
+from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css
 from nullpose.studio.events import Progress
 from nullpose.studio.replay import BOX_COLOUR
@@ -85,7 +85,7 @@ def step_bar(result: Result, step: ProofStep, last: ProofStep) -> str:
     bound = quantity.of_ratio(ratio * (1.0 + step.gap))
     gap = quantity.gap(value, bound)
     target = min(quantity.gap(value, quantity.of_ratio(ratio * (1.0 + last.gap))), 0.5)
-    shown = f"bound {fixed(quantity.in_unit(bound), 4)} {quantity.unit}".replace("-", MINUS)
+    shown = f"bound {signed(quantity.in_unit(bound), 4)} {quantity.unit}"
     words = f"Replay, bound {gap_words(gap)} above: {open_words(step, result)}"
     return bar_html(shown, max(gap, target), target, words, again=True)
 

@@ -6,7 +6,8 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+
+from viser import ClientHandle
 
 from nullpose.solve import Result
 from nullpose.solve.proof_steps import ProofStep, has_proof_steps, proof_steps
@@ -15,9 +16,6 @@ from nullpose.studio.panel import Panel
 from nullpose.studio.proof_bar import OPEN_BAR, answer_bar, progress_bar, step_bar
 from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m
 from nullpose.studio.session import Session
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 REPLAY_S = 6.0
 """How long a replay takes, seconds."""

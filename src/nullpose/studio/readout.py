@@ -10,10 +10,9 @@ import numpy as np
 from nullpose.antenna import PatternAntenna
 from nullpose.errors import ScenarioError
 from nullpose.report.geometry import null_angle_rad
-from nullpose.report.numbers import MINUS, fixed
 from nullpose.solve import Result
 from nullpose.solve.robust import GuardedPose
-from nullpose.studio.answer import Answer
+from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css
 from nullpose.studio.look import DARK, LIGHT, either
 from nullpose.studio.session import Session
@@ -98,11 +97,10 @@ def _letter(session: Session, slot: int) -> str:
 
 def _value(answer: Answer, slot: int) -> str:
     objective, quantity = answer.result.objective, answer.result.objective.quantity
-    bound = answer.shown_bound
-    proved = "" if bound is None else f", upper bound {_signed(bound, 4)}"
+    proved = answer.bound_text and f", {answer.bound_text}"
     return (
         f'<div>{escape(answer.value_words)} <b data-np="value-{slot}" data-value="{objective.value!r}">'
-        f"{_signed(answer.shown_value, 4)}</b>{proved} {quantity.unit}</div>"
+        f"{signed(answer.shown_value, 4)}</b>{proved} {quantity.unit}</div>"
     )
 
 
@@ -111,9 +109,9 @@ def _nodes(answer: Answer) -> str:
         return _guaranteed_nodes(answer, answer.guarded)
     rows = []
     for link in answer.result.links:
-        own = f"{_signed(link.sinr_db)} dB"
+        own = f"{signed(link.sinr_db)} dB"
         if link.margin_db is not None:
-            own += f", margin {_signed(link.margin_db)} dB"
+            own += f", margin {signed(link.margin_db)} dB"
         if link.secrecy_rate_bps_hz is not None:
             own += f", {link.secrecy_rate_bps_hz:.3f} bits/s/Hz"
         weight, mark = _worst(answer, link.node)
@@ -128,7 +126,7 @@ def _guaranteed_nodes(answer: Answer, guarded: GuardedPose) -> str:
     for link in answer.result.links:
         lower = min(ratio.lower for ratio in guarded.guarantee.ratios if ratio.node == link.node)
         numbers = (quantity.in_unit(number) for number in (quantity.at(link), quantity.of_ratio(lower)))
-        cells = "".join(f'<td style="text-align:right">{_signed(number)}</td>' for number in numbers)
+        cells = "".join(f'<td style="text-align:right">{signed(number)}</td>' for number in numbers)
         weight, mark = _worst(answer, link.node)
         rows += f'<tr style="font-weight:{weight}"><td>{escape(link.node)}</td>{cells}<td>{mark}</td></tr>'
     heads = "".join(f'<th style="font-weight:400">{head}</th>' for head in ("without errors", "guaranteed"))
@@ -143,9 +141,9 @@ def _worst(answer: Answer, node: str) -> tuple[int, str]:
 
 def _pose(result: Result, slot: int) -> str:
     pose = result.pose
-    east, north, up = map(_signed, pose.position_m)
+    east, north, up = map(signed, pose.position_m)
     angles = np.degrees([pose.roll_rad, pose.pitch_rad, pose.yaw_rad, pose.tilt_rad])
-    roll, pitch, yaw, tilt = (_signed(angle, 1) for angle in angles)
+    roll, pitch, yaw, tilt = (signed(angle, 1) for angle in angles)
     null = ", ".join(
         f"{math.degrees(null_angle_rad(pose, jammer.position_m)):.1f}&deg; off {escape(jammer.name)}"
         for jammer in result.scenario.jammers[:_MOST_NULLS]
@@ -169,7 +167,7 @@ def _difference_html(session: Session) -> str:
     if first.case.robust != second.case.robust:
         robust, other = "AB" if first.case.robust else "BA"
         unlike = f" ({robust} guaranteed, {other} without errors)"
-    difference = _signed(first.shown_value - second.shown_value)
+    difference = signed(first.shown_value - second.shown_value)
     unit = first.result.objective.quantity.unit
     return f'<div data-np="difference"><b>A over B: {difference} {unit}</b>{unlike}</div>'
 
@@ -214,9 +212,5 @@ def drone_text(session: Session, slot: int) -> str:
     answer, value = session.current(case), ""
     if answer is not None:
         unit = answer.result.objective.quantity.unit
-        value = f"{fixed(answer.shown_value, 2)} {unit}, ".replace("-", MINUS)
+        value = f"{signed(answer.shown_value)} {unit}, "
     return f"{_letter(session, slot)}{value}{session.status(case)}"
-
-
-def _signed(number: float, digits: int = 2) -> str:
-    return fixed(number, digits).replace("-", "&minus;").replace("inf", "&infin;")

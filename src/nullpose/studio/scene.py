@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from nullpose.physics import to_db
 from nullpose.report.geometry import outline_m as zone_outline_m
-from nullpose.report.numbers import MINUS, fixed
+from nullpose.report.numbers import MINUS
 from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
-from nullpose.studio.answer import Answer
+from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import round_steps
 from nullpose.studio.drawing import add_lines, add_mesh, put
 from nullpose.studio.labels import ANCHORS, Labels, Rank
 from nullpose.studio.look import LIGHT, Look
-from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, zone_mesh
+from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, prism_mesh
 from nullpose.studio.view import POWER_DB, Key, View
 from nullpose.study.value_map import map_extent_m
 
@@ -129,7 +129,11 @@ class Ground:
         ground = (size_m, view.scenario.airspace, tuple(points), corners_m)
         if ground != self._ground:
             self._ground = ground
-            self._draw_ground(view.scenario)
+            for part in ("/ground", "/airspace"):
+                self._labels.drop(part)
+                self._scene.remove_by_name(part)
+            self._draw_grid(view.scenario)
+            self._draw_airspace(view.scenario)
         for gone in self._handles.keys() - points.keys():
             self._remove(gone)
             del self._handles[gone], self._drawn[gone]
@@ -142,18 +146,11 @@ class Ground:
                 self._handles[key] = self._handle(key, size_m, drawn[1])
                 self._draw_point(key, size_m, keep_out_m if key == selected else 0.0)
             handle = self._handles[key]
-            if key != self.dragged and not np.allclose(handle.position, point.position_m, atol=1e-6):
+            if key != self.dragged:
                 handle.position = point.position_m
             self._label(key, point, view, answer, size_m)
             if key in self._rings:
                 self._show_rings(key, view, size_m)
-
-    def _draw_ground(self, scenario: Scenario) -> None:
-        for part in ("/ground", "/airspace"):
-            self._labels.drop(part)
-            self._scene.remove_by_name(part)
-        self._draw_grid(scenario)
-        self._draw_airspace(scenario)
 
     def _label(self, key: Key, point: GroundPoint, view: View, answer: Answer | None, size_m: float) -> None:
         """Write a point's name over it, and a node's SINR."""
@@ -162,7 +159,7 @@ class Ground:
             nodes, worst = len(view.scenario.nodes), answer.worst_nodes
             rank = Rank.WORST if point.name in worst else rank
             if rank is Rank.WORST or nodes <= _CROWD:
-                text += f" {fixed(answer.result.links[key[1]].sinr_db, 2)} dB".replace("-", MINUS)
+                text += f" {signed(answer.result.links[key[1]].sinr_db)} dB"
             if rank is Rank.WORST and len(worst) < nodes:
                 text += ", worst"
         offset_m = np.array([0.0, 0.0, 0.062 * size_m])
@@ -176,9 +173,7 @@ class Ground:
         """Put a jammer's rings on the ground, the larger the more power it has."""
         rings, radius_m = self._rings[key], _ring_m(view, key[1], size_m)
         put(rings, visible=radius_m > 0.0, scale=radius_m or 1.0)
-        below_m = np.array([0.0, 0.0, _RING_LIFT_M - self._points[key].position_m[2]])
-        if not np.allclose(rings.position, below_m):
-            rings.position = below_m
+        rings.position = 0.0, 0.0, _RING_LIFT_M - self._points[key].position_m[2]
 
     def _draw_point(self, key: Key, size_m: float, keep_out_m: float) -> None:
         name, colour, point = _name(key), self._look.kinds[key[0]], self._points[key]
@@ -251,10 +246,11 @@ class Ground:
         colour = self._look.zone
         for i, zone in enumerate(airspace.no_fly):
             low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
-            floor = zone_mesh(zone, low_m, low_m)
+            outline = zone_outline_m(zone)
+            floor = prism_mesh(outline, low_m, low_m)
             top = (*floor.vertices[:, :2].mean(axis=0), high_m)
             add_mesh(self._scene, f"/airspace/zone-{i}", floor, colour, opacity=0.25)
-            edges = prism_edges(zone_outline_m(zone), low_m, high_m)
+            edges = prism_edges(outline, low_m, high_m)
             add_lines(self._scene, f"/airspace/zone-edges-{i}", edges, colour, 1.8)
             self._labels.put(
                 f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, Rank.ZONE, anchors=ANCHORS

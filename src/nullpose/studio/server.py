@@ -7,13 +7,12 @@ import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
-from nullpose.studio.asked import ASKED, Asked
 from nullpose.studio.autosave import Autosave
-from nullpose.studio.history import History
+from nullpose.studio.guard import ASKED, Asked
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
 from nullpose.studio.scene_link import SCENE, scenario_from_scene
 
@@ -35,13 +34,6 @@ _FAULT = "The page could not be made; the terminal says why."
 _log = logging.getLogger("nullpose.studio")
 
 
-class _Tab(NamedTuple):
-    """Which tab a page is of, and what it went on from."""
-
-    name: str
-    begun: History | None
-
-
 class Studio:
     """A running studio; each browser that opens it has a page and a session of its own.
 
@@ -60,8 +52,7 @@ class Studio:
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
         self._saved = Autosave()
-        self._tabs: dict[int, _Tab] = {}
-        self.pages: dict[int, Any] = {}
+        self.pages: dict[int, Page] = {}
         server.on_client_connect(self._connect)
         server.on_client_disconnect(self._disconnect)
 
@@ -69,7 +60,7 @@ class Studio:
         """End every page's thread and the server."""
         with self._lock:
             self._closed = True
-            pages, self.pages, self._tabs = list(self.pages.values()), {}, {}
+            pages, self.pages = list(self.pages.values()), {}
         for page in pages:
             page.close()
         with unannounced():
@@ -85,7 +76,7 @@ class Studio:
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page, tab = self._page(client, asked)
+            page = self._page(client, asked)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")
@@ -93,37 +84,35 @@ class Studio:
             return
         with self._lock:
             gone = self._closed or client.client_id not in self._server.get_clients()
-            self._tabs[client.client_id] = tab
             self.pages[client.client_id] = page
         if gone:
             self._disconnect(client)
 
-    def _page(self, client: ClientHandle, asked: Asked) -> tuple[Page, _Tab]:
+    def _page(self, client: ClientHandle, asked: Asked) -> Page:
         """Return a page that goes on where its tab was, or begins with its address's scene or the file's."""
         from nullpose.studio.page import Page
 
-        name = asked.page and f"{asked.page} {asked.scene}"  # another scene in the address is a new beginning
+        tab = asked.page and f"{asked.page} {asked.scene}"  # another scene in the address is a new beginning
         with self._lock:
-            live = [self.pages[key].left for key, tab in self._tabs.items() if tab.name == name]
-            left = self._saved.begin(name, live)
+            left = self._saved.begin(tab, [page.left for page in self.pages.values() if page.tab == tab])
         begun, refused = (self._scenario, self._text), None
         if left is None and asked.scene:
             try:
                 begun = scenario_from_scene(asked.scene), ""
             except ScenarioError as error:
                 refused = error
-        page = Page(client, *begun, dark=asked.dark, address=asked.address, left=left)
+        page = Page(client, *begun, dark=asked.dark, address=asked.address, tab=tab, left=left)
         if refused is not None:
             page.tell(refused, SCENE)
-        return page, _Tab(name, left and left.history)
+        return page
 
     def _disconnect(self, client: ClientHandle) -> None:
         with self._lock:
-            page, tab = self.pages.pop(client.client_id, None), self._tabs.pop(client.client_id, None)
-            if page is None or tab is None:
+            page = self.pages.pop(client.client_id, None)
+            if page is None:
                 return
-            begun = [other.begun for other in self._tabs.values() if other.name == tab.name]
-            self._saved.end(tab.name, page.left, begun)
+            begun = [other.begun for other in self.pages.values() if other.tab == page.tab]
+            self._saved.end(page.tab, page.left, begun)
         page.close()
         self._places.release()
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from viser import ClientHandle
 
 from nullpose.studio.camera import CARD_PX, aim
 from nullpose.studio.eye import Eye
 from nullpose.studio.labels import Labels
 from nullpose.studio.session import Session
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 _LOOKED_S = 0.25  # between two arrangements of the labels while the camera moves
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nullpose.studio.asked import Asked, asked_of
+from nullpose.studio.guard import Asked, asked_of
 
 
 def test_what_is_understood_is_taken() -> None:
