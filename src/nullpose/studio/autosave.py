@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -39,7 +38,7 @@ class Autosave:
     """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, Left] = OrderedDict()
+        self._kept: dict[str, Left] = {}  # the latest last
 
     def begin(self, tab: str, live: Sequence[Left]) -> Left | None:
         """Return what a tab goes on from; None if it is new.
@@ -62,7 +61,7 @@ class Autosave:
         """
         if not tab or any(left.history is one for one in begun):
             return
+        self._kept.pop(tab, None)
         self._kept[tab] = left
-        self._kept.move_to_end(tab)
         if len(self._kept) > MOST_KEPT:
-            self._kept.popitem(last=False)
+            del self._kept[next(iter(self._kept))]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
+from viser import SceneApi
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.colours import round_steps, scale_colours, scale_range
@@ -13,9 +12,6 @@ from nullpose.studio.drawing import FLAT, add_lines
 from nullpose.studio.labels import Labels, Rank
 from nullpose.studio.look import LIGHT, Look
 from nullpose.study.value_map import Field
-
-if TYPE_CHECKING:
-    from viser import SceneApi
 
 _LIFT_M = 0.05  # off the grid on the ground
 _FINER = 6  # pixels for each step of the grid

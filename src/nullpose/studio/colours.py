@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 _LEAST_SPAN = 6.0
@@ -29,8 +31,6 @@ def scale_colours(values: ArrayLike, low: float, high: float) -> NDArray[np.uint
         low: value of the dark end.
         high: value of the bright end.
     """
-    from matplotlib import colormaps
-
     share = (np.asarray(values, dtype=float) - low) / max(high - low, 1e-12)
     held = np.nan_to_num(share, nan=0.0, posinf=1.0, neginf=0.0)
     return np.asarray(colormaps["viridis"](held, bytes=True))[..., :3]
@@ -76,6 +76,4 @@ def round_steps(low: float, high: float, most: int) -> NDArray[np.float64]:
         high: the upper end.
         most: how many steps at most.
     """
-    from matplotlib.ticker import MaxNLocator
-
     return np.asarray(MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(low, high))

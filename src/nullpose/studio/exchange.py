@@ -49,14 +49,8 @@ class Exchange:
         address: str,
         change: Change,
     ) -> None:
-        self._client, self._session, self._panel = client, session, panel
-        self._stage, self._sight, self._look, self._address, self._change = (
-            stage,
-            sight,
-            look,
-            address,
-            change,
-        )
+        self._client, self._session, self._panel, self._stage = client, session, panel, stage
+        self._sight, self._look, self._address, self._change = sight, look, address, change
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
             (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),

@@ -113,13 +113,14 @@ class Labels:
             taken: (n, 4) left, upper, right and lower edges of what else is over the canvas, pixels.
         """
         taken = np.empty((0, 4)) if taken is None else taken
-        whole = np.array([0.0, 0.0, eye.width_px, eye.height_px])
+        canvas = [eye.width_px, eye.height_px, eye.width_px, eye.height_px]
         for label in sorted(self._all.values(), key=lambda one: one.rank):
             x, y, ahead = eye.pixels(label.place_m[None])[0]
             if not ahead > 0.0:
                 continue
             boxes = {anchor: _box_px(label.handle, anchor, x, y) for anchor in label.anchors}
-            free = (a for a, box in boxes.items() if _is_inside(box, whole) and not _overlap(box, taken))
+            whole = (a for a, box in boxes.items() if np.array_equal(box, np.clip(box, 0.0, canvas)))
+            free = (a for a in whole if not _overlap(boxes[a], taken))
             anchor = None if label.rank is Rank.SCALE and self._larger > 1.0 else next(free, None)
             put(label.handle, visible=anchor is not None)
             if anchor is not None:
@@ -138,10 +139,6 @@ def _box_px(handle: Any, anchor: str, x: float, y: float) -> FloatArray:
     share = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
     corner = np.array([x, y]) - size * [share[horizontal], share[vertical]]
     return np.concatenate([corner, corner + size])
-
-
-def _is_inside(box: FloatArray, whole: FloatArray) -> bool:
-    return bool(np.all(box[:2] >= whole[:2]) and np.all(box[2:] <= whole[2:]))
 
 
 def _overlap(box: FloatArray, others: FloatArray) -> bool:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from nullpose.family import build_family
-from nullpose.scenario import Airspace, Node, Receiver, Scenario
+from nullpose.studio.edits import new_scenario
 
 _PROGRAM = "from nullpose.studio.map_kernel import compile_map_kernel as c; c()"
 
@@ -45,12 +45,7 @@ def compile_map_kernel() -> None:
     """Compile the kernel, or load it from its cache, by calling it once."""
     from nullpose.solve.kernels.axis import best_axis
 
-    scenario = Scenario(
-        airspace=Airspace(altitude_m=(8.0, 30.0)),
-        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        nodes=(Node(position_m=(0.0, 0.0, 0.0), power_w=1.0),),
-    )
-    best_axis(build_family(scenario).arrays, np.array([5.0, 5.0, 9.0]), np.empty(3))
+    best_axis(build_family(new_scenario()).arrays, np.array([5.0, 5.0, 9.0]), np.empty(3))
 
 
 def _is_compiled() -> bool:

@@ -170,8 +170,12 @@ class Ground:
         )
 
     def _show_rings(self, key: Key, view: View, size_m: float) -> None:
-        """Put a jammer's rings on the ground, the larger the more power it has."""
-        rings, radius_m = self._rings[key], _ring_m(view, key[1], size_m)
+        """Put a jammer's rings on the ground, the larger the more power it has over the nodes."""
+        rings, radius_m = self._rings[key], 0.0
+        powers_w = view.scenario.jammer_powers_w
+        if view.power_db is not None and powers_w[key[1]] > 0.0:
+            power_db = view.power_db + to_db(powers_w[key[1]] / powers_w.max())
+            radius_m = size_m * float(np.interp(power_db, POWER_DB, _RING_SIZES))
         put(rings, visible=radius_m > 0.0, scale=radius_m or 1.0)
         rings.position = 0.0, 0.0, _RING_LIFT_M - self._points[key].position_m[2]
 
@@ -262,15 +266,6 @@ def _circle() -> FloatArray:
     azimuth = np.linspace(0.0, math.tau, 49)
     circle = np.stack([np.cos(azimuth), np.sin(azimuth), 0.0 * azimuth], axis=-1)
     return np.stack([circle[:-1], circle[1:]], axis=1)
-
-
-def _ring_m(view: View, index: int, size_m: float) -> float:
-    """Return the radius of a jammer's largest ring, metres: larger with its power over the nodes'."""
-    powers_w = view.scenario.jammer_powers_w
-    if view.power_db is None or powers_w[index] <= 0.0:
-        return 0.0
-    power_db = view.power_db + to_db(powers_w[index] / powers_w.max())
-    return size_m * float(np.interp(power_db, POWER_DB, _RING_SIZES))
 
 
 def _name(key: Key) -> str:

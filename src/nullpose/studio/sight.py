@@ -24,7 +24,7 @@ class Sight:
         client: the browser.
         session: whose scene it is.
         lock: under which the page changes.
-        is_dragging: returns whether a hand drags a point, while which no label is moved.
+        is_dragging: returns whether a hand drags a point; meanwhile no label is moved.
 
     Attributes:
         labels: of the page.

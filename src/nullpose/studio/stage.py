@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
+from viser import SceneApi
 
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
@@ -17,9 +16,6 @@ from nullpose.studio.readout import drone_text
 from nullpose.studio.scene import Ground, OnDrag, scene_size_m
 from nullpose.studio.session import Session
 from nullpose.studio.view import Key
-
-if TYPE_CHECKING:
-    from viser import SceneApi
 
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 
