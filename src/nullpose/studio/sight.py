@@ -44,14 +44,21 @@ class Sight:
         client: the browser.
         lock: under which the page changes.
         seen: returns what there is to see.
+        face: called with where the camera stands, (3,) metres, a little after it has moved.
 
     Attributes:
         labels: of the page.
         aimed: whether the camera has been aimed at the scene with its drone.
     """
 
-    def __init__(self, client: ClientHandle, lock: threading.RLock, seen: Callable[[], Seen]) -> None:
-        self._client, self._lock, self._seen = client, lock, seen
+    def __init__(
+        self,
+        client: ClientHandle,
+        lock: threading.RLock,
+        seen: Callable[[], Seen],
+        face: Callable[[ArrayLike], None],
+    ) -> None:
+        self._client, self._lock, self._seen, self._face = client, lock, seen, face
         self._fit: Eye | None = None
         self._moved: threading.Timer | None = None
         self._open = True
@@ -86,6 +93,7 @@ class Sight:
             if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
                 eye = self._fit
+            self._face(eye.position_m)
             width_px, height_px = CARD_PX
             self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, seen.cases * height_px]]))
 

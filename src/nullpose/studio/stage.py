@@ -6,6 +6,7 @@ import threading
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
@@ -46,7 +47,7 @@ class Stage:
         self, client: ClientHandle, session: Session, look: Look, lock: threading.RLock, on_drag: OnDrag
     ) -> None:
         self._client, self._session = client, session
-        self.sight = Sight(client, lock, self._seen)
+        self.sight = Sight(client, lock, self._seen, self._face)
         labels = self.sight.labels
         self.ground = Ground(client.scene, labels, on_drag, look)
         self._carpet = Carpet(client.scene, labels, look)
@@ -98,6 +99,10 @@ class Stage:
         if of_value and field.unit == "dB":
             self.link_range_db = ends
         self.scale = Scale(field=field, ends=ends, of_value=of_value, links_db=self.link_range_db)
+
+    def _face(self, eye_m: ArrayLike) -> None:
+        for drone in self._drones:
+            drone.face(eye_m)
 
     def _seen(self) -> Seen:
         view = self._session.view
