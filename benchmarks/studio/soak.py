@@ -30,6 +30,7 @@ _REST_EVERY = 12  # edits; then the hand rests for a proof, maps and a curve
 _RELOAD_EVERY = 150
 _VISERS_OWN = ("THREE.Clock", "GPU stall", "GL Driver Message")
 _WARM = 0.2  # share of the time after which memory counts: every scene has been there
+_AT_REST_MS = 8000  # before memory is read: a proof that runs has memory of its own
 
 
 def soak(minutes: float, seed: int = 0) -> dict[str, Any]:
@@ -55,8 +56,8 @@ def soak(minutes: float, seed: int = 0) -> dict[str, Any]:
         while (past := (time.perf_counter() - began) / 60.0) < minutes:
             hand.edit()
             if not early_mb and past > _WARM * minutes:
-                early_mb = _memory_mb()
-        late_mb = _memory_mb()
+                early_mb = _memory_mb(browser)
+        late_mb = _memory_mb(browser)
     gc.collect()
     time.sleep(1.0)
     left = [thread.name for thread in threading.enumerate() if thread not in before and thread.is_alive()]
@@ -170,7 +171,8 @@ class _Records(logging.Handler):
         self.messages.append(self.format(record))
 
 
-def _memory_mb() -> float:
+def _memory_mb(browser: Any) -> float:
+    browser.wait_for_timeout(_AT_REST_MS)
     gc.collect()
     for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
         if line.startswith("VmRSS:"):

@@ -44,7 +44,7 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
     eyes = [eye._replace(position_m=way, look_at_m=np.zeros(3)).fitted(matter) for way in _FROM]
     eye = min(eyes, key=lambda one: _behind(one, points, drone))  # of the best ones the first
     under = eye.pixels(np.vstack([points, drone]))[:, :2] < CARD_PX
-    if np.any(np.all(under, axis=1)):
+    if np.any(np.all(under, axis=1)) or eye.width_px < 2.0 * CARD_PX[0]:  # such as on a phone
         eye = eye.beside(matter, CARD_PX)
     way_m = np.subtract(eye.look_at_m, eye.position_m)
     # turned by hand, it goes around a point that is on the ground

@@ -49,9 +49,9 @@ def add_coloured_mesh(scene: SceneApi, name: str, mesh: Mesh, colours: ArrayLike
     visual = trimesh.visual.TextureVisuals(material=matt)
     opaque = np.full((len(mesh.vertices), 1), 255, dtype=np.uint8)
     visual.vertex_attributes["color"] = np.hstack([linear_colours(colours), opaque])
-    return scene.add_mesh_trimesh(
-        name, trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, visual=visual), **FLAT
-    )
+    surface = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, visual=visual)
+    _ = surface.vertex_normals  # once asked for they are sent; without them every triangle is seen
+    return scene.add_mesh_trimesh(name, surface, **FLAT)
 
 
 def add_lines(

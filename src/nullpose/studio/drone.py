@@ -57,6 +57,7 @@ class Drone:
         self._name = f"/drone-{'ab'[slot]}"
         self._parts: dict[str, Any] = {}
         self._built: tuple[Antenna, float] | None = None
+        self._pose: Pose | None = None
 
     def show(
         self,
@@ -91,8 +92,8 @@ class Drone:
         parts["body"].wxyz = SO3.from_rpy_radians(pose.roll_rad, pose.pitch_rad, pose.yaw_rad).wxyz
         parts["antenna"].wxyz = SO3.from_y_radians(pose.mount_rad).wxyz
         parts["pattern"].visible = pattern
-        if _turns(wanted[0]):  # its opening is turned to face the camera
-            parts["pattern"].wxyz = SO3.from_z_radians(_azimuth_rad(pose, eye_m)).wxyz
+        self._pose = pose
+        self.face(eye_m)
         self._show_null(result, size_m)
         place_m = here + size_m * _LABEL_AT[self._slot]
         self._labels.put(
@@ -100,6 +101,19 @@ class Drone:
         )
         parts["drop"].points = np.array([[here, [*here[:2], 0.0]]], dtype=np.float32)
         parts["links"].show(result, link_range_db)
+
+    def face(self, eye_m: ArrayLike) -> None:
+        """Turn the opening of a pattern that is the same all round towards the camera.
+
+        Args:
+            eye_m: (3,) where the camera stands, metres.
+        """
+        from viser.transforms import SO3
+
+        if self._built is not None and self._pose is not None and _turns(self._built[0]):
+            turn = SO3.from_z_radians(_azimuth_rad(self._pose, eye_m)).wxyz
+            if not np.allclose(self._parts["pattern"].wxyz, turn, atol=1e-4):
+                self._parts["pattern"].wxyz = turn
 
     def _show_null(self, result: Result, size_m: float) -> None:
         """Draw the null to the ground, the cone of little gain around it, and its angle to a jammer."""

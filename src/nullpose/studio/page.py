@@ -80,7 +80,13 @@ class Page:
         told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
         self.session = Session(scenario, text, history=self.begun, **told)
         self.panel = Panel(client.gui, dark=dark)
-        self.sight = Sight(client, self.session, self._lock, lambda: self.stage.ground.dragged is not None)
+        self.sight = Sight(
+            client,
+            self.session,
+            self._lock,
+            is_dragging=lambda: self.stage.ground.dragged is not None,
+            face=lambda eye_m: self.stage.face(eye_m),
+        )
         self.stage = Stage(client.scene, self.sight.labels, self.session, look, self._dragged)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)

@@ -16,7 +16,7 @@ from nullpose.studio.replay import BOX_COLOUR
 _WIDEST_GAP = 1.0
 _FAR_M = 10.0  # beyond it whole metres
 _CLOSED = 2.0  # per cent of the bar that stay, so that it can be seen
-_STYLE = "width:300px;margin:4px 0"  # as wide at each step
+_STYLE = "min-width:300px;margin:4px 0"  # as wide at each step
 _ENDS = "display:flex;justify-content:space-between"
 _TRACK = "height:9px;border-radius:5px;overflow:hidden;background:rgba(128,128,128,.25);margin:2px 0"
 

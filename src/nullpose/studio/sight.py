@@ -25,6 +25,7 @@ class Sight:
         session: whose scene it is.
         lock: under which the page changes.
         is_dragging: returns whether a hand drags a point; meanwhile no label is moved.
+        face: called with where the camera stands, (3,) metres, a little after it has moved.
 
     Attributes:
         labels: of the page.
@@ -32,9 +33,15 @@ class Sight:
     """
 
     def __init__(
-        self, client: ClientHandle, session: Session, lock: threading.RLock, is_dragging: Callable[[], bool]
+        self,
+        client: ClientHandle,
+        session: Session,
+        lock: threading.RLock,
+        is_dragging: Callable[[], bool],
+        face: Callable[[ArrayLike], None],
     ) -> None:
-        self._client, self._session, self._lock, self._is_dragging = client, session, lock, is_dragging
+        self._client, self._session, self._lock = client, session, lock
+        self._is_dragging, self._face = is_dragging, face
         self._fit: Eye | None = None
         self._moved: threading.Timer | None = None
         self._open = True
@@ -70,6 +77,7 @@ class Sight:
             if self._fit is not None and eye.is_resized(self._fit):  # the panel has come, or gone
                 self.aim()
                 eye = self._fit
+            self._face(eye.position_m)
             (width_px, height_px), cases = CARD_PX, len(self._session.view.cases)
             self.labels.arrange(eye, np.array([[0.0, 0.0, width_px, cases * height_px]]))
 

@@ -102,3 +102,12 @@ class Stage:
         if of_value and field.unit == "dB":
             self.link_range_db = ends
         self.scale = Scale(field=field, ends=ends, of_value=of_value, links_db=self.link_range_db)
+
+    def face(self, eye_m: ArrayLike) -> None:
+        """Turn the patterns' openings towards the camera.
+
+        Args:
+            eye_m: (3,) where it stands, metres.
+        """
+        for drone in self._drones:
+            drone.face(eye_m)

@@ -277,6 +277,24 @@ def test_the_exported_scene_needs_no_server(page: Page, running: Studio, tmp_pat
     assert [url for url in asked if url.startswith(("http", "ws"))] == []
 
 
+_PATTERN = """() => {
+  const [scene, pattern] = ['', '/drone-a/body/antenna/pattern'].map(
+    name => window.__viserMutable.nodeRefFromName[name]);
+  return scene.matrixWorld.clone().invert().multiply(pattern.matrixWorld).toArray();
+}"""
+
+
+def test_the_pattern_opens_towards_the_camera(page: Page, session: Session, running: Studio) -> None:
+    """Also after the camera has gone around: in the plane across the antenna the opening points at it."""
+    camera = next(one for one in running.pages.values() if one.session is session)._client.camera
+    for eye_m in ([60.0, 40.0, 30.0], [-50.0, -40.0, 60.0]):
+        camera.position = eye_m
+        page.wait_for_timeout(4000)
+        x, y, _, place_m = np.reshape(page.evaluate(_PATTERN), (4, 4))[:, :3]
+        towards = np.subtract(eye_m, place_m)
+        assert abs(np.arctan2(towards @ y, towards @ x)) < 0.1
+
+
 def test_presenting_folds_the_panel_and_goes_round(page: Page, session: Session, running: Studio) -> None:
     """P begins it and Escape ends it; what the camera looks at stays where it is on the screen."""
     ours = next(one for one in running.pages.values() if one.session is session)
