@@ -287,8 +287,10 @@ _PATTERN = """() => {
 def test_the_pattern_opens_towards_the_camera(page: Page, session: Session, running: Studio) -> None:
     """Also after the camera has gone around: in the plane across the antenna the opening points at it."""
     camera = next(one for one in running.pages.values() if one.session is session)._client.camera
+    middle_m = camera.look_at
     for eye_m in ([60.0, 40.0, 30.0], [-50.0, -40.0, 60.0]):
         camera.position = eye_m
+        camera.look_at = middle_m
         page.wait_for_timeout(4000)
         x, y, _, place_m = np.reshape(page.evaluate(_PATTERN), (4, 4))[:, :3]
         towards = np.subtract(eye_m, place_m)
