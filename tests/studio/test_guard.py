@@ -7,9 +7,9 @@ from nullpose.studio.guard import Asked, asked_of
 
 def test_what_is_understood_is_taken() -> None:
     """The tab, its colours and its scene."""
-    given = {"page": ["a-Z_9"], "dark": ["1"], "scene": ["eJw"]}
+    given = {"page": ["a-Z_9"], "dark": ["1"], "card": ["1"], "scene": ["eJw"]}
     assert asked_of(given, "http://here/") == Asked(
-        page="a-Z_9", dark=True, scene="eJw", address="http://here/"
+        page="a-Z_9", dark=True, card=True, scene="eJw", address="http://here/"
     )
 
 

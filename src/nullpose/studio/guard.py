@@ -40,12 +40,14 @@ class Asked:
     Args:
         page: a name that the tab keeps when it is loaded again; empty if it has none.
         dark: whether the browser prefers dark pages.
+        card: whether the browser draws with a graphics card.
         scene: the scene in the page's address as a text; empty without one.
         address: the studio's address as this browser reaches it, with the token.
     """
 
     page: str = ""
     dark: bool = False
+    card: bool = False
     scene: str = ""
     address: str = ""
 
@@ -61,9 +63,9 @@ def asked_of(given: Mapping[str, Sequence[str]], address: str) -> Asked:
         given: the query's values by name.
         address: the studio's address as this browser reaches it.
     """
-    page, dark, scene = (given.get(name, [""])[0] for name in ("page", "dark", "scene"))
+    page, dark, card, scene = (given.get(name, [""])[0] for name in ("page", "dark", "card", "scene"))
     known = page if _TAB.fullmatch(page) else ""
-    return Asked(page=known, dark=dark == "1", scene=scene, address=address)
+    return Asked(page=known, dark=dark == "1", card=card == "1", scene=scene, address=address)
 
 
 class Guard:

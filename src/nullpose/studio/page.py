@@ -66,6 +66,7 @@ class Page:
         text: str = "",
         *,
         dark: bool = False,
+        card: bool = False,
         address: str = "",
         tab: str = "",
         left: Left | None = None,
@@ -92,7 +93,7 @@ class Page:
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
         self._exchange = Exchange(*own, self.stage, self.sight, look, address, self._change)
         self.present = Present(client, self.sight.enlarge)
-        self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay)
+        self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay, card=card)
         self._listen()
         if left is not None:
             for name, value in left.controls.items():

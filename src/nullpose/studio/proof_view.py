@@ -14,7 +14,7 @@ from nullpose.solve.proof_steps import ProofStep, has_proof_steps, proof_steps
 from nullpose.studio.answer import Answer
 from nullpose.studio.panel import Panel
 from nullpose.studio.proof_bar import OPEN_BAR, answer_bar, progress_bar, step_bar
-from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m
+from nullpose.studio.replay import BOXES, MOST_BOXES, Replay, drawn_airspace_m
 from nullpose.studio.session import Session
 
 REPLAY_S = 6.0
@@ -39,6 +39,7 @@ class ProofView:
         lock: under which the page is drawn.
         refresh: draws the page.
         show_bar: draws what the bar is in.
+        card: whether the browser draws with a graphics card.
     """
 
     def __init__(
@@ -49,9 +50,12 @@ class ProofView:
         lock: threading.RLock,
         refresh: Callable[[], None],
         show_bar: Callable[[], None],
+        *,
+        card: bool = False,
     ) -> None:
         self._client, self._session, self._lock = client, session, lock
         self._refresh, self._show_bar = refresh, show_bar
+        self._most_boxes = MOST_BOXES[card]
         self._stop: threading.Event | None = None
         self._step_bar = ""
         panel.replay.on_click(lambda event: self.press())
@@ -118,7 +122,7 @@ class ProofView:
         go_on: Callable[[], None],
     ) -> None:
         """Show the steps one after another; those that are late are left out."""
-        replay = Replay(self._client.scene, drawn_airspace_m(result.scenario))
+        replay = Replay(self._client.scene, drawn_airspace_m(result.scenario), self._most_boxes)
         began, every_s = time.monotonic() + _REST_S, REPLAY_S / len(steps)
         due = 0
         while due < len(steps):

@@ -22,7 +22,9 @@ BOXES = "/proof"
 BOX_COLOUR = (214, 51, 132)
 """A pink that stands out from all else in the scene, on light ground and on dark."""
 
-_MOST_BOXES = 4_000  # of a step: a server is not told whether the browser has a graphics card
+MOST_BOXES = 4_000, 20_000
+"""How many boxes of a step are drawn without a graphics card, and with one."""
+
 _UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0], dtype=np.float32)
 _EDGE = 0.003  # width of a box's edges, of the size of what is drawn
 _EDGES = (0.03, 0.1, 0.5)  # the same, of the box's sides; with the last it is solid
@@ -43,16 +45,16 @@ def drawn_airspace_m(scenario: Scenario) -> NDArray[np.float64]:
 class Replay:
     """The boxes of a proof in a scene; see :meth:`show`.
 
-    There is one batch of boxes for each width of edges, whose places and sizes are set anew at each step. Of
-    a step with more than 4,000 boxes the largest are drawn.
+    There is one batch of boxes for each width of edges, whose places and sizes are set anew at each step.
 
     Args:
         scene: the page's scene.
         within_m: (2, 3) corners, metres; what of a box is outside is not drawn.
+        most: how many boxes of a step are drawn, the largest of them.
     """
 
-    def __init__(self, scene: SceneApi, within_m: NDArray[np.float64]) -> None:
-        self._within_m = within_m
+    def __init__(self, scene: SceneApi, within_m: NDArray[np.float64], most: int = MOST_BOXES[False]) -> None:
+        self._within_m, self._most = within_m, most
         self._batches = [_batch(scene, edge) for edge in _EDGES]
 
     def show(self, step: ProofStep) -> None:
@@ -68,7 +70,7 @@ class Replay:
         )
         seen = np.all(high >= low, axis=1)
         side, middle = (high - low)[seen], (0.5 * (low + high))[seen]
-        largest = np.argsort(-np.max(side, axis=1), kind="stable")[:_MOST_BOXES]
+        largest = np.argsort(-np.max(side, axis=1), kind="stable")[: self._most]
         side, middle = side[largest], middle[largest]
         edge = _EDGE * float(np.max((most - least)[:2])) / np.maximum(np.max(side, axis=1, initial=0.0), 1e-9)
         widest = np.searchsorted(np.sqrt(np.multiply(_EDGES[1:], _EDGES[:-1])), edge)

@@ -101,7 +101,9 @@ class Studio:
                 begun = scenario_from_scene(asked.scene), ""
             except ScenarioError as error:
                 refused = error
-        page = Page(client, *begun, dark=asked.dark, address=asked.address, tab=tab, left=left)
+        page = Page(
+            client, *begun, dark=asked.dark, card=asked.card, address=asked.address, tab=tab, left=left
+        )
         if refused is not None:
             page.tell(refused, SCENE)
         return page

@@ -28,13 +28,23 @@
   }
 
   function address(websocket) {
-    for (const name of ["page", "dark", "websocket"]) query.delete(name);
+    for (const name of ["page", "dark", "card", "websocket"]) query.delete(name);
     if (websocket) query.set("websocket", websocket);
     history.replaceState(null, "", `?${query}`);
   }
 
+  function isDrawnByCard() {
+    const context = document.createElement("canvas").getContext("webgl2");
+    let name = context?.getParameter(context.RENDERER) ?? "";
+    if (name === "WebKit WebGL") // which Chromium calls all of them there
+      name = context.getParameter(context.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? context.VENDOR);
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return !/^$|^webkit$|swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  }
+
   const own = new URLSearchParams({ token, page: tab() });
   if (matchMedia("(prefers-color-scheme: dark)").matches) own.set("dark", "1");
+  if (isDrawnByCard()) own.set("card", "1");
   if (query.has("scene")) own.set("scene", query.get("scene").slice(0, LONGEST_SCENE));
   address(`ws://${location.host}/?${own}`);
 
