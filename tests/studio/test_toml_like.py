@@ -1,5 +1,6 @@
 """A scenario goes back into the file that it is from, and leaves the rest of it alone."""
 
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +14,7 @@ from nullpose import load
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Jammer, Node, NoFlyZone, Scenario
 from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio.edits import entries_of, with_added, with_typed
 from nullpose.studio.toml_like import toml_like
 from nullpose.studio.view import View
 
@@ -98,27 +100,17 @@ EDITS = st.one_of(
 )
 
 
-def _in_watts(scenario: Scenario) -> dict[str, object]:
-    """Returns what a scenario states, every power in watts."""
-    stated: dict[str, Any] = scenario.to_dict()
-    for kind in ("nodes", "jammers"):
-        for table, point in zip(stated[kind], getattr(scenario, kind), strict=True):
-            table.pop("power_dbm", None)
-            table["power_w"] = point.transmit_power_w
-    return stated
-
-
 @pytest.mark.parametrize("name", EXAMPLES)
 @settings(max_examples=50, deadline=None)
 @given(edits=st.lists(EDITS, min_size=1, max_size=6))
 def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: list[Edit]) -> None:
-    """After any edits, by themselves, the file's own powers in dBm included; its heading stays."""
+    """After any edits, by themselves; its heading stays."""
     text, scenario = EXAMPLES[name]
     for edit in edits:
         with suppress(ScenarioError):
             scenario = edit(scenario)
     saved = toml_like(text, scenario)
-    assert _in_watts(scenario_from_text(saved.encode(), "saved.toml")) == _in_watts(scenario)
+    assert scenario_from_text(saved.encode(), "saved.toml") == scenario
     heading = text.split("\n\n")[0]
     assert saved.startswith(heading) or heading.startswith("[")
     if name in ALONE and name != "no-fly":
@@ -187,17 +179,17 @@ def _hand_made(*edits: Edit) -> str:
     for edit in edits:
         scenario = edit(scenario)
     saved = toml_like(HAND_MADE, scenario)
-    assert _in_watts(scenario_from_text(saved.encode(), "")) == _in_watts(scenario)
+    assert scenario_from_text(saved.encode(), "") == scenario
     return saved
 
 
 def test_only_what_changed_is_written_anew() -> None:
-    """One number of a list, in its place; a corner of a fence over several lines; a power in its unit."""
+    """One number of a list, in its place; a corner of a fence over several lines; a power in either unit."""
     moved = _hand_made(_updated("jammers", 0, {"position_m": (17.0, 15.5, 4.0)}))
     assert moved == HAND_MADE.replace("[17, 15, 4]", "[17, 15.5, 4]")
     fence = _hand_made(_airspace(geofence_m=((-60.0, -60.0), (60.0, -61.0), (0.0, 90.0))))
     assert fence == HAND_MADE.replace("[60, -60]", "[60, -61.0]")
-    power = _hand_made(_updated("nodes", 0, {"power_w": 0.1, "power_dbm": None}))
+    power = _hand_made(_updated("nodes", 0, {"power_dbm": 20.0}))
     assert power == HAND_MADE.replace("power_dbm = 30   # one", "power_dbm = 20.0   # one")
     watts = _hand_made(_updated("nodes", 0, {"power_w": 0.3, "power_dbm": None}))
     assert watts == HAND_MADE.replace("power_dbm = 30   # one", "power_w = 0.3   # one")
@@ -207,7 +199,7 @@ def test_a_point_that_is_gone_takes_its_comments_along() -> None:
     """The comment above it and those within it, but not the one above the list, nor one that stands alone."""
     without = _hand_made(_removed("jammers", 0))
     assert "roof" not in without
-    assert without.endswith("# Jammers follow.\n\n# the end\n")
+    assert without.endswith("# Jammers follow.\n\n\n# the end\n")
     first = _hand_made(_removed("nodes", 0))
     assert "one watt" not in first
     assert "# All nodes.\n[[nodes]]\n# the second\n" in first
@@ -215,11 +207,53 @@ def test_a_point_that_is_gone_takes_its_comments_along() -> None:
 
 
 def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
-    """In the unit that they have, with an empty line before it."""
+    """With an empty line before it."""
     added = _hand_made(_added("nodes", "new", (1.0, 2.0, 0.0), 0.1))
-    block = '[[nodes]]\nname = "new"\nposition_m = [1.0, 2.0, 0.0]\npower_dbm = 20.0\n'
+    block = '[[nodes]]\nname = "new"\nposition_m = [1.0, 2.0, 0.0]\npower_w = 0.1\n'
     head, tail = HAND_MADE.split("\n# Jammers follow.")
     assert added == f"{head}\n{block}\n# Jammers follow.{tail}"
+    late = f"{HAND_MADE}\n[[airspace.no_fly]]\ncentre_m = [5, 5]\nradius_m = 3\n"
+    edit = _added("nodes", "new", (1.0, 2.0, 0.0), 0.1)
+    assert toml_like(late, edit(scenario_from_text(late.encode(), ""))) == late.replace(HAND_MADE, added)
+
+
+def test_powers_in_dbm_stay_in_dbm() -> None:
+    """Those that are typed, those that the slider sets, and that of a point that is added."""
+    text, scenario = EXAMPLES["field"]
+    view = View(scenario=scenario, text=text)
+    typed = with_typed(view, entries_of(view, ("nodes", 0)), {"nodes[0].power_dbm": "17.5"})
+    saved = with_added(typed.with_power_db(3.0), "jammer", (10.0, 20.0), 100.0).written.text
+    assert "power_w =" not in saved
+    assert "power_dbm = 17.5\n" in saved
+    assert re.findall("power_dbm = .*# (?:4|0.5) W", saved) == [
+        "power_dbm = 26.0                  # 4 W",
+        "power_dbm = 17.0                  # 0.5 W",
+    ]
+
+
+def test_points_may_stand_in_one_list() -> None:
+    """What stands behind one that moves stays there; an empty list gives way to tables."""
+    head = HAND_MADE.split("\n# All nodes.")[0]
+    text = f"""\
+jammers = []
+nodes = [
+  {{ position_m = [0, 0, 0], power_w = 1 }},  # the first
+  {{ position_m = [9, 0, 0], power_w = 1 }},  # the second
+]
+{head}"""
+    scenario = scenario_from_text(text.encode(), "")
+    for edit in (
+        _updated("nodes", 1, {"position_m": (8.0, 0.0, 0.0)}),
+        lambda scenario: scenario.model_copy(
+            update={"jammers": (Jammer(name="M", position_m=(1.0, 2.0, 0.0), power_w=2.0),)}
+        ),
+    ):
+        scenario = edit(scenario)
+    saved = toml_like(text, scenario)
+    assert scenario_from_text(saved.encode(), "") == scenario
+    assert "  { position_m = [0, 0, 0], power_w = 1 },  # the first\n" in saved
+    assert re.search("8.0, 0.0, 0.0.*},  # the second\n", saved)
+    assert saved.endswith('[[jammers]]\nname = "M"\nposition_m = [1.0, 2.0, 0.0]\npower_w = 2.0\n')
 
 
 def test_without_a_files_text_it_is_the_scenarios_own(paper: Scenario) -> None:
