@@ -36,8 +36,9 @@ RISES, DRAGS, PROVES, HOLDS = 26, 40, 24, 10  # frames: 100 of 80 ms
 MOST_DB = 20.0
 TURN_RAD = np.radians(14.0)  # of the camera, forth and back
 QUALITY = 62
-NEARER = 0.95  # of the camera's distance
-ASIDE, ABOVE = 0.19, 0.06  # of the scene's size
+NEARER = 0.92  # of the camera's distance
+ASIDE, ABOVE = 0.14, 0.05  # of the scene's size
+CLOSE = 0.3  # of the camera's distance, at the end of the proof
 MOST_BYTES = 4_000_000
 CAPTIONS = (  # until which frame
     (
@@ -53,7 +54,8 @@ CAPTION = """words => {
   if (!line) {
     line = document.createElement('div');
     line.id = 'loop-caption';
-    line.style = 'position:fixed;left:14px;bottom:14px;width:230px;z-index:9;color:#f2f2f2;'
+    line.style = 'position:fixed;left:12px;bottom:12px;width:230px;z-index:9;color:#f2f2f2;'
+      + 'background:#14181eeb;padding:8px 12px;border-radius:8px;'
       + 'font:600 15px/1.35 sans-serif';
     document.body.append(line);
   }
@@ -72,9 +74,12 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
         told = next(words for last, words in CAPTIONS if frame < last)
         page.evaluate(CAPTION, told)
         turn = rotation_world_from_body(0.0, 0.0, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
-        turned = turn @ (eye - look_at)
+        share = closeness(frame - RISES - DRAGS)
+        drone = session.current(session.view.case).result.pose.position_m
+        middle = look_at + share * (1.0 - CLOSE) * (drone - look_at)  # the drone stays where it is seen
         with client.atomic():
-            client.camera.position, client.camera.look_at = look_at + turned, look_at
+            client.camera.position = middle + (1.0 - share * (1.0 - CLOSE)) * turn @ (eye - look_at)
+            client.camera.look_at = middle
         page.wait_for_timeout(350)
         ours.sight.arrange()
         page.wait_for_timeout(350)
@@ -91,6 +96,12 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
         settle(page, session)
         yield shot(RISES + i)
     yield from proof(ours, lambda i: shot(RISES + DRAGS + i))
+
+
+def closeness(frame: int) -> float:
+    """Return how near to the drone the camera is at a frame of the proof, from 0 to 1."""
+    there, back = frame / (0.6 * PROVES), (PROVES + HOLDS - 1 - frame) / (0.8 * HOLDS)
+    return float(0.5 - 0.5 * np.cos(np.pi * np.clip(min(there, back), 0.0, 1.0)))
 
 
 def proof(ours: Any, shot: Any) -> Iterator[Image.Image]:
