@@ -102,6 +102,9 @@ def _parts(inputs: list[float], poses: list[Any], panels: list[Any], marks: Mark
             continue
         solved = next((at for at, version, _ in marks.solved if version >= heard[1]), None)
         wanted = [position for _, version, position in marks.solved if version >= heard[1]]
+        shown = [place for at, place in poses if 1e-3 * at <= heard[0]]
+        if wanted and shown and _is_one_of(shown[-1], wanted[:1]):
+            continue  # the best place is the same: there is no new pose to wait for
         posed = next(
             (1e-3 * at for at, place in poses if 1e-3 * at > heard[0] and _is_one_of(place, wanted)), None
         )
