@@ -9,7 +9,7 @@ import pytest
 from nullpose import solve
 from nullpose.scenario import Scenario
 from nullpose.solve.proof_steps import ProofStep, proof_steps
-from nullpose.studio.replay import Replay, drawn_airspace_m
+from nullpose.studio.replay import MOST_BOXES, Replay, drawn_airspace_m
 
 ROOM_M = np.array([[-50.0, -50.0, 8.0], [50.0, 50.0, 30.0]])
 
@@ -68,9 +68,9 @@ def test_boxes_are_cut_off_at_the_airspace_that_is_drawn(scene: Scene) -> None:
 def test_of_very_many_boxes_the_largest_are_drawn(scene: Scene) -> None:
     """As many as the browser keeps up with."""
     half_m = np.linspace(0.01, 1.0, 9_000)[:, None] * np.ones(3)
-    Replay(scene, ROOM_M, 4_000).show(step(np.full((9_000, 3), 20.0), half_m))
+    Replay(scene, ROOM_M).show(step(np.full((9_000, 3), 20.0), half_m))
     _, sizes = scene.drawn()
-    assert len(sizes) == 4_000
+    assert len(sizes) == MOST_BOXES
     assert sizes.min() > 1.0
 
 

@@ -36,6 +36,7 @@ LINK_RANGE_DB = (-6.0, 12.0)
 """Range of the links' colours, dB, while no map has set one."""
 
 _OPEN_RAD = math.radians(110.0)  # of the pattern, towards the camera
+_RINGS, _MOST_RINGS = 24, 60  # of the pattern from pole to pole: without a graphics card triangles take long
 _FAINT = 0.01  # gain over the largest: along an axis with more there is no null to point
 _BEAM_RAD = math.asin(math.sqrt(_FAINT))  # half the angle within which a dipole has less
 _LABEL_AT = (np.array([0.0, 0.0, 0.17]), np.array([0.0, 0.14, 0.0]))  # above, and to the right at first
@@ -111,9 +112,7 @@ class Drone:
         from viser.transforms import SO3
 
         if self._built is not None and self._pose is not None and _turns(self._built[0]):
-            turn = SO3.from_z_radians(_azimuth_rad(self._pose, eye_m)).wxyz
-            if not np.allclose(self._parts["pattern"].wxyz, turn, atol=1e-4):
-                self._parts["pattern"].wxyz = turn
+            self._parts["pattern"].wxyz = SO3.from_z_radians(_azimuth_rad(self._pose, eye_m)).wxyz
 
     def _show_null(self, result: Result, size_m: float) -> None:
         """Draw the null to the ground, the cone of little gain around it, and its angle to a jammer."""
@@ -168,7 +167,8 @@ class Drone:
             wires, _ = pattern_mesh(antenna, radius_m, 18, 24)
             add_mesh(self._scene, f"{name}/wires", wires, self._look.slots[1], wireframe=True)
             return
-        rings = min(60, 24 + 3 * antenna.harmonics.degree) if isinstance(antenna, PatternAntenna) else 24
+        degree = antenna.harmonics.degree if isinstance(antenna, PatternAntenna) else 0
+        rings = min(_MOST_RINGS, _RINGS + 3 * degree)  # more where it may have more lobes
         opened = {"open_rad": _OPEN_RAD, "towards_rad": towards_rad}
         surface, gain = pattern_mesh(antenna, radius_m, rings, 3 * rings // 2, **opened)
         add_coloured_mesh(self._scene, f"{name}/surface", surface, scale_colours(gain, 0.0, 1.0))

@@ -89,7 +89,7 @@ def pattern_mesh(
     Args:
         antenna: whose pattern it is.
         radius_m: where the gain is largest, metres.
-        rings: steps from pole to pole. Without a graphics card 12,000 triangles take a sixtieth of a second.
+        rings: steps from pole to pole.
         around: steps about the z axis.
         open_rad: angle about z that is left out, so that the inside is seen, radians.
         towards_rad: azimuth of the middle of that angle, radians.

@@ -14,7 +14,7 @@ from nullpose.solve.proof_steps import ProofStep, has_proof_steps, proof_steps
 from nullpose.studio.answer import Answer
 from nullpose.studio.panel import Panel
 from nullpose.studio.proof_bar import OPEN_BAR, answer_bar, progress_bar, step_bar
-from nullpose.studio.replay import BOXES, MOST_BOXES, Replay, drawn_airspace_m
+from nullpose.studio.replay import BOXES, MOST_BOXES, MOST_BOXES_BY_CARD, Replay, drawn_airspace_m
 from nullpose.studio.session import Session
 
 REPLAY_S = 6.0
@@ -55,7 +55,7 @@ class ProofView:
     ) -> None:
         self._client, self._session, self._lock = client, session, lock
         self._refresh, self._show_bar = refresh, show_bar
-        self._most_boxes = MOST_BOXES[card]
+        self._most_boxes = MOST_BOXES_BY_CARD if card else MOST_BOXES
         self._stop: threading.Event | None = None
         self._step_bar = ""
         panel.replay.on_click(lambda event: self.press())

@@ -22,8 +22,11 @@ BOXES = "/proof"
 BOX_COLOUR = (214, 51, 132)
 """A pink that stands out from all else in the scene, on light ground and on dark."""
 
-MOST_BOXES = 4_000, 20_000
-"""How many boxes of a step are drawn without a graphics card, and with one."""
+MOST_BOXES = 4_000
+"""How many boxes of a step are drawn without a graphics card."""
+
+MOST_BOXES_BY_CARD = 20_000
+"""How many are drawn with one."""
 
 _UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0], dtype=np.float32)
 _EDGE = 0.003  # width of a box's edges, of the size of what is drawn
@@ -53,7 +56,7 @@ class Replay:
         most: how many boxes of a step are drawn, the largest of them.
     """
 
-    def __init__(self, scene: SceneApi, within_m: NDArray[np.float64], most: int = MOST_BOXES[False]) -> None:
+    def __init__(self, scene: SceneApi, within_m: NDArray[np.float64], most: int = MOST_BOXES) -> None:
         self._within_m, self._most = within_m, most
         self._batches = [_batch(scene, edge) for edge in _EDGES]
 

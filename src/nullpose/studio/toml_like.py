@@ -21,8 +21,8 @@ _PARTS = re.compile(  # keys with the comments directly below, what follows up t
 )
 _LISTS = ("no_fly", *POINT_LISTS)
 _PATHS = (  # in the order that is usual in a file
-    *("", "origin", "airspace", "airspace.no_fly", "airframe", "antenna", "array", "receiver", "transmitter"),
-    *POINT_LISTS,
+    "",
+    *(path for key in Scenario.model_fields for path in (key, *["airspace.no_fly"] * (key == "airspace"))),
 )
 
 
@@ -89,7 +89,7 @@ def _tables(values: Any, path: str) -> list[_Table]:
     """Return the tables of a path, none if there are none."""
     for key in path.split(".") if path else ():
         values = values.get(key, [])
-    return values if isinstance(values, list) else [values]
+    return [one for one in (values if isinstance(values, list) else [values]) if isinstance(one, dict)]
 
 
 def _update(blocks: list[_Block], path: str, old: list[_Table], new: list[_Table]) -> None:

@@ -35,11 +35,14 @@
 
   function isDrawnByCard() {
     const context = document.createElement("canvas").getContext("webgl2");
-    let name = context?.getParameter(context.RENDERER) ?? "";
-    if (name === "WebKit WebGL") // which Chromium calls all of them there
-      name = context.getParameter(context.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? context.VENDOR);
-    context?.getExtension("WEBGL_lose_context")?.loseContext();
-    return !/^$|^webkit$|swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+    if (!context) return false;
+    let name = context.getParameter(context.RENDERER);
+    if (name === "WebKit WebGL") { // what Chromium calls all of them, until it is asked for more
+      const more = context.getExtension("WEBGL_debug_renderer_info");
+      name = more ? context.getParameter(more.UNMASKED_RENDERER_WEBGL) : "software";
+    }
+    context.getExtension("WEBGL_lose_context")?.loseContext();
+    return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
 
   const own = new URLSearchParams({ token, page: tab() });
