@@ -19,7 +19,7 @@ from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.compiling import working_clock
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Result, Results, Stats, Status, objective_of
+from nullpose.solve.result import Result, Results, Stats, objective_of, status_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.solve_and_prove import solve_and_prove
 
@@ -77,13 +77,14 @@ def solve(
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = _links(scenario, scheme, pose)
     rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
-    status = Status.of(outcome.upper_bound, outcome.reason)
+    objective = objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour)
+    status, reason = status_of(objective, asked.target, outcome.reason)
     return Result(
         scenario=scenario,
         scheme=scheme,
         status=status,
-        reason=outcome.reason if status is not Status.CERTIFIED else "",
-        objective=objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour),
+        reason=reason,
+        objective=objective,
         pose=pose,
         links=links,
         stats=Stats(

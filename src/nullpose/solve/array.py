@@ -27,7 +27,7 @@ from nullpose.solve.array_task import ArrayTask
 from nullpose.solve.compiling import working_clock
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Stats, objective_of, status_of
 
 COMBININGS = "digital", "analogue"
 """The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""
@@ -145,11 +145,8 @@ def solve_array(
     links = links_of(scenario, ratios)
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
-    gap = objective.relative_gap
-    status, reason = Status.BEST_FOUND, ""
-    if gap is not None:
-        status = Status.CERTIFIED if gap <= asked.target else Status.GAP_NOT_REACHED
-        reason = _SHORT[combining] if gap > asked.target else ""
+    reached = bound is None or hunt.reaches(bound.value, asked.target)
+    status, reason = status_of(objective, asked.target, "" if reached else _SHORT[combining])
     return Result(
         scenario=scenario,
         scheme=f"array-{combining}",

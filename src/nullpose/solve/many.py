@@ -18,8 +18,8 @@ from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_t
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.proof import INTERRUPT
-from nullpose.solve.result import Status
-from nullpose.solve.rigour import Rigour, bound_above
+from nullpose.solve.result import objective_of, status_of
+from nullpose.solve.rigour import Rigour
 from nullpose.solve.solve_and_prove import Outcome, solve_and_prove
 
 NOWHERE = "no position was found at which every node is received"
@@ -37,7 +37,7 @@ class ManySolutions:
             states a weight or a requirement, evaluated at the pose: a power ratio. Not a number where there
             is no pose.
         upper_bound: no pose exceeds this; infinity where nothing is proved.
-        status: how each ended, a :class:`Status`; None where there is no pose.
+        status: how each ended, a :class:`nullpose.Status`; None where there is no pose.
         reason: what kept it from being certified; empty where it was.
         position_m: (s, a, 3) metres.
         roll_rad: radians, as yaw and pitch.
@@ -66,7 +66,7 @@ class ManySolutions:
     @property
     def relative_gap(self) -> FloatArray:
         """``(upper_bound - value) / value``, (s, a)."""
-        return np.asarray(self.upper_bound / self.value - 1.0)
+        return np.asarray((self.upper_bound - self.value) / self.value)
 
     @classmethod
     def blank(cls, scenes: int, airframes: int) -> ManySolutions:
@@ -141,7 +141,7 @@ def solve_many(
                 kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
                 alike[kind].append((first + row, scenario, outcomes[row][column]))
             for (airframe, *_), answers in alike.items():
-                _fill(results, column, airframe, answers)
+                _fill(results, column, airframe, answers, asked)
         if on_progress is not None:
             on_progress(first + len(block), len(scenarios))
     return results
@@ -199,6 +199,7 @@ def _fill(
     column: int,
     airframe: Airframe | None,
     answers: list[tuple[int, Scenario, Outcome | None]],
+    asked: SolveOptions,
 ) -> None:
     """Put one airframe's answers into the results, their values evaluated at the poses."""
     results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
@@ -218,12 +219,17 @@ def _fill(
     axis = antenna_axis(roll, pitch, yaw, mount_rad)
     margins = margins_of_many([scenario for _, scenario, _ in placed], position_m, axis)
     value = np.min(margins, axis=1)
-    bounds = np.array([math.inf if each.upper_bound is None else each.upper_bound for each in outcomes])
+    ends = []
+    for least, (_, scenario, outcome) in zip(value.tolist(), placed, strict=True):
+        objective = objective_of(scenario, least, outcome.upper_bound)
+        bound = math.inf if objective.upper_bound is None else objective.upper_bound
+        ends.append((bound, *status_of(objective, asked.of(scenario).target, outcome.reason)))
+    bounds, statuses, reasons = zip(*ends, strict=True)
     found: dict[str, ArrayLike] = {
         "value": value,
-        "upper_bound": bound_above(value, bounds),
-        "status": [Status.of(each.upper_bound, each.reason) for each in outcomes],
-        "reason": [each.reason for each in outcomes],
+        "upper_bound": bounds,
+        "status": statuses,
+        "reason": reasons,
         "position_m": position_m,
         "roll_rad": roll,
         "pitch_rad": pitch,

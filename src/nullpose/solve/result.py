@@ -10,6 +10,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
+from nullpose.errors import SolveError
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
 from nullpose.physics import Link, Pose, pose_frames
@@ -32,18 +33,6 @@ class Status(StrEnum):
         """The status as a sentence."""
         return _MESSAGES[self]
 
-    @classmethod
-    def of(cls, upper_bound: float | None, reason: str) -> Status:
-        """Return how a solve ended that proved so much.
-
-        Args:
-            upper_bound: what was proved; None for nothing.
-            reason: why the gap was not reached; empty if it was.
-        """
-        if upper_bound is None:
-            return cls.BEST_FOUND
-        return cls.GAP_NOT_REACHED if reason else cls.CERTIFIED
-
 
 _MESSAGES = {
     Status.CERTIFIED: "certified optimal within the requested gap",
@@ -51,6 +40,8 @@ _MESSAGES = {
     Status.BEST_FOUND: "best of many local optima, not proved to be global",
     Status.GIVEN: "the pose was given, not searched for",
 }
+
+_ROUNDING = 1e-6  # of a gap, by the rounding of value and bound: 1e-9 of a ratio is 1e-6 of the least rate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,6 +130,34 @@ def objective_of(
         relative_gap=gap,
         rigour=Rigour.NONE if bound is None else rigour,
     )
+
+
+def status_of(objective: Objective, requested_gap: float, reason: str) -> tuple[Status, str]:
+    """Return how a solve ended and why not better, decided from the numbers that are reported.
+
+    Certified means that the reported gap, by the quantity's own rule, is at most the one requested.
+
+    Args:
+        objective: value and bound, as reported.
+        requested_gap: relative.
+        reason: why the solver's proof stopped short of that gap; empty if it says that it did not.
+
+    Raises:
+        SolveError: the solver says that the gap is reached and the reported numbers do not, by more than
+            1e-6: a fault of nullpose.
+    """
+    gap = objective.relative_gap
+    if gap is None:
+        return Status.BEST_FOUND, reason
+    if gap <= requested_gap:
+        return Status.CERTIFIED, reason if reason == INTERRUPT else ""
+    if not reason and gap > requested_gap + _ROUNDING * (1.0 + requested_gap):
+        raise SolveError(
+            f"the proof reached a relative gap of {requested_gap:g}, but the reported value "
+            f"{objective.value!r} and bound {objective.upper_bound!r} are {gap:.3g} apart; "
+            "this is a fault of nullpose: please report it with the scenario"
+        )
+    return Status.GAP_NOT_REACHED, reason or "the rounding of value and bound"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

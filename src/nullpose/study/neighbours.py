@@ -11,7 +11,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics import evaluate
 from nullpose.scenario import Scenario
 from nullpose.solve import Result, Rigour, SolveOptions, Status
-from nullpose.solve.result import Stats, objective_of
+from nullpose.solve.result import Stats, objective_of, status_of
 
 _FREER = {
     r"airframe\.tilt_max_(deg|rad)": 1.0,
@@ -60,12 +60,13 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     value = quantity.least(links)
     ratio_bound = 2.0**bound if quantity.is_rate else bound
     objective = objective_of(scenario, value, ratio_bound, Rigour.FLOATING_POINT)
-    if objective.relative_gap is None or objective.relative_gap > asked.target:
+    status, _ = status_of(objective, asked.target, "not solved by itself")
+    if status is not Status.CERTIFIED:
         return None
     return replace(
         best,
         scenario=scenario,
-        status=Status.CERTIFIED,
+        status=status,
         reason="",
         objective=objective,
         links=links,

@@ -17,7 +17,7 @@ from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.precompile import precompile
 from nullpose.solve.proof import INTERRUPT
 from nullpose.solve.provenance import provenance
-from nullpose.solve.result import Result, Stats, Status, objective_of
+from nullpose.solve.result import Result, Stats, objective_of, status_of
 from nullpose.solve.rigour import Rigour
 from nullpose.solve.robust.exchange import Exchange
 from nullpose.solve.robust.guarantee import guarantee_of, require_dipole
@@ -83,8 +83,9 @@ def solve_robust(
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
     robust = _best(exchange)
-    status, reason = _status(exchange, robust.guarantee.lower)
     objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
+    unsettled = "error cases that the search did not settle" if limits.certify else ""
+    status, reason = status_of(objective, limits.target, exchange.reason or unsettled)
     return Result(
         scenario=stated,
         scheme="robust",
@@ -114,11 +115,3 @@ def _best(exchange: Exchange) -> GuardedPose:
 def _guarded(exchange: Exchange, pose: Pose) -> GuardedPose:
     proved = guarantee_of(exchange.inner, pose.position_m, pose.antenna_axis, exchange.accuracy())
     return GuardedPose(scenario=exchange.inner.scenario, pose=pose, guarantee=proved)
-
-
-def _status(exchange: Exchange, guaranteed: float) -> tuple[Status, str]:
-    if exchange.upper_bound is None:
-        return Status.BEST_FOUND, exchange.reason
-    if exchange.upper_bound <= exchange.level(guaranteed):
-        return Status.CERTIFIED, ""
-    return Status.GAP_NOT_REACHED, exchange.reason or "error cases that the search did not settle"
