@@ -86,3 +86,14 @@ def test_the_error_survives_pickling() -> None:
     """Workers of other processes can hand it on."""
     error = nullpose.WrongTypeError("scenario: got nothing")
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_a_carrier_takes_the_place_of_the_papers_path_gain() -> None:
+    """The default of 0 dB gives way to a frequency; both stated are refused as in a file."""
+    arguments = {"noise_w": 1e-9, "altitude_m": (8, 30), "receiver": {"frequency_hz": 2.4e9}}
+    scene = Scenario.from_arrays(NODES_M, **arguments)
+    assert 10.0 * np.log10(scene.receiver.reference_gain) == pytest.approx(-40.05, abs=5e-3)
+    with pytest.raises(ScenarioError, match="both reference_gain_db and frequency_hz"):
+        Scenario.from_arrays(NODES_M, **arguments, reference_gain_db=0.0)
+    stated = Scenario.from_arrays(NODES_M, **arguments | {"receiver": {"reference_gain_db": -7.0}})
+    assert stated.receiver.reference_gain_db == -7.0

@@ -71,3 +71,14 @@ def test_an_array_hears_isotropic_antennas_only(paper: Callable) -> None:
     data["jammers"][0]["antenna"] = "dipole"
     with pytest.raises(ScenarioError, match=r"jammers\[0\]\.antenna"):
         Scenario.from_dict(data)
+
+
+def test_a_gain_is_told_of_every_antenna(paper: Callable) -> None:
+    """In dBi over an isotropic antenna, half of it for a circular one; 0 is not told."""
+    gained = stated(paper, gain_dbi=3.0, antenna="circular")
+    assert gained.node_antennas.shares.tolist() == [0.5 * 10.0**0.3, 1.0]
+    assert Scenario.from_dict(gained.to_dict()) == gained
+    assert stated(paper, gain_dbi=0.0) == paper()
+    assert stated(paper, gain_dbi=3.0).nodes[0].isotropic.gain_dbi == 3.0
+    with pytest.raises(ScenarioError, match=r"nodes\[0\]\.gain_dbi"):
+        stated(paper, gain_dbi=101.0)

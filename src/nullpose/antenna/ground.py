@@ -22,7 +22,7 @@ class GroundAntennas(NamedTuple):
 
     Args:
         axes: (m, 3) unit axis of a point's short dipole; zero where the point has none.
-        shares: (m,) the largest share of the power that each takes.
+        shares: (m,) the largest gain of a link that each allows: its own, times its share of the power.
     """
 
     axes: NDArray[np.float64]

@@ -19,7 +19,7 @@ def _ratios(scenario: Scenario) -> Ratios:
     paper eq. 2.1 divided through by the noise and by the node's weight or required SINR.
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
-    scale = scenario.receiver.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
+    scale = scenario.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
     axes, shares = ground_of(scenario, "node", "jammer")
     return Ratios(
         points_m=scenario.source_positions_m,

@@ -20,7 +20,7 @@ def _ratios(scenario: Scenario) -> Ratios:
     """
     assert scenario.transmitter is not None, "validation lets no secrecy rate through without it"
     n_nodes, n_eavesdroppers = len(scenario.nodes), len(scenario.eavesdroppers)
-    sent = scenario.receiver.reference_gain * scenario.transmitter.transmit_power_w
+    sent = scenario.reference_gain * scenario.transmitter.transmit_power_w
     node, eavesdropper = np.divmod(np.arange(n_nodes * n_eavesdroppers), n_eavesdroppers)
     positions = (
         scenario.node_positions_m,

@@ -70,7 +70,7 @@ def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     """Return where a scheme's pose is at a level, seen from the jammer, and what it receives of it."""
     row = study.at(scheme, level)
     scenario, position_m = row.scenario, row.pose.position_m
-    places_m, gain = scenario.jammer_positions_m, scenario.receiver.reference_gain
+    places_m, gain = scenario.jammer_positions_m, scenario.reference_gain
     received_w = received_power_w(
         position_m,
         row.pose.orientation(scenario.antenna_record),

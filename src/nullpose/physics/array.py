@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.antenna import GroundAntennas
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -92,6 +93,7 @@ def array_channels(
     points_m: ArrayLike,
     powers_w: ArrayLike,
     reference_gain: float,
+    ground: GroundAntennas | None = None,
 ) -> ComplexArray:
     """Return the channel of every ground transmitter to the elements.
 
@@ -107,11 +109,12 @@ def array_channels(
         points_m: transmitters, shape ``(m, 3)``, metres.
         powers_w: their powers, shape ``(m,)``, watts.
         reference_gain: path gain at 1 m, a power ratio.
+        ground: the transmitters' antennas; None where all are isotropic.
 
     Returns:
         Array of shape ``(..., m, K)``, in the square root of a watt.
     """
-    power_w = received_power_w(position_m, _VERTICAL, points_m, powers_w, reference_gain)
+    power_w = received_power_w(position_m, _VERTICAL, points_m, powers_w, reference_gain, ground=ground)
     return np.asarray(
         np.sqrt(power_w)[..., None] * steering_vectors(position_m, elements_wavelengths, points_m)
     )
@@ -223,12 +226,12 @@ def _both_channels(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the channels of the nodes and of the jammers."""
-    g0 = scenario.receiver.reference_gain
+    g0 = scenario.reference_gain
     nodes, jammers = (
-        array_channels(position_m, elements_wavelengths, points_m, powers_w, g0)
-        for points_m, powers_w in (
-            (scenario.node_positions_m, scenario.node_powers_w),
-            (scenario.jammer_positions_m, scenario.jammer_powers_w),
+        array_channels(position_m, elements_wavelengths, points_m, powers_w, g0, ground)
+        for points_m, powers_w, ground in (
+            (scenario.node_positions_m, scenario.node_powers_w, scenario.node_antennas),
+            (scenario.jammer_positions_m, scenario.jammer_powers_w, scenario.jammer_antennas),
         )
     )
     return nodes, jammers

@@ -139,7 +139,7 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
     assert scenario.transmitter is not None, "or the signal to noise ratio would have failed"
     listeners_m = scenario.eavesdropper_positions_m + case.eavesdropper_offsets_m
     powers_w = np.full(len(listeners_m), scenario.transmitter.transmit_power_w)
-    link = (scenario.receiver.reference_gain, scenario.antenna_record, scenario.eavesdropper_antennas)
+    link = (scenario.reference_gain, scenario.antenna_record, scenario.eavesdropper_antennas)
     overheard = received_power_w(p, u, listeners_m, powers_w, *link) / scenario.eavesdropper_noise_w
     return np.asarray((1.0 + wanted[..., :, None]) / (1.0 + overheard[..., None, :]))
 

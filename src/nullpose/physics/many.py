@@ -26,7 +26,7 @@ def margins_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: 
     Returns:
         Array of shape ``(s, n_nodes)``, power ratios.
     """
-    g0 = np.array([[one.receiver.reference_gain] for one in scenarios])
+    g0 = np.array([[one.reference_gain] for one in scenarios])
     noise_w = np.array([[one.receiver.noise_power_w] for one in scenarios])
     required = np.array([one.node_required_sinr for one in scenarios])
     source_m = np.array([one.source_positions_m for one in scenarios])

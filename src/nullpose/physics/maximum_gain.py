@@ -83,7 +83,7 @@ def maximum_gain_sinr_as_printed(scenario: Scenario, position_m: ArrayLike) -> F
     to_jammers = scenario.jammer_positions_m - p[..., None, :]
     jammer_distance_sq = np.sum(to_jammers**2, axis=-1)  # m^2
     cosine_sq = np.sum(to_jammers * product[..., None, :], axis=-1) ** 2 / jammer_distance_sq
-    g0 = scenario.receiver.reference_gain
+    g0 = scenario.reference_gain
     jamming_w = np.sum(g0 * (1.0 - cosine_sq) * scenario.jammer_powers_w / jammer_distance_sq, axis=-1)
     signal_w = g0 * scenario.node_powers_w / np.sum(to_nodes**2, axis=-1)
     return np.asarray(signal_w / (jamming_w[..., None] + scenario.receiver.noise_power_w))

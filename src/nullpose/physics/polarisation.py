@@ -55,7 +55,8 @@ def link_gain(
     """Return the power gain between the drone's antenna and that at each point, polarisation included.
 
     The drone's gain alone for an isotropic antenna (paper eq. 2.1), half of it for a circular one, and
-    :func:`dipole_gain` for a dipole.
+    :func:`dipole_gain` for a dipole, each times the largest gain of the antenna on the ground. The largest
+    gain of a dipole on the drone counts as 1.
 
     Args:
         position_m: the drone's position, shape ``(..., 3)``, metres.
@@ -65,7 +66,7 @@ def link_gain(
         ground: the antennas at the points; None where all are isotropic.
 
     Returns:
-        Array of shape ``(..., m)``, between 0 and 1.
+        Array of shape ``(..., m)``, between 0 and the largest gain of each antenna on the ground.
     """
     gain = antenna_gain(position_m, axis, points_m, antenna)
     if ground is None:

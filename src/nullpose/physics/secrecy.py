@@ -23,7 +23,7 @@ def _snr(
         raise ValueError("this scenario states no power of the drone; it needs a [transmitter]")
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
     powers_w = np.full(len(points_m), scenario.transmitter.transmit_power_w)
-    link = (scenario.receiver.reference_gain, scenario.antenna_record)
+    link = (scenario.reference_gain, scenario.antenna_record)
     return np.asarray(received_power_w(position_m, axis, points_m, powers_w, *link, ground) / noise_w)
 
 

@@ -72,7 +72,7 @@ def sinr(
         axis,
         scenario.source_positions_m if points_m is None else points_m,
         scenario.source_powers_w,
-        scenario.receiver.reference_gain,
+        scenario.reference_gain,
         scenario.antenna_record,
         scenario.source_antennas,
     )

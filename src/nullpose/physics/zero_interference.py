@@ -55,7 +55,7 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
         zero_interference_axis(p, scenario.jammer_positions_m[0]),
         scenario.source_positions_m,
         scenario.source_powers_w,
-        scenario.receiver.reference_gain,
+        scenario.reference_gain,
         scenario.antenna_record,
         scenario.source_antennas,
     )

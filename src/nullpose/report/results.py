@@ -105,11 +105,11 @@ def solution_view(solution: Result) -> View:
     scenario, objective, pose = solution.scenario, solution.objective, solution.pose
     rate = objective.quantity.is_rate
     at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
-    gains = antenna_gain(*at, scenario.antenna_record)
-    columns = {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in to_db(gains)]}
+    gains, gain_dbi = antenna_gain(*at, scenario.antenna_record), scenario.antenna_gain_dbi
+    columns = {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in gain_dbi + to_db(gains)]}
     if scenario.node_antennas is not None:
         both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
-        columns["with the ground's (dB)"] = [fixed(gain_db, 2) for gain_db in to_db(both)]
+        columns["with the ground's (dB)"] = [fixed(gain_db, 2) for gain_db in gain_dbi + to_db(both)]
     leaning = f"azimuth {azimuth_text(pose)} deg (0 east, 90 north)"
     airframe = scenario.airframe
     own = [
@@ -278,7 +278,7 @@ def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
         names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
         orientation = pose.orientation(scenario.antenna_record)
-        link = (pose.position_m, orientation, points, powers_w, receiver.reference_gain)
+        link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
         antennas = (scenario.antenna_record, scenario.jammer_antennas)
         ratios = received_power_w(*link, *antennas) / receiver.noise_power_w
     columns = {

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.antenna import GROUND_ANTENNAS
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
@@ -16,7 +15,7 @@ from nullpose.report.document import Row, View, document, head, pairs, rows, tab
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import stated
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
-from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
+from nullpose.scenario import Antenna, Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
 
 _Point = Node | Jammer | Eavesdropper
 _EARTHLY = {
@@ -86,7 +85,7 @@ def _points(
         if own_noise_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(own_noise_w[i])
             own = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
-        ratio = GROUND_ANTENNAS[point.antenna] * receiver.reference_gain * sent_w / nearest_m**2 / noise_w
+        ratio = point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
         told.append(
             {
                 "name": point.name,
@@ -186,7 +185,7 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
         "array": None if array is None else array_words(array),
         "airframe": None if airframe is None else airframe_words(airframe),
-        "antenna": f"{scenario.antenna_record.label}, {reach_words(airframe)}",
+        "antenna": f"{scenario.antenna_record.label}{_gain_words(scenario.antenna)}, {reach_words(airframe)}",
         "attitude error": f"at most {attitude_deg:g} deg" if attitude_deg else None,
         "position error": f"at most {position_m:g} m" if position_m else None,
         "transmits": None if sender is None else _power_words(sender.transmit_power_w),
@@ -237,11 +236,15 @@ def _points_table(
 
 
 def _antenna_words(point: _Point) -> str | None:
-    """Return which antenna a point has and how it lies; None for an isotropic one."""
-    if point.antenna != "dipole":
-        return None if point.antenna == "isotropic" else point.antenna
-    axis = point.antenna_axis
-    return "dipole" if axis is None else f"dipole along {', '.join(f'{x:g}' for x in axis)}"
+    """Return which antenna a point has, how it lies and its gain; None for an isotropic one of 0 dBi."""
+    axis = () if point.antenna_axis is None else point.antenna_axis
+    words = f"{point.antenna}{' along ' * bool(axis)}{', '.join(f'{x:g}' for x in axis)}{_gain_words(point)}"
+    return None if words == "isotropic" else words
+
+
+def _gain_words(antenna: _Point | Antenna | None) -> str:
+    """Return an antenna's gain after a comma, nothing where it is 0 dBi."""
+    return "" if antenna is None or antenna.gain_dbi == 0.0 else f", {antenna.gain_dbi:g} dBi"
 
 
 def _extents(point: _Point) -> str | None:

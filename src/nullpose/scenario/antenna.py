@@ -23,7 +23,7 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Choice, ListOf
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Coefficient, Hertz, NullDepthDecibels
+from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels
 
 _KINDS = ("dipole", "half-wave", "profile", "pattern")
 _FILED = ("profile", "pattern")
@@ -48,10 +48,11 @@ class Antenna(Section):
         format: the file's format; None where the file tells it.
         frequency_hz: which of a file's frequencies [Hz].
         normalise: "peak" for a largest gain of 1, "none" for the file's gain.
+        gain_dbi: its gain across its axis, or where it is largest, over an isotropic antenna [dBi].
         harmonics: what was read of the file: the terms of its spherical harmonics, by degree.
     """
 
-    unstated: ClassVar[frozenset[str]] = frozenset({"kind", "normalise"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"kind", "normalise", "gain_dbi"})
 
     kind: _Kind = Field(
         default="dipole",
@@ -89,6 +90,13 @@ class Antenna(Section):
         "is 1, like that of the paper's dipole.",
         examples=["none", "peak"],
     )
+    gain_dbi: DecibelsIsotropic = Field(
+        default=0.0,
+        description="Gain of the antenna in the direction where it is largest, in dBi: 1.76 for a short "
+        'dipole, 2.15 for a half-wave dipole. With a file only where normalise = "peak", since its gains '
+        "are in dBi. Left out: 0, as in the paper.",
+        examples=[1.76],
+    )
     harmonics: _Rows | None = Field(
         default=None,
         description="What was read of the file, written by nullpose: for each degree of the gain's spherical "
@@ -102,9 +110,15 @@ class Antenna(Section):
         allowed = {"dipole": {"null_depth_db"}, "half-wave": set()}.get(
             self.kind, {"file", "format", "frequency_hz", "normalise", "harmonics"}
         )
-        for key in stated.keys() - {"kind"} - allowed:
+        for key in stated.keys() - {"kind", "gain_dbi"} - allowed:
             if stated[key] is not None:
                 yield (key,), f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
+        if self.gain_dbi and self.kind in _FILED and self.normalise == "none":
+            yield (
+                ("gain_dbi",),
+                f"got {self.gain_dbi:g}, but the gains in the file are over an isotropic antenna, and this "
+                'would add to them; remove it, or write normalise = "peak", and the largest gain is this one',
+            )
         if self.kind in _FILED and "harmonics" not in stated:
             if "file" not in stated:
                 yield ("file",), f'missing, but kind = "{self.kind}" needs it; add the name of a file'

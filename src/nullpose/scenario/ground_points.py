@@ -20,6 +20,7 @@ from nullpose.scenario.units import (
     Altitude,
     AxisDirection,
     DecibelMilliwatts,
+    DecibelsIsotropic,
     GroundHeight,
     Latitude,
     Longitude,
@@ -55,10 +56,11 @@ class GroundPoint(Section):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE)
-    unstated: ClassVar[frozenset[str]] = frozenset({"antenna"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"antenna", "gain_dbi"})
 
     name: Label = Field(
         default="",
@@ -110,6 +112,13 @@ class GroundPoint(Section):
         "out: upright.",
         examples=[[0.0, 0.0, 1.0]],
     )
+    gain_dbi: DecibelsIsotropic = Field(
+        default=0.0,
+        description="Gain of its antenna in the direction where it is largest, in dBi (dBic for a circular "
+        "one): 1.76 for a short dipole, 2.15 for a half-wave dipole. Left out: 0, as in the paper; the power "
+        "of a transmitter is then its EIRP.",
+        examples=[2.15],
+    )
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the fault that an axis is given of an antenna that has none."""
@@ -121,8 +130,13 @@ class GroundPoint(Section):
             )
 
     @property
+    def largest_gain(self) -> float:
+        """The largest gain of a link that its antenna allows, linear: its own, halved for a circular one."""
+        return GROUND_ANTENNAS[self.antenna] * ratio_from_db(self.gain_dbi)
+
+    @property
     def isotropic(self) -> Self:
-        """The point with an isotropic antenna; itself if it has one."""
+        """The point with an isotropic antenna of the same gain; itself if it has one."""
         if self.antenna == "isotropic":
             return self
         return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None})
@@ -139,6 +153,7 @@ class Emitter(Powered, GroundPoint):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
@@ -157,6 +172,7 @@ class Node(Emitter):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
@@ -235,6 +251,7 @@ class Jammer(Uncertain, Emitter):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
@@ -256,6 +273,7 @@ class Eavesdropper(Uncertain, GroundPoint):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         noise_w: its receiver's noise [W]; or else
         noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
         uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.

@@ -116,7 +116,7 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     touched = (*POINT_LISTS, "airspace", "origin") if steps[0] == "origin" else steps[:1]
     data |= {key: to_jsonable_python(data[key]) for key in touched if isinstance(data.get(key), _FROZEN)}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
-    if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "harmonics"):
+    if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "gain_dbi", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
     if steps[0] == "origin":  # points and areas stay where they are on the Earth
         airspace = data["airspace"]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
-from nullpose.antenna import GROUND_ANTENNAS, SHORT_DIPOLE, GroundAntennas, unit_axis
+from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, unit_axis
 from nullpose.antenna import Antenna as AnyAntenna
 from nullpose.errors import WrongTypeError
 from nullpose.notebook import html_table
@@ -31,7 +31,7 @@ from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_text import toml_text
 from nullpose.scenario.transmitter import Transmitter
-from nullpose.scenario.units import power_w
+from nullpose.scenario.units import power_w, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
@@ -145,7 +145,7 @@ class Scenario(Section):
         jammer_power_w: ArrayLike = 1.0,
         noise_w: float,
         altitude_m: tuple[float, float],
-        reference_gain_db: float = 0.0,
+        reference_gain_db: float | None = None,
         **more: object,
     ) -> Scenario:
         """Returns the scenario of nodes and jammers that are given as arrays.
@@ -160,7 +160,8 @@ class Scenario(Section):
             jammer_power_w: likewise, (m,) or one for all.
             noise_w: noise power of the drone's receiver [W].
             altitude_m: lowest and highest altitude of the vehicle [m].
-            reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; 0 in the paper.
+            reference_gain_db: path gain between isotropic antennas 1 m apart [dB]. If None, it is 0 as in
+                the paper, unless ``receiver`` states it or ``frequency_hz``.
             more: other keys of a scenario, such as ``name`` or ``airframe``, with their tables; of
                 ``airspace`` and ``receiver`` what is not given above.
 
@@ -181,12 +182,14 @@ class Scenario(Section):
         }
         tables: dict[str, dict[str, object]] = {
             "airspace": {"altitude_m": list(altitude_m)},
-            "receiver": {"noise_w": noise_w, "reference_gain_db": reference_gain_db},
+            "receiver": {"noise_w": noise_w},
         }
         for key, table in tables.items():
             own = more.get(key)
-            more[key] = table | dict(own) if isinstance(own, Mapping) else table
-        return cls.from_dict({**points, **more})
+            table |= dict(own) if isinstance(own, Mapping) else {}
+        if reference_gain_db is not None or "frequency_hz" not in tables["receiver"]:
+            tables["receiver"].setdefault("reference_gain_db", reference_gain_db or 0.0)
+        return cls.from_dict({**points, **more, **tables})
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
@@ -233,6 +236,16 @@ class Scenario(Section):
     def antenna_record(self) -> AnyAntenna:
         """What the drone's antenna states of itself."""
         return SHORT_DIPOLE if self.antenna is None else self.antenna.record
+
+    @property
+    def antenna_gain_dbi(self) -> float:
+        """What the gain of the drone's antenna record counts from [dBi], stated as ``gain_dbi``."""
+        return 0.0 if self.antenna is None else self.antenna.gain_dbi
+
+    @property
+    def reference_gain(self) -> float:
+        """Path gain at 1 m times the largest gain of the drone's antenna, linear."""
+        return self.receiver.reference_gain * ratio_from_db(self.antenna_gain_dbi)
 
     @property
     def node_names(self) -> tuple[str, ...]:
@@ -293,7 +306,8 @@ class Scenario(Section):
     def node_noise_w(self) -> NDArray[np.float64]:
         """Noise and jamming at the nodes' own receivers [W], (n_nodes,), read-only; for the downlink.
 
-        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, isotropic and in line of sight.
+        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, in line of sight, times
+        the largest gains of both antennas whatever their directions.
         """
         return read_only([self._own_noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
 
@@ -339,7 +353,7 @@ class Scenario(Section):
 
     @property
     def states_antennas(self) -> bool:
-        """Whether any antenna is another than the paper's: the drone's, or one on the ground."""
+        """Whether any antenna has another pattern than the paper's: the drone's, or one on the ground."""
         points = (*self.nodes, *self.jammers, *self.eavesdroppers)
         return self.antenna_record != SHORT_DIPOLE or any(point.antenna != "isotropic" for point in points)
 
@@ -363,7 +377,9 @@ class Scenario(Section):
         if stated > 0.0:
             return stated
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
-        return float(np.sum(self.receiver.reference_gain * self.jammer_powers_w / distance_squared))
+        gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
+        powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
+        return float(np.sum(powers_w / distance_squared))
 
 
 def require_scenario(value: object) -> None:
@@ -384,8 +400,8 @@ def require_scenario(value: object) -> None:
 
 
 def _antennas_of(points: Sequence[GroundPoint]) -> GroundAntennas | None:
-    if all(point.antenna == "isotropic" for point in points):
+    if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
         return None
     axes = [unit_axis(p.antenna_axis) if p.antenna == "dipole" else np.zeros(3) for p in points]
-    shares = [GROUND_ANTENNAS[point.antenna] for point in points]
+    shares = [point.largest_gain for point in points]
     return GroundAntennas(read_only(axes, (-1, 3)), read_only(shares, (-1,)))

@@ -40,6 +40,12 @@ DecibelMilliwatts = Annotated[
     float, Quantity("a power in dBm", -270.0, 330.0, "a value in W belongs to the key that ends in _w")
 ]
 Decibels = Annotated[float, Quantity("a gain in dB", -300.0, 300.0, "0 dB is a gain of 1, 10 dB one of 10")]
+DecibelsIsotropic = Annotated[
+    float,
+    Quantity(
+        "a gain in dBi", -100.0, 100.0, "1.76 for a short dipole, 2.15 for a half-wave dipole; 0 is isotropic"
+    ),
+]
 NullDepthDecibels = Annotated[
     float,
     Quantity("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),

@@ -35,6 +35,8 @@ def _axis_at(scenario: Scenario, position_m: FloatArray) -> FloatArray:
 def _reason_against(scenario: Scenario) -> str | None:
     if scenario.has_margins:
         return "eq. 3.5 as printed knows no weights or requirements"
+    if scenario.states_antennas or scenario.source_antennas is not None:
+        return "eq. 3.5 as printed knows the paper's antennas only"
     if len(scenario.nodes) != 2:
         return f"eq. 3.5 as printed is for two nodes; the scenario has {len(scenario.nodes)}"
     return None

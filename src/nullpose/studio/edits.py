@@ -44,6 +44,7 @@ _ALIKE = (
     "power_dbm",
     "antenna",
     "antenna_axis",
+    "gain_dbi",
     "noise_w",
     "noise_dbm",
 )  # to the last of its kind

@@ -10,7 +10,7 @@ from typing import Any, Unpack
 from nullpose.errors import UsageError
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
-from nullpose.scenario import Scenario
+from nullpose.scenario import Antenna, Scenario
 from nullpose.solve import Result, solve
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
@@ -99,14 +99,16 @@ def compare_antennas(
 
 
 def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
-    """Return a scenario with the antennas that it states, or with the paper's.
+    """Return a scenario with the antennas that it states, or with the paper's of the same gain.
 
     Args:
         scenario: as stated.
         drone: whether to keep the drone's.
         ground: whether to keep those on the ground.
     """
-    changed: dict[str, Any] = {} if drone else {"antenna": None}
+    gain_dbi = scenario.antenna_gain_dbi
+    papers = Antenna(gain_dbi=gain_dbi) if gain_dbi else None
+    changed: dict[str, Any] = {} if drone else {"antenna": papers}
     for kind in () if ground else _POINTS:
         changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)
