@@ -147,6 +147,6 @@ class Editor:
             self.selected = None
             self._refresh()
 
-    def _typed(self, key: Key | None, texts: dict[str, str]) -> bool:
+    def _typed(self, key: Key | None, texts: dict[str, str]) -> None:
         entries = entries_of(self._session.view, key)
-        return self._change(lambda view: with_typed(view, entries, texts), name="What was typed")
+        self._change(lambda view: with_typed(view, entries, texts), name="What was typed")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import GROUND_ANTENNAS
+from nullpose.report.numbers import MINUS
 from nullpose.scenario import (
     Airspace,
     Eavesdropper,
@@ -193,7 +194,7 @@ def _text(value: Any) -> str:
         return ""
     if isinstance(value, tuple):
         return f"[{', '.join(map(_text, value))}]"
-    return f"{round(value, 9) + 0.0:.12g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.12g}" if isinstance(value, float) else str(value)
 
 
 def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -> View:
@@ -219,7 +220,7 @@ def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -
         elif entry.options or not typed or entry.path.endswith(".name"):
             overrides.append(Override(entry.path, typed or None))
         else:
-            overrides.append(parse_override(f"{entry.path}={typed}"))
+            overrides.append(parse_override(f"{entry.path}={typed.replace(MINUS, '-')}"))
     typed_in = view.with_scenario(apply_overrides(view.scenario, overrides)) if overrides else view
     names = [one for one in overrides if one.path.endswith(".name")]
     if names:  # by itself in the text, where a point that has moved too would be taken for another one

@@ -24,7 +24,7 @@ from nullpose.studio.events import Event, Progress
 from nullpose.studio.exchange import Exchange
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import overlay_html
-from nullpose.studio.panel import NO_CASE, Panel
+from nullpose.studio.panel import NO_CASE, Panel, by_hand
 from nullpose.studio.plot import power_plot_svg
 from nullpose.studio.present import Present
 from nullpose.studio.proof_view import ProofView
@@ -121,6 +121,7 @@ class Page:
             (panel.case, lambda label: self._change(lambda view: view.with_case(case_named(label)))),
             (panel.compared, self._compare),
             (panel.power, self._slid),
+            (panel.power_text, self._typed),
             *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
         ]
         buttons: list[tuple[Any, Callable[[], object]]] = [
@@ -131,7 +132,7 @@ class Page:
             (panel.present, self.present.begin),
         ]
         for control, action in controls:
-            control.on_update(_by_hand(action))
+            control.on_update(by_hand(action))
         for button, press in buttons:
             button.on_click(lambda event, press=press: press())
         commands: list[tuple[str, Callable[[], object], Any, Any]] = [
@@ -146,7 +147,6 @@ class Page:
             command = self._client.gui.add_command(label, hotkey=key, modifier=modifier)
             command.on_trigger(lambda event, act=act: act())
         self._client.camera.on_update(self.sight.looked)
-        panel.form.on_submit(lambda event: self._typed(panel.power_text.value))
 
     def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
         """Return whether a change was made; if not, its faults are shown."""
@@ -182,6 +182,7 @@ class Page:
         self._change(lambda view: view.with_power_text(text), name="The jamming power")
         with self._lock, self._client.atomic():
             self.panel.show_power(self.session.view)
+            self.panel.power_text.value = self.session.view.power_text  # also if viser has it already
 
     def _slid(self, values: tuple[float]) -> None:
         now = time.monotonic()
@@ -277,13 +278,3 @@ class Page:
         put(panel.replay, disabled=not self._proof.can_play)
         panel.undo.disabled = not session.history.past
         panel.redo.disabled = not session.history.future
-
-
-def _by_hand(action: Callable[[Any], object]) -> Any:
-    """Return a callback for what a user does, and not the program; in order, since it runs in the loop."""
-
-    async def callback(event: Any) -> None:
-        if event.client is not None:
-            action(event.target.value)
-
-    return callback

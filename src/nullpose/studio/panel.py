@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from collections.abc import Callable
 from html import escape
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -34,7 +34,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "power_text": (
             "text",
             "typed (dB)",
-            "The jamming power in dB; Enter takes it.",
+            "The jamming power in dB; Enter takes it, and so does leaving the field.",
             {"initial_value": ""},
         ),
         "case": (
@@ -138,7 +138,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
-    A text is in a form of its own, ``form``, that is submitted with Enter. ``overlay`` is not in the panel.
+    A text arrives whole, with Enter or when its field is left. ``overlay`` is not in the panel.
 
     Args:
         gui: the page's interface.
@@ -168,10 +168,7 @@ class Panel(SimpleNamespace):
             with tabs.add_tab(tab):
                 for name, (kind, label, hint, more) in controls.items():
                     given = more | ({"hint": hint} if hint else {})
-                    if kind == "text":
-                        self.form = gui.add_form(None)
-                    with self.form if kind == "text" else nullcontext():
-                        setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
+                    setattr(self, name, getattr(gui, f"add_{kind}")(label, **given))
 
     def show(self, view: View) -> None:
         """Offer the cases that have a meaning for a view, and show those chosen, and the jamming power.
@@ -215,3 +212,17 @@ def show_link(gui: GuiApi, address: str) -> None:
         )
         close = gui.add_button("Close")
     close.on_click(lambda event: modal.close())
+
+
+def by_hand(action: Callable[[Any], object]) -> Any:
+    """Return a callback of a control for what a user does, and not the program; called in order, in the loop.
+
+    Args:
+        action: called with the control's new value.
+    """
+
+    async def callback(event: Any) -> None:
+        if event.client is not None:
+            action(event.target.value)
+
+    return callback

@@ -25,6 +25,7 @@ Key = tuple[Kind, int]
 
 KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
+_ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
 
 POWER_DB = (-30.0, 40.0)
 """Range of the strongest jammer's power over the nodes' that a page offers, dB."""
@@ -136,7 +137,7 @@ class View:
     @property
     def power_text(self) -> str:
         """The power of the strongest jammer in dB as a text, to a millionth; empty without one."""
-        return "" if self.power_db is None else f"{round(self.power_db, 6) + 0.0:.9g}"
+        return "" if self.power_db is None else f"{round(self.power_db, _ROUND_DB) + 0.0:.9g}"
 
     def with_power_text(self, text: str) -> View:
         """Return the view with the jamming power that was typed; see :meth:`with_power_db`.
@@ -151,7 +152,7 @@ class View:
         if typed == self.power_text:
             return self
         with suppress(ValueError):
-            power_db = float(typed)
+            power_db = round(float(typed), _ROUND_DB)
             if low_db <= power_db <= high_db:
                 return self.with_power_db(power_db)
         allowed = f"allowed: a number from {low_db:g} to {high_db:g}, as in 12.5 or 1e1"

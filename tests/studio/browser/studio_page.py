@@ -21,6 +21,7 @@ from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
 
+POWER = "xpath=//label[.='typed (dB)']/ancestor::*[.//input][1]//input"
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 Open = Callable[[], Page]
 ZSTD = b"\x28\xb5\x2f\xfd"  # how what zstd has compressed begins
@@ -41,12 +42,8 @@ def _settled(page: Page, before: int) -> None:
 
 
 def _type_power(page: Page, decibel: str) -> None:
-    """Type key by key: of a text put in at once, the field drops what comes first after the server set it."""
-    field = page.locator("form input.mantine-TextInput-input").first
-    field.click()
-    field.press("Control+A")
-    field.press_sequentially(decibel, delay=120)
-    field.press("Enter")
+    page.locator(POWER).fill(decibel)
+    page.locator(POWER).press("Enter")
 
 
 def _on_screen(page: Page, camera: Any, point_m: Any) -> tuple[float, float]:
@@ -109,7 +106,7 @@ def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Sessio
 
 def test_a_typed_power_is_taken_with_enter(page: Page, session: Session) -> None:
     """No keystroke changes the scene; Enter takes a number as it is, and refuses one out of range."""
-    field = page.locator("form input.mantine-TextInput-input").first
+    field = page.locator(POWER)
     version = _version(page)
     field.click()
     field.press("Control+A")
@@ -133,9 +130,7 @@ def test_a_typed_power_is_taken_with_enter(page: Page, session: Session) -> None
         page.wait_for_function(
             f"document.querySelector('[data-np=faults]').innerText.includes('given {refused}')"
         )
-        page.wait_for_function(
-            "document.querySelector('form input.mantine-TextInput-input').value == '12.3456'"
-        )
+        page.wait_for_function("field => field.value == '12.3456'", arg=field.element_handle())
     assert _version(page) == version
 
 

@@ -1,5 +1,5 @@
 // Runs before viser. It names the tab, tells viser where its websocket is, shows the overlay and the state
-// of the connection, and folds the panel on a phone.
+// of the connection, sends what is typed, and folds the panel on a phone.
 (() => {
   "use strict";
   const LONGEST_SCENE = 7900; // the server takes a request line of 8192 bytes; what is cut off is refused there
@@ -93,8 +93,54 @@
     handle.click();
   }
 
-  function hear(data) {
+  // What is typed. viser gathers all messages of 50 ms and sends only the last of them, so that of 36 and Enter
+  // the 6 could be lost. Here the whole text of a field is sent, once: with Enter, or when the field is left.
+  const texts = new Map(); // what the studio has last set, by the names of the fields
+  let socket, typing; // the worker with the websocket; the field whose text is not sent yet
+
+  function nameOf(field) {
+    let at = field.parentElement;
+    while (at && !at.querySelector("label[for]")) at = at.parentElement;
+    const name = at?.querySelector("label[for]").htmlFor;
+    return texts.has(name) ? name : undefined;
+  }
+
+  function take() {
+    const field = typing;
+    typing = undefined;
+    const name = field?.isConnected && nameOf(field);
+    if (name && field.value !== texts.get(name)) socket.type(name, field.value);
+  }
+
+  function putBack() {
+    const field = typing;
+    typing = undefined;
+    const write = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
+    write.call(field, texts.get(nameOf(field)) ?? field.value); // as a hand does, so that viser sees it
+    field.dispatchEvent(new InputEvent("input", { bubbles: true }));
+    typing = undefined;
+  }
+
+  addEventListener("input", (event) => { if (nameOf(event.target)) typing = event.target; }, true);
+  addEventListener("focusout", (event) => { if (event.target === typing) take(); }, true);
+  addEventListener("pointerdown", (event) => { if (typing && event.target !== typing) take(); }, true);
+  addEventListener("keydown", (event) => {
+    if (event.target !== typing || event.isComposing) return;
+    if (event.key === "Enter") take();
+    if (event.key === "Escape") putBack();
+  }, true);
+
+  function set(message) {
+    if (message.type === "GuiTextMessage") texts.set(message.uuid, message.value);
+    if (message.type !== "GuiUpdateMessage" || !texts.has(message.uuid) || !("value" in message.updates)) return;
+    texts.set(message.uuid, message.updates.value);
+    if (typing?.isConnected && nameOf(typing) === message.uuid) delete message.updates.value; // it is the hand's
+  }
+
+  function hear(data, worker) {
     if (data?.type === "connected") {
+      socket = worker;
+      texts.clear();
       tell("connected");
       address();
       setTimeout(fold, 0);
@@ -105,6 +151,7 @@
       }
     } else if (data?.type === "message_batch") {
       data.messages.forEach(show);
+      data.messages.forEach(set);
       fold();
     }
   }
@@ -113,7 +160,17 @@
   window.Worker = class extends window.Worker {
     constructor(...given) {
       super(...given);
-      this.addEventListener("message", (event) => hear(event.data));
+      this.addEventListener("message", (event) => hear(event.data, this));
+    }
+
+    postMessage(data, ...more) {
+      const isKey = data?.message?.type === "GuiUpdateMessage" && texts.has(data.message.uuid);
+      if (!isKey) super.postMessage(data, ...more);
+    }
+
+    type(uuid, value) {
+      const message = { type: "GuiUpdateMessage", uuid, updates: { value } };
+      super.postMessage({ type: "send", message });
     }
   };
 
