@@ -9,9 +9,10 @@ import pytest
 from rich.console import Console
 
 from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
+from nullpose.objectives import Quantity
 from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
 from nullpose.report.figures.airframes import draw_airframes
-from nullpose.report.numbers import share_of, share_text
+from nullpose.report.numbers import less_or_more
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -61,29 +62,43 @@ def robust() -> AirframeComparison:
 
 
 def test_the_example_of_the_question(plain: AirframeComparison) -> None:
-    """At strong jamming ten degrees with a horizontal dipole give 99.3 %, and are the least that suffices."""
+    """At strong jamming ten degrees with a horizontal dipole are the least compared that suffices."""
     first, digital, _ = answer_lines(plain)
     assert first == (
-        "A 10 degree tilt with a horizontal dipole reaches 99.3 % of the omnidirectional vehicle's value "
-        "in this scene. It is the simplest vehicle with one dipole that reaches 99 % or more."
+        "A 10 degree tilt with a horizontal dipole reaches 0.03 dB less than the omnidirectional vehicle in "
+        "this scene. Of the vehicles compared with one dipole, it is the simplest within 0.04 dB of that."
     )
-    assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 % of")
+    assert "with an array of 2 with digital combining reaches 3.28 dB more" in digital
 
 
 def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     """Were the tilted ones worse, it would take the omnidirectional one; who comes nearest is told."""
     worse = with_value(with_value(plain, "tilt-10", 0.5), "tilt-30", 0.9 * plain.omnidirectional.value)
     first, nearest, *_ = answer_lines(worse)
-    assert first == "This scene needs an omnidirectional vehicle."
-    assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 90 %")
-    assert nearest.endswith("No simpler vehicle with one dipole reaches 99 % or more.")
+    assert first.startswith("Of the vehicles compared with one dipole, only the omnidirectional one")
+    assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 0.46 dB less")
+    assert "Of the vehicles compared with one dipole, no simpler one was found within" in nearest
+
+
+def test_a_vehicle_that_was_not_compared_is_not_judged() -> None:
+    """A 25 degree tilt with an upright dipole suffices for whips; without it only the compared are judged."""
+    tilted = Airframe(tilt_max_deg=25.0, mount_deg=0.0)
+    whips = load(EXAMPLES / "whips.toml")
+    assert whips.airframe is None
+    usual = answer_lines(compare_airframes(whips, certify=False))
+    found = compare_airframes(whips.model_copy(update={"airframe": tilted}), certify=False)
+    assert found.suffices(found.stated)
+    assert found.least_sufficient is found.stated
+    assert not any("needs" in line for line in usual)
+    assert usual[0].startswith("Of the vehicles compared")
+    assert "state it in [airframe] to compare it" in usual[0]
 
 
 def test_the_least_of_all_suffices(plain: AirframeComparison) -> None:
     """Were a level vehicle as good, no tilt is said to be needed."""
     value = 0.995 * plain.omnidirectional.value
     first = answer_lines(with_value(plain, "level-vertical", value))[0]
-    assert first.startswith("A level vehicle with a vertical dipole reaches 99.5 %")
+    assert first.startswith("A level vehicle with a vertical dipole reaches 0.02 dB less")
 
 
 def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
@@ -92,9 +107,9 @@ def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     for size in (2, 4, 8):
         poor = with_value(poor, f"array-{size}-analogue", 0.1 * size * plain.omnidirectional.value)
     digital, analogue = answer_lines(poor)[1:]
-    assert digital.startswith("A level vehicle with an array of 2 with digital combining reaches 213 %")
-    assert analogue.startswith("A level vehicle with an array of 8 with one analogue beam reaches 80 %")
-    assert analogue.endswith("No vehicle with an array and analogue combining reaches 99 % or more.")
+    assert "with an array of 2 with digital combining reaches 3.28 dB more" in digital
+    assert "with an array of 8 with one analogue beam reaches 0.97 dB less" in analogue
+    assert "compared with an array and analogue combining, none was found within 0.04 dB" in analogue
 
 
 def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:
@@ -103,9 +118,9 @@ def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> No
     assert any(line.startswith("The file's vehicle (a 5 degree tilt") for line in lines)
     assert "does not suffice: it reaches" in " ".join(lines)
     assert lines[-1].startswith(
-        "Under the stated errors an omnidirectional vehicle guarantees 20.1 % of its value"
+        "Under the stated errors an omnidirectional vehicle guarantees 6.97 dB less at its robust pose"
     )
-    assert "guarantees 100 % of that: the simplest vehicle" in lines[-1]
+    assert "guarantees under 0.01 dB less than that. Of the vehicles compared" in lines[-1]
     text = text_of(robust)
     assert "Guaranteed under the file's errors (dB)" in text
     assert "file: tilt 5, mount 90" in text
@@ -117,7 +132,8 @@ def test_nothing_to_give() -> None:
     zero = compared("eavesdropper", certify=False)
     for result in zero.results:
         zero = with_value(zero, result.case.name, 0.0)
-    assert answer_lines(zero) == ["No vehicle with one dipole gives every node a signal in this scene."]
+    (line,) = answer_lines(zero)
+    assert line == "Of the vehicles compared, none with one dipole gives every node a signal in this scene."
     assert "nan" not in text_of(zero)
     draw_airframes(zero)
 
@@ -153,25 +169,25 @@ def test_tables_fit_a_terminal(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("share", "words"),
-    [
-        (0.5, "50 %"),
-        (0.9926, "99.3 %"),
-        (0.9994, "99.9 %"),
-        (0.99999, "100 %"),
-        (2.128, "213 %"),
-        (34015.84, "45.3 dB more"),
-    ],
+    ("difference", "words"),
+    [(-0.0324, "0.03 dB less"), (-1e-9, "under 0.01 dB less"), (3.28, "3.28 dB more")],
 )
-def test_shares(share: float, words: str) -> None:
-    """Three digits below a hundred, whole per cent above, and decibels from a hundredfold on."""
-    assert share_text(share) == words
+def test_differences(difference: float, words: str) -> None:
+    """Two decimals of a decibel; what they do not show is not called nothing."""
+    assert less_or_more(difference, Quantity.of(load(EXAMPLES / "paper.toml"))) == words
 
 
-def test_shares_of_something() -> None:
-    """A sentence reads on after per cent and after decibels."""
-    assert share_of(0.5, "that") == "50 % of that"
-    assert share_of(34015.84, "that") == "45.3 dB more than that"
+@pytest.mark.parametrize("name", ["whips", "eavesdropper", "requirements"])
+def test_no_answer_is_a_share(name: str) -> None:
+    """Values in dB and rates may be near zero or below: they are compared by differences in their unit."""
+    comparison = compared(name, certify=False)
+    quantity = Quantity.of(comparison.scenario)
+    lines = answer_lines(comparison)
+    assert not any("%" in line.replace("within 1 %", "") for line in lines)
+    assert any(f"{quantity.unit} less than the omnidirectional vehicle" in line for line in lines)
+    for case, result in zip(comparison.to_dict()["cases"], comparison.results, strict=True):
+        values = [quantity.in_unit(each.value) for each in (result, comparison.omnidirectional)]
+        assert case["difference_from_omnidirectional"] == pytest.approx(values[0] - values[1])
 
 
 def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
@@ -179,7 +195,7 @@ def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
     figure = draw_airframes(robust)
     (axes,) = figure.axes
     assert [text.get_text() for text in axes.get_yticklabels()] == [one.case.label for one in robust.results]
-    assert "99.3 %" in figure.get_supxlabel()
+    assert "0.03 dB less" in figure.get_supxlabel()
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert set(legend) == {"upper bound", "guaranteed, robust pose", "guaranteed, pose shown"}
     figure.draw_without_rendering()

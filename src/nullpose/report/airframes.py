@@ -11,7 +11,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, document, grouped, head, rows, table
-from nullpose.report.numbers import begun, bound_text, fixed, share_of, share_text, short
+from nullpose.report.numbers import begun, bound_text, fixed, less_or_more, percent, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
 
@@ -129,22 +129,23 @@ def proof_lines(comparison: AirframeComparison) -> list[str]:
 def answer_lines(comparison: AirframeComparison) -> list[str]:
     """Return what the numbers say of the question whether the vehicle has to be omnidirectional.
 
-    The least vehicle that suffices, what the others fall short by, what an array would take, and what of it
-    holds under errors.
+    The least of the vehicles compared that suffices, what the others fall short by in dB or bits/s/Hz, what
+    an array would take, and what of it holds under errors. No vehicle that was not compared is judged.
 
     Args:
         comparison: what each vehicle makes of a scenario.
     """
     least, own, arrays = comparison.least_sufficient, comparison.stated, comparison.arrays
     if least is None:
-        return ["No vehicle with one dipole gives every node a signal in this scene."]
+        return ["Of the vehicles compared, none with one dipole gives every node a signal in this scene."]
     lesser = [result for result in comparison.dipoles if result is not comparison.omnidirectional]
     lines = [_least_line(comparison, lesser)] if lesser else []
     if least is comparison.omnidirectional:
-        lines.insert(0, "This scene needs an omnidirectional vehicle.")
+        only = "Of the vehicles compared with one dipole, only the omnidirectional one was found to suffice."
+        lines.insert(0, f"{only} Another tilt or mount may: state it in [airframe] to compare it.")
     if own is not None and own is not least:
         verdict = "suffices too" if comparison.suffices(own) else "does not suffice"
-        lines.append(f"{begun(own.case.phrase)} {verdict}: it reaches {_share(comparison, own)}.")
+        lines.append(f"{begun(own.case.phrase)} {verdict}: it reaches {_difference(comparison, own)}.")
     for combining in dict.fromkeys(result.case.combining for result in arrays):
         alike = [result for result in arrays if result.case.combining == combining]
         lines.append(_least_line(comparison, alike))
@@ -156,14 +157,14 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
 def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
     """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
     best = max(results, key=lambda result: result.value)
-    verdict = f"{'No vehicle' if best.case.combining else 'No simpler vehicle'} with {_kind(best)} reaches"
+    compared = f"Of the vehicles compared with {_kind(best)}"
+    verdict = f"{compared}, {'none' if best.case.combining else 'no simpler one'} was found"
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
-        best, verdict = least, f"It is the simplest vehicle with {_kind(least)} that reaches"
-    share = _share(comparison, best, "the omnidirectional vehicle's value")
+        best, verdict = least, f"{compared}, it is the simplest"
     return (
-        f"{begun(best.case.phrase)} reaches {share} in this scene. {verdict} "
-        f"{share_text(1.0 - comparison.tolerance)} or more."
+        f"{begun(best.case.phrase)} reaches {_difference(comparison, best)} in this scene. {verdict} "
+        f"{_near(comparison)} of that."
     )
 
 
@@ -173,11 +174,16 @@ def _kind(result: AirframeResult) -> str:
     return f"an array and {combining} combining" if combining else "one dipole"
 
 
-def _share(comparison: AirframeComparison, result: AirframeResult, whole: str = "") -> str:
-    share = comparison.share(result)
-    if share is None:
-        return f"nothing of {whole}" if whole else "nothing"
-    return share_of(share, whole) if whole else share_text(share)
+def _difference(comparison: AirframeComparison, result: AirframeResult) -> str:
+    quantity = Quantity.of(comparison.scenario)
+    return f"{less_or_more(comparison.difference(result), quantity)} than the omnidirectional vehicle"
+
+
+def _near(comparison: AirframeComparison) -> str:
+    """Return how near to the omnidirectional vehicle suffices: as a rate, or in decibels of a power ratio."""
+    if Quantity.of(comparison.scenario).is_rate:
+        return f"within {percent(comparison.tolerance)}"
+    return f"within {-10.0 * math.log10(1.0 - comparison.tolerance):.2f} dB"
 
 
 def _errors_line(comparison: AirframeComparison) -> str:
@@ -185,15 +191,19 @@ def _errors_line(comparison: AirframeComparison) -> str:
     whole = comparison.omnidirectional.guaranteed
     if whole is None or not whole.robust_pose:
         return "Under the stated errors no vehicle has a guaranteed value above zero."
-    shares = [
-        (result, result.guaranteed.robust_pose / whole.robust_pose)
+    quantity = Quantity.of(comparison.scenario)
+    least, robust_pose = next(
+        (result, result.guaranteed.robust_pose)
         for result in comparison.dipoles
-        if result.guaranteed is not None and result.guaranteed.robust_pose is not None
-    ]
-    least, share = next(one for one in shares if one[1] >= 1.0 - comparison.tolerance)
-    kept = whole.robust_pose / comparison.omnidirectional.value
+        if result.guaranteed is not None
+        and result.guaranteed.robust_pose is not None
+        and result.guaranteed.robust_pose >= (1.0 - comparison.tolerance) * whole.robust_pose
+    )
+    all_tilt = quantity.in_unit(whole.robust_pose)
+    kept = less_or_more(all_tilt - quantity.in_unit(comparison.omnidirectional.value), quantity)
+    lost = less_or_more(quantity.in_unit(robust_pose) - all_tilt, quantity)
     return (
-        f"Under the stated errors an omnidirectional vehicle guarantees {share_text(kept)} of its value at "
-        f"its robust pose. {begun(least.case.phrase)} guarantees {share_of(share, 'that')}: the simplest "
-        f"vehicle with one dipole that guarantees {share_text(1.0 - comparison.tolerance)} or more."
+        f"Under the stated errors an omnidirectional vehicle guarantees {kept} at its robust pose than it "
+        f"reaches without errors. {begun(least.case.phrase)} guarantees {lost} than that. Of the vehicles "
+        f"compared with one dipole, it is the simplest {_near(comparison)} of that guarantee."
     )

@@ -182,32 +182,17 @@ def listed(parts: list[str]) -> str:
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
-_MOST_IN_PERCENT = 100.0
-
-
-def share_text(share: float) -> str:
-    """Return a share in per cent: three digits, whole numbers from 100 on, as in ``99.3 %``.
-
-    Never rounded up to 100 by more than a twentieth of a per cent. A ratio above a hundred is in decibels, as
-    in ``45.3 dB more``.
+def less_or_more(difference: float, quantity: Quantity) -> str:
+    """Return a difference in words, as in ``0.03 dB less`` or ``under 0.01 dB more``.
 
     Args:
-        share: at least 0.
+        difference: in the quantity's unit.
+        quantity: whose it is.
     """
-    if share > _MOST_IN_PERCENT:
-        return f"{10.0 * math.log10(share):.1f} dB more"
-    per_cent = 100.0 * share
-    return f"{per_cent:.0f} %" if per_cent >= 99.95 else f"{per_cent:.3g} %"
-
-
-def share_of(share: float, whole: str) -> str:
-    """Return a share of something in words, as in ``99.3 % of that`` or ``45.3 dB more than that``.
-
-    Args:
-        share: at least 0.
-        whole: what it is a share of.
-    """
-    return f"{share_text(share)} {'than' if share > _MOST_IN_PERCENT else 'of'} {whole}"
+    size = with_unit(abs(difference), quantity)
+    if not quantity.is_rate and abs(difference) < 0.01:
+        size = f"under 0.01 {quantity.unit}"
+    return f"{size} {'less' if difference <= 0.0 else 'more'}"
 
 
 def count_of(count: int, noun: str, nouns: str = "") -> str:

@@ -131,6 +131,15 @@ class AirframeComparison:
         whole = self.omnidirectional.value
         return result.value / whole if whole > 0.0 else None
 
+    def difference(self, result: AirframeResult) -> float:
+        """Return what a vehicle gives more than the omnidirectional one, in dB or bits/s/Hz; below 0 if less.
+
+        Args:
+            result: one of the results.
+        """
+        quantity = Quantity.of(self.scenario)
+        return quantity.in_unit(result.value) - quantity.in_unit(self.omnidirectional.value)
+
     def suffices(self, result: AirframeResult, tolerance: float = TOLERANCE) -> bool:
         """Return whether a vehicle gives as much as the omnidirectional one, but for a tolerance.
 
@@ -205,7 +214,12 @@ class AirframeComparison:
         return {
             "scenario": self.scenario.to_dict(),
             "cases": [
-                result.to_dict() | {"share_of_omnidirectional": self.share(result)} for result in self.results
+                result.to_dict()
+                | {
+                    "share_of_omnidirectional": self.share(result),
+                    "difference_from_omnidirectional": self.difference(result),
+                }
+                for result in self.results
             ],
             "tolerance": self.tolerance,
             "least_sufficient": None if least is None else least.case.name,

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.markdown import gain_tables
 from nullpose.report.study.summary import Summary
 
 Summed = Callable[..., Summary]
@@ -23,10 +24,10 @@ def _gains(answer: str, phrase: str) -> list[str]:
     return re.findall(rf"({MINUS}?[\d.]+) dB in the (?:median|worst tenth)", told)
 
 
-def _shares(answer: str, phrase: str) -> list[str]:
-    """Return what part of the omnidirectional vehicle's two gains a case has, in per cent."""
+def _differences(answer: str, phrase: str) -> list[str]:
+    """Return how much less than the omnidirectional vehicle a case gains in the median and worst tenth."""
     told = re.split(r";|\. [A-Z]", answer.split(f"{phrase} gains ")[1])[0]
-    return re.findall(rf"({MINUS}?\d+) % (?:and|of what)", told)
+    return re.findall(r"([\d.]+ dB (?:less|more))", told)
 
 
 def test_the_question(summed: Summed, ladder: Ladder) -> None:
@@ -41,16 +42,16 @@ def test_the_question(summed: Summed, ladder: Ladder) -> None:
     assert f"Against it, on the same scenes, {FREE} gains" in answer
     assert (_gains(answer, FREE), _gains(answer, TILT)) == (["2.00", "2.00"], ["1.90", "1.90"])
     assert "(95 % confidence: 2.00 to 2.00)" in answer
-    assert (_shares(answer, FREE), _shares(answer, TILT)) == ([], ["95", "95"])
-    assert f"{TILT} is the smallest tilt that reaches 90 % or more of both gains" in answer
+    assert (_differences(answer, FREE), _differences(answer, TILT)) == ([], ["0.10 dB less"] * 2)
+    assert f"{TILT} is the smallest tilt within 0.5 dB of the omnidirectional vehicle" in answer
     assert answer.endswith(f"For {FREE} the two gains are 1.00 and 1.00 dB at P_M/P = 0.1.")
 
 
 def test_too_little(summed: Summed, ladder: Ladder) -> None:
     """No tilt of the study reaches most of the gain."""
     answer = answer_of(summed(ladder(40, 1.0, 2.0)))
-    assert _shares(answer, TILT) == ["50", "50"]
-    assert answer.endswith("None of these reaches 90 % or more of both gains.")
+    assert _differences(answer, TILT) == ["1.00 dB less", "1.00 dB less"]
+    assert "Of these cases no other tilt is within 0.5 dB of the omnidirectional vehicle" in answer
 
 
 @pytest.mark.parametrize(("case", "phrase"), [(1, TILT), (2, FREE)])
@@ -63,10 +64,21 @@ def test_a_loss_in_the_worst_tenth(summed: Summed, ladder: Ladder, case: int, ph
 
 
 def test_nothing_gained(summed: Summed, ladder: Ladder) -> None:
-    """No share of a gain of nothing."""
+    """Where tilt gains nothing, the level vehicle is the smallest tilt that has it all."""
     answer = answer_of(summed(ladder(40, 0.0, 0.0)))
     assert _gains(answer, FREE) == ["0.00", "0.00"]
-    assert (_shares(answer, TILT), "smallest tilt" in answer) == ([], False)
+    assert f"{LEVEL} is the smallest tilt within 0.5 dB" in answer
+
+
+@pytest.mark.parametrize("whole_db", [0.05, 0.0, -0.05])
+def test_a_loss_over_a_gain_of_almost_nothing(summed: Summed, ladder: Ladder, whole_db: float) -> None:
+    """A vehicle that loses .7 dB where all of tilt gains .05 dB is not told as -1400 per cent of that."""
+    summary = summed(ladder(40, -0.7, whole_db))
+    answer = answer_of(summary)
+    assert _differences(answer, TILT) == [f"{0.7 + whole_db:.2f} dB less"] * 2
+    assert "%" not in answer.replace("95 % confidence", "")
+    headings = [heading for heading in gain_tables(summary) if "omnidirectional" in heading]
+    assert headings == ["Difference from the omnidirectional vehicle's median gain, dB"]
 
 
 def test_one_scene(summed: Summed, ladder: Ladder) -> None:
@@ -74,7 +86,7 @@ def test_one_scene(summed: Summed, ladder: Ladder) -> None:
     summary = summed(ladder(1, 1.0, 2.0))
     answer = answer_of(summary)
     assert answer.startswith(f"Over 1 scene {LEVEL}")
-    assert (_gains(answer, FREE), _shares(answer, TILT)) == (["2.00", "2.00"], ["50", "50"])
+    assert (_gains(answer, FREE), _differences(answer, TILT)) == (["2.00", "2.00"], ["1.00 dB less"] * 2)
     assert "confidence" not in answer
     assert "With 1 scene the worst tenth is 1 scene, so its statistics are rough." in certainty_of(summary)
 

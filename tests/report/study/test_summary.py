@@ -29,8 +29,9 @@ def test_levels_and_gains(summed: Summed, ladder: Ladder) -> None:
     )
     assert (whole["against"], whole["pairs"]) == ("level-vertical", 100)
     tilted = _row(summary, "tilt-10")
-    assert (tilted["share_of_median"], tilted["share_of_worst_tenth"]) == pytest.approx((0.5, 0.5))
-    assert (tilted["share_of_median_low"], tilted["share_of_median_high"]) == pytest.approx((0.5, 0.5))
+    assert (tilted["difference_median"], tilted["difference_worst_tenth"]) == pytest.approx((-2.0, -2.0))
+    ends = tilted["difference_median_low"], tilted["difference_median_high"]
+    assert ends == pytest.approx((-2.0, -2.0))
 
 
 def test_gains_are_paired(summed: Summed) -> None:
@@ -119,7 +120,7 @@ def test_units_stand_in_the_columns(summed: Summed, ladder: Ladder) -> None:
     """A file says what its numbers are; shares and counts have no unit."""
     names = set(summed(ladder(3, 1.0, 2.0)).table().columns)
     assert {"median_db", "worst_tenth_low_db", "gain_median_db", "shift_worst_tenth_db"} <= names
-    assert {"best_share", "share_of_median", "seconds_worst", "gap_worst"} <= names
+    assert {"best_share", "difference_median_db", "seconds_worst", "gap_worst"} <= names
 
 
 def test_no_signal_at_all(summed: Summed) -> None:
@@ -128,4 +129,4 @@ def test_no_signal_at_all(summed: Summed) -> None:
     summary = summed(cells)
     assert _row(summary, "level-vertical")["median"] == -math.inf
     assert _row(summary, "tilt-10")["gain_median"] == 0.0
-    assert math.isnan(_row(summary, "tilt-10")["share_of_median"])
+    assert _row(summary, "tilt-10")["difference_median"] == -math.inf

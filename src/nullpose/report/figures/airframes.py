@@ -14,7 +14,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.airframes import answer_lines, numbers_of
 from nullpose.report.figures.style import GREY, INK, VEHICLES, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
-from nullpose.report.numbers import begun, number, share_text
+from nullpose.report.numbers import begun, number
 from nullpose.study import AirframeComparison, AirframeResult
 
 _ROW_INCH = 0.3
@@ -113,10 +113,11 @@ def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, p
 
 
 def _words(comparison: AirframeComparison, quantity: Quantity, result: AirframeResult, value: float) -> str:
-    """Return a vehicle's value, and its share of what the omnidirectional one gives."""
+    """Return a vehicle's value, and its difference from the omnidirectional one's."""
     if result.objective is None:
         return "no pose reaches every node"
-    share = comparison.share(result)
-    if share is None or result is comparison.omnidirectional:
+    difference = comparison.difference(result)
+    if not math.isfinite(difference) or result is comparison.omnidirectional:
         return number(value, quantity)
-    return f"{number(value, quantity)}  ({share_text(share)})"
+    sign = "+" if difference > 0.0 else ""
+    return f"{number(value, quantity)}  ({sign}{number(difference, quantity)})"

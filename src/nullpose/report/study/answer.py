@@ -6,19 +6,19 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from nullpose.report.numbers import begun, count_of, listed, number, percent, span, with_unit
+from nullpose.report.numbers import begun, count_of, less_or_more, listed, number, percent, span, with_unit
 from nullpose.report.study.cases import LEVEL, ReportCase
 from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES
 from nullpose.report.study.summary import Summary, three_of
 
-MOST_OF_IT = 0.9  # a vehicle that has this share of what an omnidirectional one gains has most of it
+NEAR_DB, NEAR_BPS_HZ = 0.5, 0.1  # so much less than an omnidirectional vehicle gains is near it
 
 _MOST_TOLD = 5  # cases, and combinations of swept values, that are told one by one
 _GAINS = (("gain_median", "in the median"), ("shift_worst_tenth", "in the worst tenth"))
 
 
 def answer_of(summary: Summary) -> str:
-    """Return the first paragraph: what each case gains, and the smallest tilt that reaches most of the gain.
+    """Return the first paragraph: what each case gains, and the smallest tilt near the omnidirectional one.
 
     Args:
         summary: of a study.
@@ -49,7 +49,7 @@ def _of_group(summary: Summary, group: Sequence[ReportCase]) -> str:
         parts = [_gain_words(summary, point, case) for case in others[:_MOST_TOLD]]
         sentences += [
             f"Against it, on the same scenes, {'; '.join(parts)}.",
-            _least_tilt_words(summary, point, others),
+            _least_tilt_words(summary, point, [reference, *others]),
         ]
         sentences += [_missing_words(reference), _sweep_words(summary, point, others[0])]
     return " ".join(filter(None, sentences))
@@ -64,7 +64,7 @@ def _opening(summary: Summary, point: int) -> str:
 
 
 def _gain_words(summary: Summary, point: int, case: ReportCase) -> str:
-    """Return the two gains of a case, and what part they are of the omnidirectional vehicle's."""
+    """Return the two gains of a case, and how far they are from the omnidirectional vehicle's."""
     row, told = summary.row(point, case), []
     for name, words in _GAINS:
         value, low, high = three_of(row, name)
@@ -72,26 +72,31 @@ def _gain_words(summary: Summary, point: int, case: ReportCase) -> str:
         unknown = math.isnan(low) and math.isnan(high)
         told.append(f"{with_unit(value, summary.quantity)} {words}{'' if unknown else sure}")
     words = f"{case.phrase} gains {' and '.join(told)}"
-    shares = _shares(row)
-    if any(map(math.isnan, shares)) or case.place == case.whole:
+    differences = _differences(row)
+    if any(map(math.isnan, differences)) or case.place == case.whole:
         return words
-    return f"{words}, which is {' and '.join(map(percent, shares))} of what the omnidirectional one gains"
+    apart = " and ".join(less_or_more(each, summary.quantity) for each in differences)
+    return f"{words}, which is {apart} than the omnidirectional one gains"
 
 
-def _shares(row: Any) -> tuple[float, float]:
-    return float(row["share_of_median"]), float(row["share_of_worst_tenth"])
+def _differences(row: Any) -> tuple[float, float]:
+    return float(row["difference_median"]), float(row["difference_worst_tenth"])
 
 
 def _least_tilt_words(summary: Summary, point: int, cases: Sequence[ReportCase]) -> str:
-    """Return which of the tilts that were tried is the smallest that reaches most of the gain."""
+    """Return which of the tilts that were tried is the smallest that is near the omnidirectional vehicle."""
     tilts = [case for case in cases if case.tilt_deg is not None and case.place != case.whole]
-    shares = {case: min(_shares(summary.row(point, case))) for case in tilts}
-    if not shares or any(map(math.isnan, shares.values())):
+    lowest = {case: min(_differences(summary.row(point, case))) for case in tilts}
+    if not lowest or any(map(math.isnan, lowest.values())):
         return ""
-    enough = [case for case in tilts if shares[case] >= MOST_OF_IT]
+    near = NEAR_BPS_HZ if summary.quantity.is_rate else NEAR_DB
+    enough = [case for case in tilts if lowest[case] >= -near]
     least = min(enough, key=lambda case: (case.tilt_deg, case.place), default=None)
-    which = "None of these" if least is None else f"Of these {least.phrase} is the smallest tilt that"
-    return f"{which} reaches {percent(MOST_OF_IT)} or more of both gains."
+    which = "no other tilt is" if least is None else f"{least.phrase} is the smallest tilt"
+    return (
+        f"Of these cases {which} within {near:g} {summary.quantity.unit} of the omnidirectional vehicle, in "
+        "the median and in the worst tenth."
+    )
 
 
 def _missing_words(reference: ReportCase) -> str:

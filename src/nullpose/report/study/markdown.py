@@ -143,7 +143,7 @@ def _gained(summary: Summary) -> _Part:
 
 
 def gain_tables(summary: Summary) -> dict[str, Rows]:
-    """Return the gains and their shares of the omnidirectional vehicle's, by what stands above each table.
+    """Return the gains and their differences from the omnidirectional vehicle's, by each table's heading.
 
     Args:
         summary: of the study.
@@ -158,8 +158,12 @@ def gain_tables(summary: Summary) -> dict[str, Rows]:
         f"10th percentile of the gains (nine scenes in ten gain this or more), {unit}": _intervals(
             summary, compared, "gain_worst_tenth"
         ),
-        "Share of the omnidirectional vehicle's median gain, %": _shares(summary, partial, "share_of_median"),
-        "Share of its gain in the worst tenth, %": _shares(summary, partial, "share_of_worst_tenth"),
+        f"Difference from the omnidirectional vehicle's median gain, {unit}": _intervals(
+            summary, partial, "difference_median"
+        ),
+        f"Difference from its gain in the worst tenth, {unit}": _intervals(
+            summary, partial, "difference_worst_tenth"
+        ),
     }
 
 

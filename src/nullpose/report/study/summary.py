@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 Columns = dict[str, Any]  # numbers by case, or one for all
 Counts = NDArray[np.int64]
 
-_RESAMPLED = ("shift_worst_tenth", "share_of_median", "share_of_worst_tenth")
+_RESAMPLED = ("shift_worst_tenth", "difference_median", "difference_worst_tenth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +92,7 @@ class Summary:
     def table(self) -> pd.DataFrame:
         """Return the statistics with the unit in the names of columns, for a file."""
         unit = "bps_hz" if self.quantity.is_rate else "db"
-        heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "cost_")
+        heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "difference_", "cost_")
         return self.frame.rename(columns=lambda name: f"{name}_{unit}" if name.startswith(heads) else name)
 
 
@@ -159,10 +159,9 @@ def _shares(name: str, hits: Counts, counts: Counts) -> Columns:
     return _with_ends(name, _divided(hits, counts), map(share_interval, hits, counts))
 
 
-def _divided(part: FloatArray | Counts, whole: FloatArray | Counts) -> FloatArray:
-    """Return shares of what there is; NaN where there is nothing, or no finite number."""
-    sound = np.isfinite(part) & np.isfinite(whole) & (whole > 0)
-    return np.asarray(np.divide(part, whole, out=np.full(part.shape, math.nan), where=sound))
+def _divided(part: Counts, whole: Counts) -> FloatArray:
+    """Return shares of what was counted; NaN where nothing was."""
+    return np.asarray(np.divide(part, whole, out=np.full(part.shape, math.nan), where=whole > 0))
 
 
 def _reached(at: StudyValues) -> Columns:
@@ -191,16 +190,18 @@ def _gained(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
 
 
 def _bootstrapped(cases: Sequence[ReportCase], value: FloatArray) -> Columns:
-    """Return for each case what the worst tenth gains, and the shares of what is gained by all of tilt."""
+    """Return for each case what the worst tenth gains, and both gains less those of the omnidirectional."""
     references = [case.reference for case in cases]
-    wholes = [case.reference if case.whole is None else case.whole for case in cases]  # itself: no share
+    wholes = [case.place if case.whole is None else case.whole for case in cases]
+    lacking = np.array([case.whole is None for case in cases])
     tenths = resampled(value, WORST_TENTH)
     medians = resampled(difference(value, value[:, references]), MEDIAN)
 
     def statistics(times: Counts) -> FloatArray:
         tenth, median = tenths(times), medians(times)
         shift = difference(tenth, tenth[references])
-        return np.stack([shift, _divided(median, median[wholes]), _divided(shift, shift[wholes])])
+        apart = [difference(gain, gain[wholes]) for gain in (median, shift)]
+        return np.stack([shift, *np.where(lacking, math.nan, apart)])
 
     count = len(value)
     found = statistics(np.ones(count, dtype=np.int64))
