@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
+from nullpose import load
+
 Run = Callable[..., Result]
+EXAMPLES = Path(__file__).parents[2] / "examples"
 BEST = ("--pose", "-2.2423,23.8182,8", "--attitude", "-17.180,-79.071,0")
 
 
@@ -42,14 +45,36 @@ def test_a_file_of_poses(run: Run, paper: str, tmp_path: Path) -> None:
     told = json.loads(run("evaluate", paper, "--poses", file, "--json").stdout)
     assert [case["status"] for case in told["cases"]] == ["given", "given"]
     assert told["cases"][0]["below_bound"] > 0.0
-    assert told["cases"][1]["not_allowed"] == ["the position is outside the airspace"]
+    assert told["cases"][1]["not_allowed"] == ["the position is 4 m outside altitude_m"]
     assert all("scenario" not in case for case in told["cases"])
+
+
+def test_a_pose_by_latitude_and_longitude(run: Run) -> None:
+    """The pose of a place on the Earth is that of its metres; degrees in place of metres earn a warning."""
+    geodetic = str(EXAMPLES / "geodetic.toml")
+    scenario = load(geodetic)
+    position_m = scenario.origin.position_m({"lat_deg": 50.0006, "lon_deg": 14.5012, "alt_m": 280.0})
+    common = ("--attitude", "0,80,0", "--gap", "1", "--json")
+    placed = run("evaluate", geodetic, "--pose-lat-lon", "50.0006,14.5012,280", *common)
+    metric = run("evaluate", geodetic, "--pose", ",".join(map(repr, position_m.tolist())), *common)
+    assert placed.exit_code == metric.exit_code == 0
+    assert (placed.stderr, metric.stderr) == ("", "")
+    value, same = (json.loads(result.stdout)["objective"]["value"] for result in (placed, metric))
+    assert value == pytest.approx(same, rel=1e-12)
+    mistaken = run("evaluate", geodetic, "--pose", "50.0006,14.5012,60", *common)
+    assert "warning: --pose: 50.0006 m east and 14.5012 m north are close to the origin's" in mistaken.stderr
+    assert "--pose-lat-lon" in mistaken.stderr
+    far = run("evaluate", geodetic, "--pose-lat-lon", "14.5012,50.0006,280", *common)
+    assert far.exit_code == 2
+    assert "are latitude and longitude exchanged?" in far.stderr
 
 
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
         ((), "give either --pose"),
+        (("--pose", "1,2,9", "--pose-lat-lon", "50,14,9"), "give either --pose"),
+        (("--pose-lat-lon", "50,14,9"), "the scenario has no [origin]"),
         (("--pose", "1,2"), "--pose: given '1,2'; allowed: three numbers"),
         (("--pose", "1,2,9", "--attitude", "0;0;0"), "--attitude: given '0;0;0'"),
         (("--pose", "1,2,9", "--poses", "none.csv"), "give either --pose"),

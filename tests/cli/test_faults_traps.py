@@ -73,7 +73,7 @@ def test_a_fence_in_degrees(run: Run, tmp_path: Path) -> None:
         run("check", scene(tmp_path, fence=fence)),
         "1 fault",
         "airspace.geofence_m: it is 0.005 m by 0.004 m, but the ground points are",
-        "this looks like degrees; write geofence_lat_lon_deg = [[latitude, longitude], ...]",
+        "this looks like degrees or another unit; write geofence_lat_lon_deg = [[latitude, longitude], ...]",
     )
     assert len(told.splitlines()) == 2
 
@@ -90,7 +90,10 @@ def test_heights_over_the_ellipsoid_and_over_the_sea(run: Run, tmp_path: Path) -
     assert len(told.splitlines()) == 2
     result = run("check", scene(tmp_path, origin="alt_m = 185.0"))
     assert result.exit_code == 0
-    assert "warning: nodes[0]: this and all other points lie 46 m or more above the origin" in result.stderr
+    assert (
+        "warning: nodes[0]: this and all other points in alt_m lie 46 m or more above the origin"
+        in result.stderr
+    )
     assert "alt_msl_m for altitudes over the sea, alt_agl_m for those above the ground" in result.stderr
 
 
@@ -146,10 +149,57 @@ def test_dbm_given_as_watts(run: Run, paper: str, tmp_path: Path) -> None:
     result = run("check", mixed)
     assert result.exit_code == 0
     assert (
-        "warning: nodes[0].power_w: 33 W is 45.2 dBm, and others are stated in dBm; if 33 dBm (2 W) is "
-        "meant, write power_dbm = 33" in result.stderr
+        "warning: nodes[0].power_w: 33 W is 45.2 dBm, and other transmit powers are stated in dBm; if 33 dBm "
+        "(2 W) is meant, write power_dbm = 33" in result.stderr
     )
     assert run("check", paper, "--set", "jammers.M.power_w=33").stderr == ""
+
+
+def test_noise_in_dbm_is_no_other_power(run: Run, paper: str) -> None:
+    """Noise is in dBm nearly everywhere: transmit powers in W beside it are no mixture."""
+    result = run("check", paper, "--set", "receiver.noise_dbm=-90", "--set", "jammers.M.power_w=10")
+    assert (result.exit_code, result.stderr) == (0, "")
+
+
+def test_points_in_degrees_as_metres(run: Run, paper: str) -> None:
+    """A point whose metres are the origin's latitude and longitude earns a warning, either way round."""
+    origin = ("--set", "origin={lat_deg=50.2, lon_deg=14.4, alt_m=300}")
+    for degrees in ("[50.2013, 14.4028, 2]", "[14.4028, 50.2013, 2]"):
+        result = run("check", paper, *origin, "--set", f"nodes.S1.position_m={degrees}")
+        assert result.exit_code == 0
+        assert "close to the origin's latitude and longitude (50.2, 14.4)" in result.stderr
+        assert "lat_deg, lon_deg and an altitude" in result.stderr
+    assert run("check", paper, *origin).stderr == ""
+
+
+def _fence(east_m: float, north_m: float) -> str:
+    """Return the setting of a rectangular fence by its sides."""
+    corners = [[2.0, 20.0], [2.0 + east_m, 20.0], [2.0 + east_m, 20.0 + north_m], [2.0, 20.0 + north_m]]
+    return f"airspace.geofence_m={corners}"
+
+
+@pytest.mark.parametrize(
+    ("settings", "why"),
+    [
+        ((_fence(0.01, 0.005),), "it is 0.01 m by 0.005 m, but the ground points are 50 m apart"),
+        ((_fence(0.4, 0.1),), "so it must be 0.5 m or more across"),
+        (
+            ("airspace.keep_out_m=200", "airspace.altitude_m=[8, 400]", _fence(1.5, 1.5)),
+            "but keep_out_m is 200 m",
+        ),
+    ],
+)
+def test_a_fence_in_another_unit(run: Run, paper: str, settings: tuple[str, ...], why: str) -> None:
+    """A fence a hundred times smaller than the spread of the points or the keep-out radius is refused."""
+    options = [word for setting in settings for word in ("--set", setting)]
+    refused(run("check", paper, *options), "airspace.geofence_m: ", why, "or the corners in metres")
+
+
+@pytest.mark.parametrize("sides_m", [(0.6, 0.2), (0.05, 0.55), (3.0, 3.0)])
+def test_a_small_fence_that_can_be_meant(run: Run, paper: str, sides_m: tuple[float, float]) -> None:
+    """A place to hover, half a metre across among points 50 m apart, is allowed."""
+    result = run("check", paper, "--set", _fence(*sides_m))
+    assert (result.exit_code, result.stderr) == (0, "")
 
 
 def test_a_study_without_its_extra(

@@ -43,9 +43,27 @@ def test_a_pose_that_is_not_allowed_has_no_bound(paper: Scenario) -> None:
     low, close = evaluate_against(best, poses).results
     assert low.objective.upper_bound is None
     assert low.below_bound is None
-    assert "outside the airspace" in low.not_allowed[0]
+    assert low.not_allowed[0] == "the position is 4 m outside altitude_m"
     assert "more than the airframe's 10 deg" in low.not_allowed[1]
     assert "closer than keep_out_m" in close.not_allowed[1]
+
+
+def test_a_pose_in_a_zone_names_it(paper: Scenario) -> None:
+    """Each no-fly zone that a position is in is named, and the fence, with how far it is."""
+    changes = [
+        'airspace.no_fly=[{name="mast", centre_m=[10, 10], radius_m=5}, '
+        '{name="wood", x_m=[8, 30], y_m=[0, 30]}]',
+        "airspace.geofence_m=[[-40, -20], [12, -20], [12, 70], [-40, 70]]",
+    ]
+    best = solve(apply_overrides(paper, changes), certify=False)
+    both, fence = evaluate_against(
+        best, [Pose([11.0, 10.0, 9.0], 0.0, 0.1), Pose([15.0, 40.0, 9.0], 0.0, 0.1)]
+    ).results
+    assert both.not_allowed == (
+        "the position is 4 m inside the no-fly zone mast",
+        "the position is 3 m inside the no-fly zone wood",
+    )
+    assert fence.not_allowed == ("the position is 3 m outside the geofence",)
 
 
 def test_a_ground_point_is_no_place(paper: Scenario) -> None:

@@ -11,6 +11,8 @@ import typer
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from nullpose.scenario import Scenario
 from nullpose.cli.options import (
     AllowOutside,
     Gap,
@@ -33,6 +35,16 @@ def evaluate(
         str | None,
         typer.Option("--pose", metavar="X,Y,Z", help="The drone's position in metres.", show_default=False),
     ] = None,
+    pose_lat_lon: Annotated[
+        str | None,
+        typer.Option(
+            "--pose-lat-lon",
+            metavar="LAT,LON,ALT",
+            help="The position in degrees and metres, in place of --pose. ALT is over what [origin] states: "
+            "the ellipsoid (alt_m), or the sea if it states alt_msl_m alone.",
+            show_default=False,
+        ),
+    ] = None,
     attitude: Annotated[
         str | None,
         typer.Option(
@@ -47,7 +59,8 @@ def evaluate(
         typer.Option(
             "--poses",
             metavar="CSV",
-            help="File of many poses, in place of --pose: x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg.",
+            help="File of many poses, in place of --pose: x_m, y_m, z_m (or lat_deg, lon_deg and alt_m), "
+            "roll_deg, pitch_deg, yaw_deg.",
             show_default=False,
         ),
     ] = None,
@@ -63,29 +76,53 @@ def evaluate(
     from nullpose.errors import UsageError
     from nullpose.physics import Pose, Poses
     from nullpose.report.evaluation import evaluation_view
+    from nullpose.scenario.plausibility import close_to_degrees
     from nullpose.solve import solve
     from nullpose.solve.options import SolveOptions
     from nullpose.study import evaluate_against, poses_from_csv
 
-    if (pose is None) == (poses is None) or (poses is not None and attitude is not None):
-        raise UsageError("evaluate: give either --pose, with --attitude unless it is 0,0,0, or --poses")
+    if [pose, pose_lat_lon, poses].count(None) != 2 or (poses is not None and attitude is not None):
+        raise UsageError(
+            "evaluate: give either --pose or --pose-lat-lon, with --attitude unless it is 0,0,0, or --poses"
+        )
     scenario = read_scenario(file, overrides, allow_outside)
     if scenario.array is not None:
         raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
     mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
     given: Poses | list[Pose]
     if poses is not None:
-        given = poses_from_csv(poses, mount_rad)
+        given = poses_from_csv(poses, mount_rad, scenario.origin)
     else:
         angles_deg = _three("--attitude", attitude or "0,0,0")
         roll, pitch, yaw = map(math.radians, angles_deg)
-        given = [Pose(_three("--pose", pose or ""), roll, pitch, yaw, mount_rad)]
+        position_m = _three("--pose", pose or "") if pose_lat_lon is None else _placed(scenario, pose_lat_lon)
+        given = [Pose(position_m, roll, pitch, yaw, mount_rad)]
+    remedy = "--pose-lat-lon LAT,LON,ALT, or in a file the columns lat_deg, lon_deg and alt_m"
+    for doubt in close_to_degrees(scenario.origin, [each.position_m for each in given], remedy):
+        typer.echo(f"warning: {'--pose' if poses is None else poses}: {doubt}", err=True)
     options = solve_options(gap, time_limit, node_limit, False, seed)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         best = solve(scenario, on_progress=bar, **options)
     evaluation = evaluate_against(best, given)
     found = evaluation.results[0] if poses is None else evaluation
     tell(found, lambda _: evaluation_view(evaluation), json_output)
+
+
+def _placed(scenario: Scenario, text: str) -> NDArray[np.float64]:
+    """Return the position of a latitude, longitude and altitude.
+
+    Raises:
+        UsageError: the scenario has no origin, or the place is not near it.
+    """
+    from nullpose.errors import UsageError
+
+    if scenario.origin is None:
+        raise UsageError(
+            f"--pose-lat-lon: given {text!r}, but the scenario has no [origin]; allowed: --pose X,Y,Z in "
+            "metres; add an [origin] with lat_deg, lon_deg and alt_m"
+        )
+    keys = ("lat_deg", "lon_deg", "alt_msl_m" if scenario.origin.alt_m is None else "alt_m")
+    return scenario.origin.position_m(dict(zip(keys, _three("--pose-lat-lon", text), strict=True)))
 
 
 def _three(option: str, text: str) -> NDArray[np.float64]:

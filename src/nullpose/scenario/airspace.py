@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property, reduce
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -164,13 +164,24 @@ class Airspace(Section):
         Returns:
             Array of shape ``(...)``.
         """
+        return np.asarray(reduce(np.minimum, (clearance for _, clearance in self.clearances_m(position_m))))
+
+    def clearances_m(self, position_m: ArrayLike) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        """Yields where a position would be forbidden, in words, and how far each is from that [m].
+
+        For the ranges, the geofence and each no-fly zone; below 0 where it is forbidden by that.
+
+        Args:
+            position_m: positions [m], (..., 3).
+        """
         position = np.asarray(position_m, dtype=np.float64)
-        clearance = np.minimum(position - self.lower_m, self.upper_m - position).min(axis=-1)
+        for axis, key in enumerate(("x_m", "y_m", "altitude_m")):
+            across = position[..., axis]
+            yield f"outside {key}", np.minimum(across - self.lower_m[axis], self.upper_m[axis] - across)
         if self.geofence_m is not None:
-            clearance = np.minimum(clearance, depth_m(position[..., :2], self.geofence_outline_m))
+            yield "outside the geofence", depth_m(position[..., :2], self.geofence_outline_m)
         for zone in self.no_fly:
-            clearance = np.minimum(clearance, -zone.depth_m(position, self.altitude_m))
-        return np.asarray(clearance)
+            yield f"inside the no-fly zone {zone.name}", -zone.depth_m(position, self.altitude_m)
 
     def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
         unbounded = (-math.inf, math.inf)

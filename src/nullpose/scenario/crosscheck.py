@@ -13,7 +13,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
-from nullpose.scenario.plausibility import in_degrees
+from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
 
@@ -48,7 +48,7 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
     tables = points | ({} if airspace is None else {("airspace",): airspace}) | zones
     misplaced = [
         *origin_faults(scenario.origin, tables, stated),
-        *in_degrees(tables, [point.position_m for point in points.values() if is_placed(point)]),
+        *too_small(tables, [point.position_m for point in points.values() if is_placed(point)]),
     ]
     yield from misplaced
     yield from _objective_faults(scenario, points)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, ValidationError
 
+from nullpose.errors import UsageError
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
+from nullpose.scenario.faults import EXCHANGED
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
@@ -102,6 +105,36 @@ class Origin(Section):
         base_m = float(self.geodetic[2])
         altitudes = {key: height_m + (here_m - base_m) for key, here_m in own.items() if here_m is not None}
         return {"lat_deg": lat_deg, "lon_deg": lon_deg} | altitudes
+
+    def position_m(self, place: Mapping[str, float]) -> Floats:
+        """Returns where a place on the Earth is: east, north and up from the origin [m], (3,).
+
+        Args:
+            place: ``lat_deg``, ``lon_deg`` [degrees], and ``alt_m`` over the ellipsoid, ``alt_msl_m`` over
+                the sea or ``alt_agl_m`` above the ground at the origin [m].
+
+        Raises:
+            UsageError: it is more than 100 km away; or its altitude is over what the origin does not state.
+
+        Example:
+            >>> origin = Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0)
+            >>> origin.position_m({"lat_deg": 50.001, "lon_deg": 14.5, "alt_agl_m": 20.0}).round(2) + 0.0
+            array([  0.  , 111.23,  20.  ])
+        """
+        *_, altitude = place
+        if altitude != "alt_agl_m" and getattr(self, altitude) is None:
+            raise UsageError(
+                f"{altitude}: given, but [origin] does not state its own {altitude}; allowed: an altitude "
+                f"over what the origin states, or alt_agl_m; add {altitude} to [origin]"
+            )
+        lat_deg, lon_deg = place["lat_deg"], place["lon_deg"]
+        found_m = in_metres(SimpleNamespace(**place), self)["position_m"]
+        if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0 or size_m(found_m) > FARTHEST_M:
+            raise UsageError(
+                f"lat_deg, lon_deg: given {lat_deg:g}, {lon_deg:g}; allowed: within "
+                f"{FARTHEST_M / 1e3:.0f} km of the origin ({self.lat_deg:g}, {self.lon_deg:g}); {EXCHANGED}"
+            )
+        return found_m
 
 
 def located(data: Mapping[str, object]) -> Mapping[str, object]:

@@ -1,4 +1,4 @@
-"""What looks like a mistake: outlines in degrees, powers in another unit, altitudes over something else."""
+"""What looks like a mistake: places in degrees, powers in another unit, altitudes over something else."""
 
 from __future__ import annotations
 
@@ -11,48 +11,80 @@ import numpy as np
 
 from nullpose.errors import Fault
 from nullpose.scenario.faults import Place
-from nullpose.scenario.ground_points import Emitter
-from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin import POINT_LISTS, Origin
+from nullpose.scenario.transmitter import Powered
 from nullpose.scenario.units import EARTHLY_CORNERS, watts_from_dbm
 
 if TYPE_CHECKING:
     from nullpose.scenario.scenario import Scenario
 
-_LEAST_M = {"geofence_m": 5.0, "polygon_m": 0.1}  # smaller outlines are taken for a mistake among ...
-_WIDE_M = 100.0  # ... points farther apart than this
+# Smaller outlines are taken for a mistake: a share of the points' spread, but at most so many metres.
+_LEAST = {"geofence_m": (1e-2, 5.0), "polygon_m": (1e-3, 0.1)}
+_LEAST_OF_KEEP_OUT = 1e-2  # likewise a geofence, as a share of keep_out_m
+_NEAR_DEG = 0.1  # metres that are so close to the origin's latitude and longitude are likely degrees
 _DBM = (10.0, 60.0)  # powers in W that are likely to be dBm
 _OFF_M = 15.0  # points that all lie so far off the origin's altitude are unlikely
 
 
-def in_degrees(
+def too_small(
     tables: Mapping[Place, Any], positions_m: Sequence[tuple[float, float, float]]
 ) -> Iterator[tuple[Place, str]]:
-    """Yields the outlines in metres that are far too small for the ground points, as if they were degrees.
+    """Yields the outlines that are far too small for the ground points, as if they were in another unit.
+
+    The longer side of a fence is to be a hundredth of the points' spread or more (5 m always do), and a
+    hundredth of the keep-out radius; that of a zone's polygon a thousandth of the spread (0.1 m always do).
 
     Args:
         tables: the airspace and its zones by their place, and any others.
         positions_m: of the ground points [m].
     """
     span_m = max((np.ptp(axis) for axis in list(zip(*positions_m, strict=True))[:2]), default=0.0)
-    for (place, table), (key, least_m) in product(
-        tables.items(), _LEAST_M.items() if span_m > _WIDE_M else ()
-    ):
-        if (corners_m := getattr(table, key, None)) and np.ptp(corners_m, axis=0).max() < least_m:
-            east_m, north_m = np.ptp(corners_m, axis=0)
+    for (place, table), (key, (share, most_m)) in product(tables.items(), _LEAST.items()):
+        if not (corners_m := getattr(table, key, None)):
+            continue
+        least = {f"the ground points are {span_m:.3g} m apart": min(share * span_m, most_m)}
+        if (keep_out_m := getattr(table, "keep_out_m", None)) is not None:
+            least[f"keep_out_m is {keep_out_m:g} m"] = _LEAST_OF_KEEP_OUT * keep_out_m
+        (why, least_m), (east_m, north_m) = (
+            max(least.items(), key=lambda each: each[1]),
+            np.ptp(corners_m, axis=0),
+        )
+        if max(east_m, north_m) < least_m:
             earthly = next(each for each, metric in EARTHLY_CORNERS.items() if metric == key)
             yield (
-                (*place, key),
-                f"it is {east_m:.2g} m by {north_m:.2g} m, but the ground points are {span_m:.0f} m apart: "
-                f"this looks like degrees; write {earthly} = [[latitude, longitude], ...] and an [origin], "
-                "or the corners in metres east and north of the origin",
+                (*place, key if getattr(table, earthly) is None else earthly),
+                f"it is {east_m:.2g} m by {north_m:.2g} m, but {why}, so it must be {least_m:.2g} m or more "
+                f"across: this looks like degrees or another unit; write {earthly} = [[latitude, longitude], "
+                "...] and an [origin], or the corners in metres east and north of the origin",
             )
+
+
+def close_to_degrees(origin: Origin | None, positions_m: Sequence[Any], remedy: str) -> Iterator[str]:
+    """Yields, of the first position whose metres are close to the origin's latitude and longitude, its words.
+
+    Args:
+        origin: of the scenario, or None.
+        positions_m: east, north and up [m].
+        remedy: what to write for degrees.
+    """
+    if origin is None or not len(positions_m) or max(abs(origin.lat_deg), abs(origin.lon_deg)) < 1.0:
+        return  # near latitude and longitude zero small numbers are as likely metres
+    own_deg, planes_m = np.array([origin.lat_deg, origin.lon_deg]), np.array(positions_m)[:, :2]
+    apart = np.minimum(*(np.abs(planes_m - each).max(axis=1) for each in (own_deg, own_deg[::-1])))
+    if apart.min() < _NEAR_DEG:
+        east_m, north_m = planes_m[apart.argmin()]
+        yield (
+            f"{east_m:g} m east and {north_m:g} m north are close to the origin's latitude and longitude "
+            f"({origin.lat_deg:g}, {origin.lon_deg:g}), as if they were degrees; if they are, give {remedy}"
+        )
 
 
 def doubts(scenario: Scenario) -> tuple[Fault, ...]:
     """Returns what a sound scenario states that looks like a mistake, each with its place.
 
-    Powers in W that would be likely in dBm, where the file states others in dBm; points that all lie as far
-    off the origin's altitude as the sea, the ellipsoid and the ground may be apart.
+    Powers in W that would be likely in dBm, where the file states other transmit powers in dBm; points in
+    metres that are close to the origin's latitude and longitude; points that all lie as far off the origin's
+    altitude as the sea, the ellipsoid and the ground may be apart.
 
     Args:
         scenario: any.
@@ -67,18 +99,29 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         for kind in POINT_LISTS
         for index, point in enumerate(getattr(scenario, kind))
     }
-    return (*_powers(scenario, points), *_altitudes(points))
+    metric = {place: point.position_m for place, point in points.items() if point.lat_deg is None}
+    remedy = "lat_deg, lon_deg and an altitude"
+    degrees = close_to_degrees(scenario.origin, list(metric.values()), remedy)
+    kinds = " and ".join(dict.fromkeys(place.partition("[")[0] for place in metric))
+    return (
+        *_powers(scenario, points),
+        *(Fault(kinds, doubt) for doubt in degrees),
+        *_altitudes(points),
+    )
 
 
 def _powers(scenario: Scenario, points: Mapping[str, Any]) -> Iterator[Fault]:
-    powers = {place: point for place, point in points.items() if isinstance(point, Emitter)}
-    in_dbm = [scenario.receiver.noise_dbm, *(emitter.power_dbm for emitter in powers.values())]
+    powers: dict[str, Powered] = {place: each for place, each in points.items() if isinstance(each, Powered)}
+    if scenario.transmitter is not None:
+        powers["transmitter"] = scenario.transmitter
+    in_dbm = [emitter.power_dbm for emitter in powers.values()]
     for place, emitter in powers.items() if any(dbm is not None for dbm in in_dbm) else ():
         power = emitter.power_w
         if power is not None and _DBM[0] <= power <= _DBM[1]:
             yield Fault(
                 f"{place}.power_w",
-                f"{power:g} W is {10.0 * math.log10(power) + 30.0:.1f} dBm, and others are stated in dBm; "
+                f"{power:g} W is {10.0 * math.log10(power) + 30.0:.1f} dBm, and other transmit powers are "
+                "stated in dBm; "
                 f"if {power:g} dBm ({watts_from_dbm(power):.3g} W) is meant, write power_dbm = {power:g}",
             )
 
@@ -90,7 +133,8 @@ def _altitudes(points: Mapping[str, Any]) -> Iterator[Fault]:
         first, height_m = next(iter(heights_m.items()))
         yield Fault(
             first,
-            f"this and all other points lie {least_m:.0f} m or more {'above' if height_m > 0.0 else 'below'} "
-            "the origin, as far as the sea and the ellipsoid may be apart; check that alt_m is over the "
-            "ellipsoid, and write alt_msl_m for altitudes over the sea, alt_agl_m for those above the ground",
+            f"this and all other points in alt_m lie {least_m:.0f} m or more "
+            f"{'above' if height_m > 0.0 else 'below'} the origin, as if their altitudes were over something "
+            "else; check that alt_m is over the ellipsoid, and write alt_msl_m for altitudes over the sea, "
+            "alt_agl_m for those above the ground",
         )

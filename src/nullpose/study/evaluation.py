@@ -142,8 +142,9 @@ def _not_allowed(scenario: Scenario, pose: Pose) -> Iterable[str]:
         raise UsageError(
             f"pose: given the position of {names[nearest]}; allowed: {keep_out_m:g} m or more from it"
         )
-    if not scenario.airspace.allows(pose.position_m):
-        yield "the position is outside the airspace"
+    for words, clearance_m in scenario.airspace.clearances_m(pose.position_m):
+        if clearance_m < -BORDER_M:
+            yield f"the position is {-clearance_m:.3g} m {words}"
     if distances_m[nearest] < keep_out_m - BORDER_M:
         yield f"{distances_m[nearest]:.3g} m from {names[nearest]}, closer than keep_out_m = {keep_out_m:g} m"
     if scenario.airframe is not None and pose.tilt_rad > scenario.airframe.tilt_max_rad + _TILT_RAD:

@@ -1,32 +1,35 @@
-"""Poses as a table of comma-separated values: metres and degrees, as in the files of sweeps."""
+"""Poses as a table of comma-separated values: metres as in the files of sweeps, or places on the Earth."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.physics import Poses
+from nullpose.scenario.origin import Origin
 from nullpose.scenario.toml_file import FileKind, file_text
+from nullpose.scenario.units import ALTITUDE_KEYS
 from nullpose.scenario.wording import described, listed
 
-_NEEDED = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg")
-_COLUMNS = (*_NEEDED, "yaw_deg")
+_LOCAL, _ANGLES = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 _KIND = FileKind("a file of poses", "poses.csv", (".csv",))
 
 
-def poses_from_csv(path: Path, mount_rad: float = 0.0) -> Poses:
+def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = None) -> Poses:
     """Return the poses of a CSV file.
 
     Args:
         path: a file with the columns ``x_m``, ``y_m``, ``z_m``, ``roll_deg``, ``pitch_deg`` and, unless it is
-            zero, ``yaw_deg``; others are passed over, so that the table of a sweep can be read.
+            zero, ``yaw_deg``; others are passed over, so that the table of a sweep can be read. In place of
+            the metres ``lat_deg``, ``lon_deg`` and one of ``alt_m``, ``alt_msl_m`` and ``alt_agl_m``.
         mount_rad: angle of the dipole from the body's vertical, radians.
+        origin: of the scenario, which columns in degrees need.
 
     Raises:
         ScenarioError: with every fault of the file.
@@ -43,10 +46,15 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0) -> Poses:
     """
     try:
         rows = csv.DictReader(io.StringIO(file_text(path, _KIND), newline=""), skipinitialspace=True)
-        absent = [name for name in _NEEDED if name not in (rows.fieldnames or ())]
-        told = "there is no column {}, must be " + listed(_COLUMNS)
+        place = _place_columns(rows.fieldnames or ())
+        columns = (*place, *_ANGLES)
+        absent = [name for name in columns[:-1] if name not in (rows.fieldnames or ())]
+        told = "there is no column {}, must be " + listed(columns)
         faults = [Fault("line 1", told.format(name)) for name in absent]
-        numbers = [] if absent else [_numbers(row, rows.line_num, faults) for row in rows]
+        if place != _LOCAL and origin is None:
+            needed = "lat_deg and lon_deg need the [origin] of a scenario; add it, or give x_m, y_m and z_m"
+            faults.append(Fault("line 1", needed))
+        numbers = [] if faults else [_numbers(row, rows.line_num, columns, faults, origin) for row in rows]
         if not numbers and not faults:
             faults.append(Fault("", "there is no line below the header, must be one for each pose"))
     except csv.Error as error:
@@ -60,10 +68,23 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0) -> Poses:
     return Poses(table[:, :3], roll, pitch, yaw, mount_rad)
 
 
-def _numbers(row: Mapping[str, str | None], line: int, faults: list[Fault]) -> list[float]:
-    """Return a line's numbers, after noting what is wrong with them."""
+def _place_columns(header: Sequence[str]) -> tuple[str, ...]:
+    """Return the columns of a position: metres, or degrees with the altitude that there is."""
+    if "x_m" in header or not {"lat_deg", "lon_deg"} & set(header):
+        return _LOCAL
+    return "lat_deg", "lon_deg", next((key for key in ALTITUDE_KEYS if key in header), ALTITUDE_KEYS[0])
+
+
+def _numbers(
+    row: Mapping[str, str | None],
+    line: int,
+    columns: Sequence[str],
+    faults: list[Fault],
+    origin: Origin | None,
+) -> list[float]:
+    """Return a line's metres and degrees, after noting what is wrong with them."""
     found = []
-    for name in _COLUMNS:
+    for name in columns:
         text = row.get(name, "0")
         try:
             number = float(text or "")
@@ -72,4 +93,9 @@ def _numbers(row: Mapping[str, str | None], line: int, faults: list[Fault]) -> l
         if not math.isfinite(number):
             faults.append(Fault(f"line {line}, column {name}", f"got {described(text)}, must be a number"))
         found.append(number)
+    if columns[:3] != _LOCAL and origin is not None and all(map(math.isfinite, found)):
+        try:
+            found[:3] = origin.position_m(dict(zip(columns[:3], found, strict=False))).tolist()
+        except UsageError as error:
+            faults.append(Fault(f"line {line}", str(error)))
     return found
