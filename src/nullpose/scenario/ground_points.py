@@ -33,7 +33,7 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, at_most_one
 
-_Antenna = Annotated[str, Choice("an antenna on the ground", tuple(GROUND_ANTENNAS))]
+GroundAntennaKind = Annotated[str, Choice("an antenna on the ground", tuple(GROUND_ANTENNAS))]
 PLACE = Ways(
     (("position_m",), GEODETIC_KEYS),
     fewest=0,
@@ -100,7 +100,7 @@ class GroundPoint(Section):
         "alt_m.",
         examples=[2.0],
     )
-    antenna: _Antenna = Field(
+    antenna: GroundAntennaKind = Field(
         default="isotropic",
         description="What antenna it has: isotropic, which loses nothing to polarisation; circular, which "
         "takes part with half the power; or dipole, a short one.",

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from nullpose import Scenario, ScenarioError, UsageError
+from nullpose.scenario import Eavesdropper, Jammer, Node
 from nullpose.study.monte_carlo import StudySpec, draw_scene, scene_at
 
 Spec = Callable[..., StudySpec]
@@ -187,6 +188,103 @@ def test_what_is_not_drawn_stays(spec: Spec, paper: Scenario) -> None:
         drawn = draw_scene(spec(scene=scene), 0)
         assert drawn.antenna_record.leak == pytest.approx(1e-3)
         assert drawn.airframe.tilt_max_deg == 10.0
+
+
+WHIP = {"antenna": "dipole", "antenna_axis": [1.0, 0.0, 1.0], "gain_dbi": 2.15}
+BALL = {"uncertainty_m": [2.0, 1.0, 1.0], "uncertainty_attitude_deg": [0.0, 0.0, 30.0]}
+DOWNLINK = {"noise_dbm": -90.0, "jamming_dbm": -80.0}
+DISC = {"layout": "disc", "count": 3, "centre_m": [0.0, 25.0], "radius_m": 60.0}
+
+
+def _template(kind: str, *states: dict[str, Any]) -> dict[str, Any]:
+    """A scene that states points of a kind, as the part of a spec that is not drawn."""
+    transmits = kind == "eavesdroppers" or any("noise" in key for key in states[0])
+    other: dict[str, Any] = (
+        {"objective": "secrecy-rate", "transmitter": {"power_w": 1.0}} if transmits else {}
+    )
+    tables = {"nodes": [{"position_m": [90.0, 0.0, 0.0]} | ({} if transmits else {"power_w": 1.0})]}
+    tables |= {"eavesdroppers": [{"position_m": [0.0, 90.0, 0.0]}]} if transmits else {}
+    tables[kind] = [{"position_m": [9.0 * n, 0.0, 1.5], **state} for n, state in enumerate(states)]
+    receiver = {"noise_w": 1e-3, "reference_gain_db": 0.0}
+    return {"airspace": {"altitude_m": [8.0, 30.0]}, "receiver": receiver, **other, **tables}
+
+
+STATES: list[tuple[str, dict[str, Any]]] = [
+    ("nodes", {"power_dbm": 20.0, "min_sinr_db": 3.0, **WHIP}),
+    ("nodes", {"power_w": 2.0, "weight": 2.0, "antenna": "circular"}),
+    ("nodes", DOWNLINK),
+    ("nodes", {"noise_w": 1e-5, "jamming_w": 1e-5}),
+    ("jammers", {"power_w": 3.0, **WHIP, **BALL}),
+    ("jammers", {"power_dbm": 33.0}),
+    ("eavesdroppers", {"noise_dbm": -90.0, **WHIP, **BALL}),
+    ("eavesdroppers", {"noise_w": 1e-5}),
+]
+
+
+@pytest.mark.parametrize(("kind", "state"), STATES)
+def test_drawn_points_keep_what_those_of_the_scene_state(
+    spec: Spec, kind: str, state: dict[str, Any]
+) -> None:
+    """Antennas, powers, weights, noise, uncertainty and height are those of the points that they replace."""
+    power = {key: value for key, value in state.items() if kind == "jammers" and key.startswith("power")}
+    unused = dict.fromkeys({"nodes", "jammers"} - {kind})
+    study = spec(**{**unused, kind: DISC | power, "scene": _template(kind, state, state)})
+    points = getattr(draw_scene(study, 0), kind)
+    assert len(points) == 3
+    assert {point.position_m[2] for point in points} == {1.5}
+    for point in points:
+        told = point.to_dict()
+        assert {key: told[key] for key in told if key not in ("name", "position_m")} == state
+    assert StudySpec.from_dict(study.to_dict()) == study
+
+
+def test_every_key_of_a_point_is_tried() -> None:
+    """A key that ground points gain is among those that drawn ones are known to keep."""
+    tried = {key for _, state in STATES for key in state}
+    keys = {key for kind in (Node, Jammer, Eavesdropper) for key in kind.model_fields}
+    assert keys - tried == {"name", "position_m", "lat_deg", "lon_deg", "alt_m", "alt_msl_m", "alt_agl_m"}
+
+
+def test_what_a_draw_states_takes_the_place_of_the_scenes(spec: Spec) -> None:
+    """With what describes it further, and its other units; the rest is kept."""
+    nodes = {**DISC, "antenna": "isotropic", "power_w": 4.0, "height_m": 2.0}
+    scene = _template("nodes", STATES[0][1])
+    (node, *_) = draw_scene(spec(jammers=None, nodes=nodes, scene=scene), 0).nodes
+    assert (node.antenna, node.antenna_axis, node.power_w, node.power_dbm) == ("isotropic", None, 4.0, None)
+    assert (node.gain_dbi, node.min_sinr_db, node.position_m[2]) == (0.0, 3.0, 2.0)
+    whips = {**DISC, "antenna": "dipole", "antenna_axis": [0.0, 1.0, 0.0], "gain_dbi": 1.76}
+    (node, *_) = draw_scene(spec(jammers=None, nodes=whips, scene=scene), 0).nodes
+    assert (node.antenna, node.antenna_axis, node.gain_dbi) == ("dipole", (0.0, 1.0, 0.0), 1.76)
+    assert (
+        draw_scene(spec(jammers=None, nodes=DISC | {"gain_dbi": 5.0}, scene=scene), 0).nodes[0].antenna
+        == "dipole"
+    )
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "key"),
+    [
+        (WHIP, {}, "antenna"),
+        (WHIP, WHIP | {"antenna_axis": [0.0, 0.0, 1.0]}, "antenna_axis"),
+        ({"weight": 2.0}, {}, "weight"),
+        ({"position_m": [40.0, 0.0, 9.0]}, {}, "height_m"),
+        ({"power_w": 2.0}, {}, "power_w"),
+    ],
+)
+def test_points_that_differ_are_not_replaced_in_silence(
+    spec: Spec, one: dict[str, Any], other: dict[str, Any], key: str
+) -> None:
+    """Where the points of the scene differ in a key, the spec has to state it."""
+    base = {"power_w": 1.0}
+    scene = _template("nodes", base | one, base | other)
+    with pytest.raises(ScenarioError) as caught:
+        spec(jammers=None, nodes=DISC, scene=scene)
+    faults = {fault.path: fault.message for fault in caught.value.faults}
+    assert f"nodes.{key}" in faults
+    assert "the scene's nodes, which are to be replaced, differ" in faults[f"nodes.{key}"]
+    files = {"scenarios": [_template("nodes", base), scene]}
+    with pytest.raises(ScenarioError, match=f"nodes.{key}"):
+        spec(jammers=None, nodes=DISC, scene=files)
 
 
 @pytest.mark.parametrize("index", [-1, 12, 1.5, True])

@@ -15,6 +15,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.origin import POINT_LISTS
+from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, known
 
@@ -38,7 +39,6 @@ _STREAMS = {
     "min_sinr_db": 5,
     "uncertainty_m": 6,
 }
-_EMITTED = ("power_w", "power_dbm", "weight", "min_sinr_db", "uncertainty_m")
 
 
 def draw_scene(spec: StudySpec, index: int) -> Scenario:
@@ -157,7 +157,7 @@ def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
 def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario:
     """Return a scene, drawing those points again that make it invalid."""
     kept, attempts = spec.scene.kept(index, drawn), dict.fromkeys(drawn, 0)
-    points = {kind: _draw(spec.seed, index, kind, drawn[kind], 0) for kind in drawn}
+    points = {kind: _draw(spec, index, kind, drawn[kind], 0) for kind in drawn}
     while True:
         try:
             return Scenario.from_dict({**kept, "name": f"scene {index}", **points})
@@ -172,25 +172,25 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
                 message = f"{error.faults[0].message} (after {MOST_DRAWS} draws)"
                 raise ScenarioError([Fault(error.faults[0].path, message)]) from None
             attempts[again] += 1
-            points[again] = _draw(spec.seed, index, again, drawn[again], attempts[again])
+            points[again] = _draw(spec, index, again, drawn[again], attempts[again])
 
 
-def _draw(seed: int, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:
-    """Return the points of one kind as plain data."""
+def _draw(spec: StudySpec, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:
+    """Return the points of one kind as plain data, with what they keep of those that they replace."""
 
     def chance(stream: str) -> np.random.Generator:
         key = (index, _KINDS[kind], _STREAMS[stream], attempt)
-        return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence(spec.seed, spawn_key=key)))
 
     plane_m = _places(points, chance)
     count = len(plane_m)
-    positions_m = np.column_stack([plane_m, points.height_m.draw(chance("height_m"), count)]).tolist()
-    stated = {key: getattr(points, key, None) for key in _EMITTED}
-    columns = {key: one.draw(chance(key), count).tolist() for key, one in stated.items() if one is not None}
-    return [
-        {"name": name, "position_m": position_m, **dict(zip(columns, values, strict=True))}
-        for name, position_m, *values in zip(points.names(count), positions_m, *columns.values(), strict=True)
-    ]
+    columns = {
+        key: value.draw(chance(key), count).tolist() if isinstance(value, Distribution) else [value] * count
+        for key, (value, *_) in points.values(getattr(spec.scene.whole(index), kind)).items()
+    }
+    columns["position_m"] = np.column_stack([plane_m, columns.pop("height_m")]).tolist()
+    columns["name"] = points.names(count)
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _places(points: Points, chance: Callable[[str], np.random.Generator]) -> FloatArray:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.faults import Place, rejection
+from nullpose.scenario.faults import Place
+from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
 from nullpose.scenario.names import Label
-from nullpose.scenario.rules import Choice, Count, Quantity, Rule
+from nullpose.scenario.rules import Ascending, Choice, Count, Quantity
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
+    ALTITUDE_KEYS,
+    GEODETIC_KEYS,
+    AxisDirection,
     DecibelMilliwatts,
+    DecibelsIsotropic,
     ErrorMetres,
     Metres,
     PlanePoint,
@@ -24,30 +29,23 @@ from nullpose.scenario.units import (
     Weight,
 )
 from nullpose.scenario.ways import Ways, at_most_one, exactly_one
-from nullpose.scenario.wording import described, plain
+from nullpose.scenario.wording import plain
 from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
 MOST_POINTS = 10_000  # of one kind in a scene
 
 
 @dataclass(frozen=True, slots=True)
-class _Number(Rule):
+class _CountRange(Ascending):
     """A whole number, or a range of them that one is drawn from evenly."""
 
-    noun: str
     low: int
 
-    def read(self, value: object) -> tuple[int, int]:
-        value = plain(value)
-        one = Count(self.noun, self.low, MOST_POINTS, "or a range, as in [2, 10]")
-        if not isinstance(value, list | tuple):
-            return (one.read(value),) * 2
-        if len(value) != 2:
-            raise rejection(f"got {described(value)}, must be {self.noun}, or two, the smaller first")
-        ends = one.read(value[0]), one.read(value[1])
-        if ends[0] > ends[1]:
-            raise rejection(f"got {list(ends)}, which is reversed; try {[ends[1], ends[0]]}")
-        return ends
+    def read(self, value: object) -> list[object]:
+        count = Count(self.noun.split(",")[0], self.low, MOST_POINTS, "or a range, as in [2, 10]")
+        ends = plain(value)
+        ends = Ascending.read(self, ends) if isinstance(ends, list | tuple) else [ends, ends]
+        return [count.read(end) for end in ends]
 
 
 def _drawn(kind: Any) -> Drawn:
@@ -64,10 +62,16 @@ _NEEDED = {
     "poisson": ("density_per_m2",),
     "clusters": ("parents", "count", "spread_m"),
 }
+_Pair = tuple[int, int]
 _Layout = Annotated[str, Choice("a layout", tuple(_NEEDED))]
 _IN_A_REGION = ("poisson", "clusters")
 _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))
 _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_REGIONS[1])
+_PLACE = ("name", "position_m", *GEODETIC_KEYS, *ALTITUDE_KEYS)
+_DETAILS = {
+    "antenna": ("antenna_axis", "gain_dbi", "null_depth_db"),
+    "uncertainty_m": ("uncertainty_attitude_deg",),
+}
 
 
 class Points(Section):
@@ -82,6 +86,9 @@ class Points(Section):
         parents: how many clusters, a number or a range.
         spread_m: of clusters: standard deviation of each coordinate from its cluster's centre.
         height_m: altitude.
+        antenna: the kind of each antenna, a key of ``GROUND_ANTENNAS``.
+        antenna_axis: the direction of each dipole's wire, (3,), of any length.
+        gain_dbi: each antenna's gain at its peak over an isotropic one [dBi].
         name: the name of one alone; the beginning of the names of several.
     """
 
@@ -92,7 +99,10 @@ class Points(Section):
         "either) or clusters (around centres that lie evenly in either).",
         examples=["disc"],
     )
-    count: Annotated[tuple[int, int], _Number("a number of points", 0)] | None = Field(
+    count: (
+        Annotated[tuple[int, int], _CountRange("a number of points, or two, the smaller first", 2, 2, 0)]
+        | None
+    ) = Field(
         default=None,
         description="How many: a number, or a range [fewest, most] that one is drawn from evenly. Of "
         "clusters: in each. Not with poisson.",
@@ -113,18 +123,32 @@ class Points(Section):
     density_per_m2: _Density | None = Field(
         default=None, description="Of poisson: the mean number over the area.", examples=[1e-3]
     )
-    parents: Annotated[tuple[int, int], _Number("a number of clusters", 1)] | None = Field(
-        default=None, description="Of clusters: how many, a number or a range.", examples=[[2, 4]]
-    )
+    parents: (
+        Annotated[tuple[int, int], _CountRange("a number of clusters, or two, the smaller first", 2, 2, 1)]
+        | None
+    ) = Field(default=None, description="Of clusters: how many, a number or a range.", examples=[[2, 4]])
     spread_m: RadiusMetres | None = Field(
         default=None,
         description="Of clusters: standard deviation of east and of north from the cluster's centre.",
         examples=[5.0],
     )
-    height_m: Annotated[Distribution, _drawn(Metres)] = Field(
-        default=Distribution(fixed=0.0),
-        description="Altitude in metres: a number or a distribution.",
+    height_m: Annotated[Distribution, _drawn(Metres)] | None = Field(
+        default=None,
+        description="Altitude in metres: a number or a distribution. Left out: that of the scene's points, "
+        "or 0 if it has none.",
         examples=[4.0],
+    )
+    antenna: GroundAntennaKind | None = Field(
+        default=None,
+        description="Antenna of every point: isotropic, circular or dipole. Left out: that of the scene's "
+        "points, or isotropic if it has none.",
+        examples=["dipole"],
+    )
+    antenna_axis: AxisDirection | None = Field(
+        default=None, description="Direction of every dipole's wire.", examples=[[0.0, 0.0, 1.0]]
+    )
+    gain_dbi: DecibelsIsotropic | None = Field(
+        default=None, description="Gain of every antenna where it is largest.", examples=[2.15]
     )
     name: Label | None = Field(
         default=None,
@@ -148,6 +172,27 @@ class Points(Section):
         for key in given:
             if key not in may:
                 yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
+
+    def values(self, replaced: Sequence[GroundPoint]) -> dict[str, list[Any]]:
+        """Return the values by key, places apart: what is stated here, else what the scene's points have.
+
+        A key that is stated here takes the place of its other units and of what describes it further. The
+        scene's points may have several values of a key.
+
+        Args:
+            replaced: the scene's points, in whose place these are drawn; there may be none.
+        """
+        keys = [key for key in type(self).model_fields if key not in ("layout", "name", *_PLACING)]
+        stated = {key: [getattr(self, key)] for key in keys if getattr(self, key) is not None}
+        others = {other for key in stated for ways in self.ways for other in ways.others(key)}
+        dropped = {*_PLACE, *others, *(detail for key in stated for detail in _DETAILS.get(key, ()))}
+        kept = {"height_m": [point.position_m[2] for point in replaced] or [0.0]} | {
+            key: [getattr(point, key) for point in replaced]
+            for key in (type(replaced[0]).model_fields if replaced else ())
+        }
+        return {
+            key: list(dict.fromkeys(values)) for key, values in kept.items() if key not in dropped
+        } | stated
 
     @property
     def may_be_several(self) -> bool:

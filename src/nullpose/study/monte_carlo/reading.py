@@ -93,8 +93,6 @@ class StudyTable:
         in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
         return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
 
-    xarray = to_xarray  # as it was called before
-
     def _read(self, part: Part) -> pd.DataFrame:
         import pyarrow as pa
         import pyarrow.parquet as pq

@@ -102,6 +102,14 @@ class SceneBase(Section):
         """How many scenarios take turns."""
         return max(1, len(self.scenarios))
 
+    def whole(self, index: int) -> Scenario | SceneBase:
+        """Return what states a scene: one of the files, or this table.
+
+        Args:
+            index: the scene.
+        """
+        return self.scenarios[index % self.size] if self.scenarios else self
+
     def kept(self, index: int, drawn: Collection[str]) -> dict[str, Any]:
         """Return what a scene keeps when points are drawn, validated already, as the values of a scenario.
 
@@ -111,8 +119,7 @@ class SceneBase(Section):
             index: the scene.
             drawn: the kinds of points that are drawn.
         """
-        whole = self.scenarios[index % self.size] if self.scenarios else self
-        values = {key: getattr(whole, key) for key in _TABLES if key not in drawn}
+        values = {key: getattr(self.whole(index), key) for key in _TABLES if key not in drawn}
         if drawn:
             values |= {kind: tuple(map(_in_metres, values[kind])) for kind in POINT_LISTS if kind in values}
         return {key: value for key, value in values.items() if value is not None}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import json
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from itertools import product
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
@@ -104,6 +104,16 @@ class StudySpec(Section):
             yield ("scenes",), "missing; it must be given: how many scenes"
         cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
         yield from shared_names(dict(cases))
+        for index, (kind, points) in product(range(self.scene.size if self.scene else 0), self.drawn.items()):
+            replaced = list(filter(None, getattr(self.scene.whole(index), kind)))
+            for key, values in points.values(replaced).items():
+                if len(values) > 1:
+                    remedy = "add it" if key in type(points).model_fields else "give all of them the same"
+                    yield (
+                        (kind, key),
+                        f"missing, and the scene's {kind}, which are to be replaced, differ: "
+                        f"{values[0]!r} and {values[1]!r}; {remedy}",
+                    )
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
@@ -121,7 +131,7 @@ class StudySpec(Section):
         """The combinations of swept values by path, the last varying fastest; one empty if none is swept."""
         return tuple(
             dict(zip(self.swept, values, strict=True))
-            for values in itertools.product(*(values for _, values in self.sweep))
+            for values in product(*(values for _, values in self.sweep))
         )
 
     @property
