@@ -90,7 +90,8 @@ def mounted_phrase(airframe: Airframe) -> str:
         airframe: any.
     """
     tilt, mount = _degrees(airframe.tilt_max_rad), _degrees(airframe.mount_rad)
-    return f"a {tilt} degree tilt with the dipole mounted at {mount} degrees"
+    vehicle = f"a {tilt} degree tilt" if airframe.tilt_max_rad else "a level vehicle"
+    return f"{vehicle} with the dipole mounted at {mount} degrees"
 
 
 def array_phrase(elements: int, combining: str) -> str:

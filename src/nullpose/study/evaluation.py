@@ -101,7 +101,7 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
 
 def _against(best: Result, pose: Pose) -> Result:
     scenario, quantity = best.scenario, Quantity.of(best.scenario)
-    not_allowed, bound = tuple(_not_allowed(scenario, pose)), best.objective.upper_bound
+    not_allowed, bound = tuple(pose_faults(scenario, pose)), best.objective.upper_bound
     links = evaluate(scenario, pose)
     value = quantity.least(links)
     if not_allowed or bound is None:
@@ -128,8 +128,12 @@ def _against(best: Result, pose: Pose) -> Result:
     )
 
 
-def _not_allowed(scenario: Scenario, pose: Pose) -> Iterable[str]:
+def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:
     """Yield why the vehicle may not take a pose.
+
+    Args:
+        scenario: with airspace and airframe.
+        pose: any.
 
     Raises:
         UsageError: the pose is at a ground point.

@@ -49,7 +49,7 @@ def made_row(scene: int, point: int, case: str, cell: Cell) -> Row:
         return row_of(scene, point, case, "failed", reason=cell)
     level_db, status = cell if isinstance(cell, tuple) else (cell, "certified")
     value = 10.0 ** (level_db / 10.0)
-    gap = {"certified": 1e-3, "gap-not-reached": 0.5, "best-found": None}[status]
+    gap = {"certified": 1e-3, "gap-not-reached": 0.5, "best-found": None, "given": None}[status]
     return row_of(
         scene,
         point,

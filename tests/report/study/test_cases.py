@@ -58,7 +58,7 @@ def test_what_is_no_vehicle_is_named_as_the_spec_does(specify: Specify) -> None:
         "the zero interference pose",
         "a level vehicle with a vertical dipole",
         "a level vehicle with an array of 4 with digital combining",
-        "the fixed pose d",
+        "the given pose d",
     ]
     assert [case.role for case in cases] == ["", "level-vertical", "", ""]
 

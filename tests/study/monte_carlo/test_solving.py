@@ -3,14 +3,16 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
-from nullpose import Scenario, evaluate, solve_robust
+from nullpose import Pose, Scenario, evaluate, solve_robust
 from nullpose.solve import solve, solve_array
+from nullpose.study.evaluation import pose_faults
 from nullpose.study.monte_carlo import StudySpec
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import Row
-from nullpose.study.monte_carlo.solving import GIVEN_POSE, solved_row
+from nullpose.study.monte_carlo.solving import solved_row
 
 Spec = Callable[..., StudySpec]
 
@@ -39,13 +41,59 @@ def test_an_array_takes_the_place_of_the_dipole(spec: Spec) -> None:
 
 
 def test_a_given_pose_is_evaluated(spec: Spec) -> None:
-    """Nothing is proved of it, and the reason says so."""
+    """Nothing is proved of it, and the status says so."""
     pose = {"position_m": [1.0, 25.0, 9.0], "roll_deg": 80.0, "yaw_deg": 20.0}
     study = spec(cases=[{"pose": pose, "airframe": {"tilt_max_deg": 90.0, "mount_deg": 10.0}}])
     row, scene = _row(study)
     links = evaluate(study.cases[0].on(scene), study.cases[0].pose.on(study.cases[0].on(scene)))  # type: ignore[union-attr]
     assert row["value"] == min(link.sinr for link in links)
-    assert (row["status"], row["reason"], row["bound"], row["gap"]) == ("best-found", GIVEN_POSE, None, None)
+    assert (row["status"], row["reason"], row["bound"], row["gap"]) == ("given", "", None, None)
+
+
+def test_a_given_pose_that_is_not_allowed_says_so(spec: Spec) -> None:
+    """A tilt that the vehicle does not reach is the reason of the row, as in an evaluation."""
+    pose = {"position_m": [1.0, 25.0, 9.0], "roll_deg": 80.0}
+    row, _ = _row(spec(cases=[{"pose": pose, "airframe": "tilt-10"}]))
+    assert row["status"] == "given"
+    assert row["reason"] == "not allowed: tilted by 80.000 deg, more than the airframe's 10 deg"
+
+
+BOX = {"x_m": [-90.0, 90.0], "y_m": [-90.0, 90.0]}
+
+
+@pytest.mark.parametrize(
+    ("airspace", "altitude_m"),
+    [
+        ({}, 8.0),
+        ({"no_fly": [BOX | {"altitude_m": [0.0, 12.0]}]}, 12.0),
+        ({"no_fly": [BOX | {"altitude_m": [0.0, 12.0]}, BOX | {"altitude_m": [11.0, 15.0]}]}, 15.0),
+        ({"no_fly": [BOX | {"altitude_m": [9.0, 15.0]}]}, 8.0),
+        ({"keep_out_m": 26.0, "altitude_m": [5.0, 60.0]}, None),
+    ],
+)
+def test_over_the_centroid(spec: Spec, airspace: dict[str, Any], altitude_m: float | None) -> None:
+    """The drone hovers level over the nodes' centroid, at the lowest altitude that is allowed there."""
+    study = spec(scene__airspace={"altitude_m": [8.0, 30.0], **airspace}, cases=[{"pose": "centroid"}])
+    scene = Draws(study).at(0, 0)
+    pose = study.cases[0].pose.on(scene)  # type: ignore[union-attr]
+    assert not list(pose_faults(scene, pose))
+    assert pose.position_m[:2] == pytest.approx(scene.node_positions_m[:, :2].mean(axis=0))
+    assert (pose.roll_rad, pose.pitch_rad, pose.yaw_rad) == (0.0, 0.0, 0.0)
+    for lower_m in np.arange(scene.airspace.altitude_m[0], pose.position_m[2] - 1e-6, 0.05):
+        below = Pose([*pose.position_m[:2], lower_m], 0.0, 0.0)
+        assert list(pose_faults(scene, below))
+    assert altitude_m in (None, pose.position_m[2])
+    row, _ = _row(study)
+    assert (row["status"], row["value"]) == ("given", min(link.sinr for link in evaluate(scene, pose)))
+
+
+def test_nowhere_over_the_centroid(spec: Spec) -> None:
+    """Where every altitude over the centroid is forbidden, the row says so, at the lowest altitude."""
+    airspace = {"altitude_m": [8.0, 30.0], "no_fly": [BOX]}
+    row, _ = _row(spec(scene__airspace=airspace, cases=[{"pose": "centroid"}]))
+    assert (row["status"], row["z_m"]) == ("given", 8.0)
+    assert row["reason"].startswith("not allowed: the position is")
+    assert "no-fly zone Z1" in row["reason"]
 
 
 @pytest.mark.parametrize(

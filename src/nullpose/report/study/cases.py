@@ -107,7 +107,7 @@ def _described(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
     airframe = own if case.airframe is None else case.airframe
     plain = ReportCase(place=place, name=case.name, phrase=f"the case {case.name}", robust=bool(case.robust))
     if case.pose is not None:
-        return replace(plain, phrase=f"the fixed pose {case.name}")
+        return replace(plain, phrase=f"the given pose {case.name}")
     if case.array is not None:
         return replace(plain, phrase=array_phrase(case.array.elements, case.array.combining))
     if case.scheme is Scheme.VERTICAL:
@@ -119,9 +119,10 @@ def _described(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
     same = (each for each in AIRFRAME_CASES if each.airframe.axis_band == airframe.axis_band)
     usual = next(same, None)  # two vehicles that reach the same axes are one
     phrase = mounted_phrase(airframe) if usual is None else usual.phrase
+    chosen = f" (the best mount tried, on up to {case.mount_scenes} scenes)" if case.mount_scenes else ""
     return replace(
         plain,
-        phrase=f"{phrase} in its robust pose" if case.robust else phrase,
+        phrase=f"{phrase}{chosen} in its robust pose" if case.robust else f"{phrase}{chosen}",
         role="" if usual is None else usual.name,
         tilt_deg=round(math.degrees(airframe.tilt_max_rad), 9),
     )

@@ -215,8 +215,9 @@ def _proofs(summary: Summary) -> _Part:
     return _Part(
         "Proofs, gaps and time",
         "*Certified*: optimal within the requested gap. *Gap not reached*: a limit "
-        "ended the proof. *Best found*: no upper bound. *Failed*: no pose, and the row is in no "
-        "distribution. The rigour of all bounds is *floating-point*: a study keeps no certificates.",
+        "ended the proof. *Best found*: no upper bound. *Given*: the case states the pose; nothing is "
+        "searched or proved. *Failed*: no pose, and the row is in no distribution. The rigour of all bounds "
+        "is *floating-point*: a study keeps no certificates.",
         "effort",
         "Time of a solve, and relative gap between bound and value.",
         {

@@ -17,7 +17,8 @@ from nullpose.study.monte_carlo import StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-STATUSES = ("certified", "gap-not-reached", "best-found", "failed")  # a status is kept as its place here
+# A status is kept as its place here.
+STATUSES = ("certified", "gap-not-reached", "best-found", "given", "failed")
 FAILED = STATUSES.index("failed")
 
 _MOST_REASONS = 10_000  # reasons may quote numbers, so that each row has its own

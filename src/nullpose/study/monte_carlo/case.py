@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Annotated, ClassVar, Literal
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, TypeAdapter
 
 from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Array, Scenario
@@ -21,6 +23,7 @@ from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
 from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
+from nullpose.study.evaluation import pose_faults
 
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
@@ -38,14 +41,23 @@ _BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_C
 }
 
 
-_VEHICLE = Choice("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME))
+@dataclass(frozen=True, slots=True)
+class _Named(Choice):
+    """A table, or a name for one."""
+
+    tables: Mapping[str, Any] = field(hash=False)
+
+    def read(self, value: object) -> Any:
+        return self.tables[Choice.read(self, value)] if isinstance(value, str) else value
 
 
-class _Vehicle(Rule):
-    """An airframe by its name or as a table."""
-
-    def read(self, value: object) -> object:
-        return _BY_NAME[_VEHICLE.read(value)] if isinstance(value, str) else value
+_VEHICLE = _Named("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME), _BY_NAME)
+_POSE = _Named("a table with position_m, or a name", ("centroid",), {"centroid": {"position_m": "centroid"}})
+_POSITION: TypeAdapter[tuple[float, float, float]] = TypeAdapter(Position)
+_Place = Annotated[
+    tuple[float, float, float] | Literal["centroid"],
+    BeforeValidator(lambda value: value if value in ("centroid",) else _POSITION.validate_python(value)),
+]
 
 
 class _Truth(Rule):
@@ -85,15 +97,18 @@ class FixedPose(Section):
     """A pose that is evaluated in every scene, with nothing searched and nothing proved.
 
     Args:
-        position_m: where the drone hovers.
+        position_m: where the drone hovers; "centroid" for the lowest allowed position over
+            the centroid of the nodes.
         roll_deg, pitch_deg, yaw_deg: how it is turned.
     """
 
     header: ClassVar[str] = "a table such as { position_m = [0, 0, 20], roll_deg = 90 }"
     unstated: ClassVar[frozenset[str]] = frozenset({"roll_deg", "pitch_deg", "yaw_deg"})
 
-    position_m: Position = Field(
-        description="Where the drone hovers: [east, north, up].", examples=[[0.0, 25.0, 8.0]]
+    position_m: _Place = Field(
+        description="Where the drone hovers: [east, north, up], or centroid for the lowest allowed position "
+        "over the centroid of the nodes.",
+        examples=[[0.0, 25.0, 8.0]],
     )
     roll_deg: AttitudeDegrees = Field(default=0.0, description="Roll in degrees.", examples=[90.0])
     pitch_deg: AttitudeDegrees = Field(default=0.0, description="Pitch in degrees.", examples=[0.0])
@@ -107,7 +122,25 @@ class FixedPose(Section):
         """
         roll, pitch, yaw = (math.radians(angle) for angle in (self.roll_deg, self.pitch_deg, self.yaw_deg))
         mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
-        return Pose(np.array(self.position_m), roll, pitch, yaw, mount_rad)
+        position_m = (
+            _over_centroid_m(scenario) if self.position_m == "centroid" else np.array(self.position_m)
+        )
+        return Pose(position_m, roll, pitch, yaw, mount_rad)
+
+
+def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
+    """Return the lowest allowed position over the nodes' centroid; the lowest of all if none is allowed.
+
+    It is at the lowest altitude of the airspace, on the ceiling of a no-fly zone or on a keep-out ball.
+    """
+    points_m = np.vstack([scenario.source_positions_m, scenario.eavesdropper_positions_m])
+    across_m = scenario.node_positions_m[:, :2].mean(axis=0)
+    squares_m2 = scenario.airspace.keep_out_m**2 - np.sum((points_m[:, :2] - across_m) ** 2, axis=1)
+    heights_m = [scenario.airspace.altitude_m[0], *(points_m[:, 2] + np.sqrt(np.maximum(squares_m2, 0.0)))]
+    heights_m += [zone.ceiling_m for zone in scenario.airspace.no_fly if math.isfinite(zone.ceiling_m)]
+    positions_m = [np.append(across_m, height_m) for height_m in sorted(heights_m)]
+    allowed = (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0))))
+    return next(allowed, np.append(across_m, heights_m[0]))
 
 
 class StudyCase(Section):
@@ -117,6 +150,7 @@ class StudyCase(Section):
         name: what tables and figures call it.
         scheme: how the pose is chosen.
         airframe: the vehicle in place of the scene's.
+        mount_scenes: how many scenes choose the mount of the airframe; None for the mount that it states.
         array: several dipoles in place of the one.
         robust: whether the pose that guarantees most under the scene's errors is asked for.
         pose: a pose to evaluate, in place of a search.
@@ -142,11 +176,16 @@ class StudyCase(Section):
         description=f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.",
         examples=[Scheme.VERTICAL.value],
     )
-    airframe: Annotated[Airframe, _Vehicle()] | None = Field(
+    airframe: Annotated[Airframe, _VEHICLE] | None = Field(
         default=None,
         description="The vehicle in place of the scene's: level-vertical, level-horizontal, tilt-10, "
-        "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg.",
+        "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg, which may be best.",
         examples=["tilt-10"],
+    )
+    mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = Field(
+        default=None,
+        description='With mount_deg = "best": number of scenes that choose the mount. Left out: 64.',
+        examples=[64],
     )
     array: CaseArray | None = Field(
         default=None,
@@ -158,9 +197,10 @@ class StudyCase(Section):
         description="True: the pose that guarantees most under the scene's errors.",
         examples=[True],
     )
-    pose: FixedPose | None = Field(
+    pose: Annotated[FixedPose, _POSE] | None = Field(
         default=None,
-        description="A pose to evaluate in every scene, with nothing searched or proved.",
+        description="A pose to evaluate in every scene, with nothing searched or proved: a table, or "
+        "centroid.",
         examples=[{"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0}],
     )
     certify: _Bool | None = Field(
@@ -177,11 +217,16 @@ class StudyCase(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw table without what says no more than leaving it out would."""
+        """Returns the raw table without ``robust = false``; scenes that choose it for a best mount."""
+        vehicle = data.get("airframe")
+        if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
+            data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the fault that something is asked of a proof where there is none."""
+        if self.mount_scenes is not None and self.airframe is None:
+            yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
         for key in ("certify", "gap", "time_limit_s"):
             if self.pose is not None and getattr(self, key) is not None:
                 yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
@@ -191,6 +236,16 @@ class StudyCase(Section):
         """Whether the best pose of a vehicle with one dipole is asked for, everything being as stated."""
         searched = not self.robust and self.array is None and self.pose is None
         return searched and self.scheme in (None, Scheme.OPTIMUM)
+
+    def mounted(self, mount_deg: float, **changes: Any) -> StudyCase:
+        """Return the case with its airframe's dipole at another mount.
+
+        Args:
+            mount_deg: of the airframe that the case states.
+            changes: of the case, by key.
+        """
+        airframe = {**self.to_dict()["airframe"], "mount_deg": mount_deg}
+        return self.model_copy(update={"airframe": airframe, **changes})
 
     def on(self, scenario: Scenario) -> Scenario:
         """Return the scene with this case's vehicle in place of its own.

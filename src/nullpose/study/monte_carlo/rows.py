@@ -42,7 +42,7 @@ def row_of(scene: int, point: int, case: str, status: str, **known: Any) -> Row:
         scene: the scene's number.
         point: the combination's number.
         case: the case's name.
-        status: certified, gap-not-reached, best-found or failed.
+        status: certified, gap-not-reached, best-found, given or failed.
         known: further columns.
     """
     at = {"scene": scene, "point": point, "case": case, "status": status}

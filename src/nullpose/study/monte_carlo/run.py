@@ -13,7 +13,8 @@ from nullpose.study.monte_carlo.extra import require_extra
 from nullpose.study.monte_carlo.ledger import Ledger, StudyProgress
 from nullpose.study.monte_carlo.loading import require_sound
 from nullpose.study.monte_carlo.lock import locked
-from nullpose.study.monte_carlo.reading import StudyStatus, study_status
+from nullpose.study.monte_carlo.mounts import with_best_mounts
+from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
 from nullpose.study.monte_carlo.spec import StudySpec, known
 from nullpose.study.monte_carlo.store import Store
 
@@ -67,9 +68,15 @@ def run_study(
     if not store.is_begun():
         require_sound(spec)
     with locked(prepare_folder(store.folder)):
-        ledger = Ledger(spec, store, on_progress)
         begun = store.is_begun()
-        to_do = ledger.open(int(store.require_same(spec)["chunk"])) if begun else iter(())
+        before = store.require_same(spec) if begun else {}
+        spec = (
+            study_spec(store.folder)
+            if begun
+            else with_best_mounts(spec, Ledger(spec, store, on_progress).tell)
+        )
+        ledger = Ledger(spec, store, on_progress)
+        to_do = ledger.open(int(before["chunk"])) if begun else iter(())
         if begun and ledger.is_complete:
             ledger.tell()
             return study_status(store.folder)

@@ -21,6 +21,7 @@ from nullpose.solve import (
     solve_many,
 )
 from nullpose.solve.proof import INTERRUPT
+from nullpose.study.evaluation import pose_faults
 from nullpose.study.grid import solved_case
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
@@ -29,8 +30,6 @@ from nullpose.study.monte_carlo.spec import StudySpec
 At = tuple[int, int]  # a scene's number and that of a combination of swept values
 
 _PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
-
-GIVEN_POSE = "a pose that was given: nothing is searched or proved"  # a reason
 
 
 def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: StudyCase) -> Row:
@@ -106,15 +105,16 @@ def _found(
 def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[str, Any]:
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
+        faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
         weakest = min(evaluate(scene, pose), key=quantity.at)
         columns = _found(
-            Status.BEST_FOUND,
+            Status.GIVEN,
             (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
             quantity.at(weakest),
             None,
             None,
         )
-        return columns | {"reason": GIVEN_POSE, "binding_node": weakest.node}
+        return columns | {"reason": faults, "binding_node": weakest.node}
     result = solved_case(
         scene,
         case.scheme or Scheme.OPTIMUM,

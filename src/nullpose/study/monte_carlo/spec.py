@@ -162,6 +162,8 @@ class StudySpec(Section):
         values["scene"] = {
             key: value for key, value in values["scene"].items() if key not in ("file", "files")
         }
+        for case in [each for each in values["cases"] if "mount_scenes" in each]:
+            case["airframe"].pop("mount_deg", None)  # the scenes choose it, so it follows from the rest
         text = json.dumps(values, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
