@@ -15,9 +15,14 @@ RESULT = nullpose.solve(SCENE)
 CASES = nullpose.compare(SCENE, certify=False)
 TABLE = nullpose.sweep(SCENE, "jammers.M1.power_w", [0.5, 2.0], certify=False)
 VEHICLES = nullpose.compare_airframes(SCENE, certify=False)
+LEVEL = nullpose.Airframe(preset="level")
+MANY = nullpose.solve_many([SCENE] * 30, airframes=[None, LEVEL], certify=False)
+POSES = nullpose.evaluate_against(RESULT, [nullpose.Pose([0.0, y, 9.0], 0.0, 1.0) for y in range(5, 45)])
 
 
-@pytest.mark.parametrize("found", [SCENE, RESULT, TABLE, VEHICLES, value_map(RESULT, cells=9), TABLE.rows[0]])
+@pytest.mark.parametrize(
+    "found", [SCENE, RESULT, TABLE, VEHICLES, MANY, POSES, value_map(RESULT, cells=9), TABLE.rows[0]]
+)
 def test_a_line_tells_what_it_is(found: object) -> None:
     """One line of less than 200 characters, with the type's name first."""
     line = repr(found)
@@ -32,7 +37,26 @@ def test_what_the_lines_say() -> None:
     assert repr(RESULT).startswith("Result(Optimum, certified: smallest SINR 0.9836997 dB, at most 0.98370")
 
 
-@pytest.mark.parametrize("found", [SCENE, RESULT, CASES, TABLE, VEHICLES, compare_all(SCENE, certify=False)])
+def test_many_answers_are_printed_in_a_few_lines() -> None:
+    """A line, a table in dB of 80 columns, and how many rows there are beside: no flood of arrays."""
+    line, head, *rows, more = str(MANY).splitlines()
+    assert line == repr(MANY)
+    assert "60 best-found" in line
+    assert len(rows) == 10
+    assert more.startswith("50 more rows")
+    assert max(map(len, str(MANY).splitlines())) <= 80
+    cells = dict(zip(head.split(), rows[1].split(), strict=False))
+    assert float(cells["value_db"]) == pytest.approx(10.0 * np.log10(MANY.value[0, 1]), rel=1e-5)
+    assert "nan" not in str(MANY)
+    frame = MANY.frame()
+    assert (len(frame), frame["vehicle"].tolist()[:2]) == (60, [0, 1])
+    assert frame["value_db"].to_numpy() == pytest.approx(10.0 * np.log10(MANY.value.ravel()))
+    assert frame["x_m"].tolist() == MANY.position_m[..., 0].ravel().tolist()
+
+
+@pytest.mark.parametrize(
+    "found", [SCENE, RESULT, CASES, TABLE, VEHICLES, MANY, compare_all(SCENE, certify=False)]
+)
 def test_a_table_in_html(found: object) -> None:
     """Names are escaped, and every row has as many cells as there are headings."""
     text = found._repr_html_()  # type: ignore[attr-defined]

@@ -34,7 +34,16 @@ VERBS = {
     "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"}
     | {"--width", "--table"}
     | PROOF,
-    "evaluate": {"--set", "--allow-outside", "--pose", "--attitude", "--poses", "--seed", "--json"}
+    "evaluate": {
+        "--set",
+        "--allow-outside",
+        "--pose",
+        "--pose-lat-lon",
+        "--attitude",
+        "--poses",
+        "--seed",
+        "--json",
+    }
     | (PROOF - {"--fast"}),
     "map": {"--set", "--allow-outside", "--scheme", "--altitude", "--cells", "--out", "--width", "--seed"}
     | {"--json"}

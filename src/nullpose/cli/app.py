@@ -15,6 +15,7 @@ from nullpose.cli.compare import compare
 from nullpose.cli.evaluate import evaluate
 from nullpose.cli.faults import FaultReportingGroup
 from nullpose.cli.map import best_map
+from nullpose.cli.printing import replace_lacking_letters, say
 from nullpose.cli.reproduce import reproduce
 from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
@@ -38,7 +39,7 @@ def _show_version(wanted: bool) -> None:
     if wanted:
         from nullpose import __version__
 
-        typer.echo(f"nullpose {__version__}")
+        say(f"nullpose {__version__}")
         raise typer.Exit
 
 
@@ -75,4 +76,5 @@ def main() -> None:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     # loading the libraries makes much that stays: to look through it for garbage takes a tenth of the start
     gc.set_threshold(100_000)
+    replace_lacking_letters()
     app(prog_name="nullpose")

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import typer
-
 from nullpose.cli.options import AllowOutside, JsonOutput, Overrides, ScenarioFile, read_scenario
 from nullpose.cli.output import show, show_json
+from nullpose.cli.printing import say
 
 
 def check(
@@ -22,4 +21,4 @@ def check(
         show_json(summarise(scenario))
         return
     show(scenario_view(scenario))
-    typer.echo(f"{file}: no faults")
+    say(f"{file}: no faults")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import typer
-
+from nullpose.cli.printing import say
 from nullpose.version import __version__
 
 BIBTEX = f"""\
@@ -25,4 +24,4 @@ BIBTEX = f"""\
 
 def cite() -> None:
     """Print what to cite, as BibTeX: the paper and nullpose."""
-    typer.echo(BIBTEX)
+    say(BIBTEX, broken=False)

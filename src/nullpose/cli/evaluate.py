@@ -26,6 +26,7 @@ from nullpose.cli.options import (
     solve_options,
 )
 from nullpose.cli.output import compiling_announced, tell
+from nullpose.cli.printing import say
 from nullpose.cli.progress import GapBar
 
 
@@ -99,7 +100,7 @@ def evaluate(
         given = [Pose(position_m, roll, pitch, yaw, mount_rad)]
     remedy = "--pose-lat-lon LAT,LON,ALT, or in a file the columns lat_deg, lon_deg and alt_m"
     for doubt in close_to_degrees(scenario.origin, [each.position_m for each in given], remedy):
-        typer.echo(f"warning: {'--pose' if poses is None else poses}: {doubt}", err=True)
+        say(f"warning: {'--pose' if poses is None else poses}: {doubt}", err=True)
     options = solve_options(gap, time_limit, node_limit, False, seed)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         best = solve(scenario, on_progress=bar, **options)

@@ -17,6 +17,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from nullpose.cli.printing import say
 from nullpose.errors import Fault, NullposeError, ScenarioError, SolveError, UsageError
 
 INTERNAL = 1
@@ -50,13 +51,14 @@ class FaultReportingGroup(TyperGroup):
                 sys.stdout.flush()
             except NullposeError as error:
                 code = INTERNAL if isinstance(error, SolveError) else BAD_INPUT
-                typer.echo(_as_json(error, code) if as_json else f"error: {error}", err=True)
+                words = _as_json(error, code) if as_json else f"error: {error}"
+                say(words, err=True, broken=not as_json)
                 raise typer.Exit(code) from error
             except _WRONG_USAGE as error:
                 error.message = _plain_choice(error.message)
                 if not as_json:
                     raise
-                typer.echo(_as_json(UsageError(error.format_message()), BAD_INPUT), err=True)
+                say(_as_json(UsageError(error.format_message()), BAD_INPUT), err=True, broken=False)
                 raise typer.Exit(BAD_INPUT) from error
             except BrokenPipeError as closed:
                 # Whoever read our output has gone; the interpreter must not complain when it flushes at exit.
@@ -64,7 +66,7 @@ class FaultReportingGroup(TyperGroup):
                 raise typer.Exit(PIPE_CLOSED) from closed
             except (KeyboardInterrupt, Exception) as error:
                 if pressed.is_set() or isinstance(error, KeyboardInterrupt):
-                    typer.echo("interrupted", err=True)
+                    say("interrupted", err=True)
                     raise typer.Exit(INTERRUPTED) from error
                 if type(error).__module__.split(".")[0] not in {"typer", "click"}:
                     error.add_note("This is a fault of nullpose, not of your input: please report it.")

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nullpose.cli.printing import say
+
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
@@ -191,7 +193,7 @@ def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) 
 
     scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
     for doubt in doubts(scenario):
-        typer.echo(f"warning: {doubt}", err=True)
+        say(f"warning: {doubt}", err=True)
     return scenario
 
 

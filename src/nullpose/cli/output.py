@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
+from nullpose.cli.printing import say
 from nullpose.errors import SolveError, UsageError
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def tell(
         shown = view(found)
         show(shown)
         for path in files:
-            typer.echo(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
+            say(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
     if fault:
         raise SolveError(fault)
     if getattr(found, "interrupted", False):
@@ -59,7 +60,7 @@ def show(view: View) -> None:
         view: a text, or anything else that rich can draw.
     """
     if isinstance(view, str):
-        typer.echo(view)
+        say(view, broken=False)
         return
     from rich.console import Console
 
@@ -78,7 +79,7 @@ def show_json(value: object) -> None:
     """
     from nullpose.report.plain import json_text
 
-    typer.echo(json_text(value))
+    say(json_text(value), broken=False)
 
 
 @contextmanager
@@ -87,7 +88,7 @@ def compiling_announced() -> Iterator[None]:
     from nullpose.solve.compiling import announce_compiling
 
     with announce_compiling(
-        lambda: typer.echo("Compiling kernels for this machine (once, about 20 s) ...", err=True)
+        lambda: say("Compiling kernels for this machine (once, about 20 s) ...", err=True)
     ):
         yield
 

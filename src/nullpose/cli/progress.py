@@ -8,7 +8,7 @@ import time
 from datetime import timedelta
 from typing import TYPE_CHECKING, Self
 
-import typer
+from nullpose.cli.printing import say
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -54,7 +54,7 @@ class ProgressBar:
         """Print a line at once, above the bar if there is one."""
         line = f"{self._what}: {words}"
         if self._bar is None:
-            typer.echo(line, err=True)
+            say(line, err=True)
         else:
             self._bar.console.print(line, markup=False, highlight=False)
 

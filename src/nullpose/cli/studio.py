@@ -10,6 +10,7 @@ import typer
 
 from nullpose.cli.faults import signals_handled
 from nullpose.cli.options import AllowOutside, Overrides, read_scenario
+from nullpose.cli.printing import say
 
 _LOOPBACK = "127.0.0.1"
 
@@ -52,13 +53,13 @@ def studio(
         _announce(host, running.address)
         while not ended.wait(0.5):  # a wait without a limit would not hear Ctrl-C on every system
             pass
-    typer.echo("stopped")
+    say("stopped")
 
 
 def _announce(host: str, address: str) -> None:
-    typer.echo(f"nullpose studio: {address}   (Ctrl-C ends it)")
+    say(f"nullpose studio: {address}   (Ctrl-C ends it)")
     if host not in (_LOOPBACK, "localhost", "::1"):
-        typer.echo(
+        say(
             f"listening at {host}: whoever has this address with its token can open the studio from another "
             "machine; what is sent is not encrypted"
         )

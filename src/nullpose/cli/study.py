@@ -11,6 +11,7 @@ import typer
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.options import AllowOutside, JsonOutput, OutFolder
 from nullpose.cli.output import tell
+from nullpose.cli.printing import say
 from nullpose.cli.progress import StudyBar
 
 if TYPE_CHECKING:
@@ -72,9 +73,7 @@ def run(
         with StudyBar() as bar:
             found = run_study(loaded, out, scheduler=scheduler, workers=workers, chunk=chunk, on_progress=bar)
     except KeyboardInterrupt:
-        typer.echo(
-            "interrupted; the parts so far are kept, and the same command goes on from there", err=True
-        )
+        say("interrupted; the parts so far are kept, and the same command goes on from there", err=True)
         raise typer.Exit(INTERRUPTED) from None
     tell(found, words_of, json_output)
 

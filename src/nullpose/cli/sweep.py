@@ -22,6 +22,7 @@ from nullpose.cli.options import (
     solve_options,
 )
 from nullpose.cli.output import compiling_announced, tell
+from nullpose.cli.printing import say
 from nullpose.cli.progress import Ticker
 from nullpose.schemes import Scheme
 
@@ -86,7 +87,7 @@ def sweep(
     with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
         found = plan.run(on_progress=ticker)
     if plan.scenario.array is not None:
-        typer.echo("The swept cases have one dipole; the file's array is left out.", err=True)
+        say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_latex, sweep_view, write_sweep
 
     files = write_sweep(found, out, log=log, width=width)

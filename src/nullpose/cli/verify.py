@@ -10,6 +10,7 @@ import typer
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
 from nullpose.cli.output import show, show_json
+from nullpose.cli.printing import say
 from nullpose.cli.progress import Ticker
 
 
@@ -47,13 +48,13 @@ def verify(
         checked = {"proved": verdict.proved, "message": verdict.message, "leaves": verdict.leaves}
         show_json(checked | about | subject(certificate))
     else:
-        typer.echo(verdict.message, err=not verdict.proved)
+        say(verdict.message, err=not verdict.proved)
         if verdict.proved:
             digest = subject(certificate)["scenario_sha256"]
-            typer.echo(f"scheme {certificate.scheme}, scenario SHA-256 {digest}\n")
+            say(f"scheme {certificate.scheme}, scenario SHA-256 {digest}\n")
             show(scenario_view(certificate.scenario))
         if scenario is not None:
             told = f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"
-            typer.echo("\n  ".join([told, *unlike]), err=bool(unlike))
+            say("\n  ".join([told, *unlike]), err=bool(unlike))
     if unlike or not verdict.proved:
         raise typer.Exit(INTERNAL)

@@ -74,72 +74,80 @@ def table(
     if not any(rows):
         return None
     words = {heading for place, heading in enumerate(rows[0]) if place == 0 or heading in left}
-    return _Fitted(lambda broken, most: _table(title, rows, bold, words, broken=broken, most=most))
+    return _Fitted(lambda excess: _table(title, rows, bold, words, excess))
 
 
 _ANY_WIDTH = 10_000
-_LEAST_WORDS = 8  # characters of a column of words, before a table is made wider than there is room
+_LONGEST_WORD = 20  # characters; longer ones, such as names, are broken where there is no room
 
 
 class _Fitted:
-    """A table that is made for the width there is: headings and words are broken for it, digits never are."""
+    """A table that is made for the width there is: lines end between words, and digits are never broken."""
 
-    def __init__(self, make: Callable[[bool, int | None], RenderableType]) -> None:
+    def __init__(self, make: Callable[[int | None], RenderableType]) -> None:
         self._make = make
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the first of ever narrower tables that fits, or the last, with the width that it needs."""
+        """Yield the table as it is, or narrower by its excess over the width, or as wide as it has to be."""
         room = options.update(max_width=_ANY_WIDTH)
-        widest, narrow, least = (
-            self._make(False, None),
-            self._make(True, None),
-            self._make(True, _LEAST_WORDS),
-        )
-        if console.measure(widest, options=room).maximum <= options.max_width:
-            yield widest
-        elif console.measure(narrow, options=room).minimum <= options.max_width:
-            yield narrow
-        else:
-            least = self._make(True, _LEAST_WORDS)
-            needed = max(options.max_width, console.measure(least, options=room).minimum)
-            yield from console.render(least, options.update(max_width=needed))
+        view = self._make(None)
+        if console.measure(view, options=room).maximum > options.max_width:
+            excess = console.measure(self._make(0), options=room).maximum - options.max_width
+            view = self._make(max(excess, 0))
+        needed = max(options.max_width, console.measure(view, options=room).maximum)
+        yield from console.render(view, options.update(max_width=needed))
+
+
+def _word_widths(rows: Sequence[Row], words: Collection[str], excess: int) -> dict[str, int]:
+    """Return how wide each column of words is, so much narrower in all than its cells, as far as words allow.
+
+    Args:
+        rows: cells by heading.
+        words: headings of the columns of words.
+        excess: characters.
+    """
+    cells = {heading: [heading, *(row[heading] for row in rows if row)] for heading in words}
+    widths = {heading: max(map(len, cells[heading])) for heading in words}
+    longest = {heading: max(map(len, " ".join(cells[heading]).split()), default=1) for heading in words}
+    for most in (max(longest.values(), default=0), _LONGEST_WORD):
+        while excess and (wide := [each for each in widths if widths[each] > min(longest[each], most)]):
+            widths[max(wide, key=widths.__getitem__)] -= 1
+            excess -= 1
+    return widths
 
 
 def _table(
-    title: str,
-    rows: Sequence[Row],
-    bold: Collection[str],
-    words: Collection[str],
-    *,
-    broken: bool,
-    most: int | None,
+    title: str, rows: Sequence[Row], bold: Collection[str], words: Collection[str], excess: int | None
 ) -> RenderableType:
     """Return a table of rows.
 
     Args:
         title: stands above it.
-        rows: cells by heading.
+        rows: cells by heading; if those of words are blank, none is shown.
         bold: names of the rows that stand out.
         words: headings of the columns of words.
-        broken: whether headings of numbers are broken, so that their columns are as narrow as the numbers.
-        most: characters of a column of words; None for no limit.
+        excess: characters by which columns of words are narrower than their cells, those of numbers being as
+            narrow as their numbers; None for no limit.
     """
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    view = Table(title=title or None, box=box.SIMPLE_HEAD, **_LOOK)
-    for heading in rows[0]:
+    named = any(map(str.strip, words))
+    rules = box.SIMPLE_HEAD if named else box.SIMPLE if title else None
+    view = Table(title=title or None, box=rules, show_header=named, **_LOOK)
+    widths = {} if excess is None else _word_widths(rows, words, excess)
+    for heading in rows[0] if rows else ():
         is_words, longest = heading in words, max((len(row[heading]) for row in rows if row), default=1)
         lines = [heading]
-        if broken and not is_words:
+        if excess is not None and not is_words:
             lines = wrap(heading, max(longest, *map(len, heading.split() or [""])), break_on_hyphens=False)
         view.add_column(
             Text("\n".join(lines)),
             justify="left" if is_words else "right",
             no_wrap=not is_words,
             overflow="fold",
-            max_width=most if is_words else None,
+            width=widths.get(heading),
         )
     for row in rows:
         if row:
@@ -234,12 +242,5 @@ def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> View:
         title: stands above them; may be empty.
         rows: names, which may be empty, and words; without words a name is left out.
     """
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
-    view = Table(title=title or None, box=box.SIMPLE if title else None, show_header=False, **_LOOK)
-    for name, words in rows:
-        if words is not None:
-            view.add_row(Text(name), Text(words))
-    return view
+    listed = [{"": name, " ": words} for name, words in rows if words is not None]
+    return _Fitted(lambda excess: _table(title, listed, (), ("", " "), excess))

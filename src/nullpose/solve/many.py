@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import SolveError, UsageError
 from nullpose.family import AxisField, Family, build_family
+from nullpose.notebook import html_table, imported, text_table
 from nullpose.objectives import FloatArray, IntArray
-from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many
+from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many, to_db
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.proof import INTERRUPT
@@ -28,9 +29,12 @@ NOWHERE = "no position was found at which every node is received"
 _BLOCK = 64  # scenes between two reports
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+_PRINTED = ("scene", "vehicle", "value_db", "upper_bound_db", "status", "x_m", "y_m", "z_m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ManySolutions:
-    """The answers to many scenes: arrays by scene and airframe, (s, a).
+    """The answers to many scenes: arrays by scene and airframe, (s, a); printed, a line and a table in dB.
 
     Args:
         value: the smallest margin over the nodes, which is the smallest SINR (paper eq. 2.2) where no node
@@ -67,6 +71,51 @@ class ManySolutions:
     def relative_gap(self) -> FloatArray:
         """``(upper_bound - value) / value``, (s, a)."""
         return np.asarray((self.upper_bound - self.value) / self.value)
+
+    def __repr__(self) -> str:
+        scenes, vehicles = self.value.shape
+        words = ", ".join(f"{count} {name}" for name, count in Counter(self._status_names()).items())
+        return f"ManySolutions(scenes: {scenes}, vehicles: {vehicles}; {words})"
+
+    def __str__(self) -> str:
+        return text_table(repr(self), [{name: row[name] for name in _PRINTED} for row in self._rows()])
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), self._rows())
+
+    def frame(self) -> Any:
+        """Return the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame(self._columns())
+
+    def _rows(self) -> list[dict[str, object]]:
+        columns = self._columns()
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+    def _status_names(self) -> list[str]:
+        return [getattr(each, "value", "without a pose") for each in self.status.flat]
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        scene, vehicle = np.indices(self.value.shape)
+        bound = np.where(np.isfinite(self.upper_bound), self.upper_bound, math.nan)
+        columns = {
+            "scene": scene,
+            "vehicle": vehicle,
+            "value_db": to_db(self.value),
+            "upper_bound_db": to_db(bound),
+            "status": np.array(self._status_names(), dtype=object),
+            **dict(zip(("x_m", "y_m", "z_m"), np.moveaxis(self.position_m, -1, 0), strict=True)),
+            "roll_deg": np.degrees(self.roll_rad),
+            "pitch_deg": np.degrees(self.pitch_rad),
+            "yaw_deg": np.degrees(self.yaw_rad),
+            "binding_node": self.binding_node,
+            "boxes": self.boxes,
+            "reason": self.reason,
+        }
+        return {name: values.ravel() for name, values in columns.items()}
 
     @classmethod
     def blank(cls, scenes: int, airframes: int) -> ManySolutions:

@@ -44,7 +44,7 @@ class GivenDetails:
         return {"below_bound": self.below_bound, "not_allowed": list(self.not_allowed), "best": best}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Evaluation:
     """Several poses, each held against the same bound.
 
@@ -55,6 +55,9 @@ class Evaluation:
 
     best: Result
     results: tuple[Result, ...]
+
+    def __repr__(self) -> str:
+        return f"Evaluation({len(self.results)} poses, against {self.best!r})"
 
     @property
     def interrupted(self) -> bool:

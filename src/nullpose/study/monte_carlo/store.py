@@ -182,7 +182,7 @@ class Store:
         names = {part.name for part in kept}
         with refusals(f"cannot write {self._journal}"):
             self.parts_folder.mkdir(exist_ok=True)
-            if (self._journal.read_text(errors="replace") if self._journal.exists() else "") != lines:
+            if (self._journal.read_text("utf-8", "replace") if self._journal.exists() else "") != lines:
                 write_text(self._journal, lines)
             left = [path for path in self.parts_folder.iterdir() if path.name not in names]
             for path in [*left, *self.folder.glob(".manifest.*"), *self.folder.glob(".parts.*")]:
