@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         WrongTypeError,
     )
     from nullpose.physics import (
+        ErrorSizes,
         Link,
         Pose,
         Poses,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
         min_secrecy_rate,
         min_sinr,
         pose_frames,
+        sensitivity,
     )
     from nullpose.scenario import (
         Airframe,
@@ -84,6 +86,7 @@ __all__ = [
     "Array",
     "ArraySolution",
     "Eavesdropper",
+    "ErrorSizes",
     "Fault",
     "Jammer",
     "Link",
@@ -121,6 +124,7 @@ __all__ = [
     "min_sinr",
     "pose_frames",
     "poses_from_csv",
+    "sensitivity",
     "show",
     "solve",
     "solve_array",
@@ -141,6 +145,7 @@ _ROOMS = {
         "WrongTypeError",
     ),
     "nullpose.physics": (
+        "ErrorSizes",
         "Link",
         "Pose",
         "Poses",
@@ -149,6 +154,7 @@ _ROOMS = {
         "min_secrecy_rate",
         "min_sinr",
         "pose_frames",
+        "sensitivity",
     ),
     "nullpose.scenario": (
         "Airframe",

@@ -44,6 +44,7 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
         "stats",
         "provenance",
         "note",
+        "sensitivity",
     ]
     assert list(answer["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
     angles = ["roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad"]

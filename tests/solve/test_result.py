@@ -36,6 +36,7 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
         "stats",
         "provenance",
         "note",
+        "sensitivity",
     ]
     assert list(data["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
     angles = ["roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad"]

@@ -58,7 +58,8 @@ class Harmonics:
         """
         x, y, z = np.moveaxis(np.asarray(directions, dtype=float), -1, 0)
         total, power = np.zeros(x.shape), np.ones(x.shape, dtype=complex)
-        for m, columns in enumerate(_legendre(z, self.degree)):
+        last = int(np.max(np.nonzero(np.any(self.cosine, axis=0) | np.any(self.sine, axis=0)), initial=0))
+        for m, columns in enumerate(_legendre(z, self.degree, last)):
             for n, column in enumerate(columns, start=m):
                 total += column * (self.cosine[n, m] * power.real + self.sine[n, m] * power.imag)
             power = power * (x + 1j * y)
@@ -115,11 +116,11 @@ def recurrence(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     return start, a, b
 
 
-def _legendre(z: FloatArray, degree: int) -> list[list[FloatArray]]:
-    """Return P_nm(z) by m, then by n from m on."""
+def _legendre(z: FloatArray, degree: int, last: int | None = None) -> list[list[FloatArray]]:
+    """Return P_nm(z) by m, up to the last order that is asked for, then by n from m on."""
     start, a, b = recurrence(degree)
     found = []
-    for m in range(degree + 1):
+    for m in range(1 + (degree if last is None else last)):
         columns = [np.full(z.shape, start[m])]
         before = np.zeros(z.shape)
         for n in range(m + 1, degree + 1):

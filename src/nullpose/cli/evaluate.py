@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,10 +19,12 @@ from nullpose.cli.options import (
     Gap,
     JsonOutput,
     NodeLimit,
+    Off,
     Overrides,
     ScenarioFile,
     Seed,
     TimeLimit,
+    error_sizes,
     read_scenario,
     solve_options,
 )
@@ -71,6 +74,7 @@ def evaluate(
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
     seed: Seed = 0,
+    off: Off = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Evaluate poses of your own against the upper bound."""
@@ -101,10 +105,10 @@ def evaluate(
     remedy = "--pose-lat-lon LAT,LON,ALT, or in a file the columns lat_deg, lon_deg and alt_m"
     for doubt in close_to_degrees(scenario.origin, [each.position_m for each in given], remedy):
         say(f"warning: {'--pose' if poses is None else poses}: {doubt}", err=True)
-    options = solve_options(gap, time_limit, node_limit, False, seed)
+    options, sizes = solve_options(gap, time_limit, node_limit, False, seed), error_sizes(off)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         best = solve(scenario, on_progress=bar, **options)
-    evaluation = evaluate_against(best, given)
+    evaluation = evaluate_against(replace(best, error_sizes=sizes), given)
     found = evaluation.results[0] if poses is None else evaluation
     tell(found, lambda _: evaluation_view(evaluation), json_output)
 

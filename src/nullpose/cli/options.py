@@ -11,6 +11,7 @@ import typer
 from nullpose.cli.printing import say
 
 if TYPE_CHECKING:
+    from nullpose.physics import ErrorSizes
     from nullpose.scenario import Scenario
 
 
@@ -80,6 +81,17 @@ Robust = Annotated[
     bool,
     typer.Option(
         "--robust", help="Maximise the value guaranteed under the scenario's errors; default gap 1e-2."
+    ),
+]
+
+Off = Annotated[
+    str | None,
+    typer.Option(
+        "--off",
+        metavar="ERRORS",
+        help="The largest errors of the table If things are off, as in attitude_deg=2,position_m=3,"
+        "jammers_m=200.",
+        show_default="attitude_deg=1,position_m=1,jammers_m=10",
     ),
 ]
 
@@ -176,6 +188,37 @@ def solve_options(
         "certify": not fast,
         "seed": seed,
     }
+
+
+def error_sizes(text: str | None) -> ErrorSizes:
+    """Read the largest errors from a text such as ``attitude_deg=2,jammers_m=200``.
+
+    Args:
+        text: sizes by name, those left out being the default ones; None for all of these.
+
+    Raises:
+        UsageError: an unknown name, or no number.
+    """
+    from dataclasses import fields
+
+    from nullpose.errors import UsageError
+    from nullpose.physics import ErrorSizes
+
+    names = [field.name for field in fields(ErrorSizes)]
+    sizes: dict[str, float] = {}
+    for part in (text or "").split(",") if text is not None else ():
+        name, _, number = part.partition("=")
+        name = name.strip().replace("eavesdroppers_m", "jammers_m")
+        try:
+            sizes[name] = float(number)
+        except ValueError:
+            name = ""
+        if name not in names:
+            raise UsageError(
+                f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each with a number, as in "
+                "attitude_deg=2,jammers_m=200"
+            )
+    return ErrorSizes(**sizes)
 
 
 def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) -> Scenario:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +21,7 @@ from nullpose.cli.options import (
     JsonOutput,
     NodeLimit,
     NullJammer,
+    Off,
     Overrides,
     Robust,
     ScenarioFile,
@@ -27,6 +29,7 @@ from nullpose.cli.options import (
     TimeLimit,
     Verified,
     Width,
+    error_sizes,
     read_scenario,
     refuse,
     solve_options,
@@ -36,6 +39,7 @@ from nullpose.cli.progress import GapBar, Ticker
 from nullpose.schemes import Scheme
 
 if TYPE_CHECKING:
+    from nullpose.physics import ErrorSizes
     from nullpose.scenario import Scenario
     from nullpose.solve import Result
 
@@ -55,6 +59,7 @@ def solve(
     fast: Fast = False,
     seed: Seed = 0,
     robust: Robust = False,
+    off: Off = None,
     null_jammer: NullJammer = None,
     certificate: CertificateFile = None,
     verify: Verified = False,
@@ -81,7 +86,7 @@ def solve(
 
     scenario = read_scenario(file, overrides, allow_outside)
     prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure, width=width)
-    options = solve_options(gap, time_limit, node_limit, fast, seed)
+    options, sizes = solve_options(gap, time_limit, node_limit, fast, seed), error_sizes(off)
     checked = verify or certificate is not None
     of_one_dipole = {
         "scheme": scheme is not Scheme.OPTIMUM,
@@ -95,7 +100,7 @@ def solve(
         require_origin(scenario)
     if robust:
         refuse("with --robust", combining=combining, **of_one_dipole)
-        found = _solve_robustly(scenario, options)
+        found = _solve_robustly(scenario, sizes, options)
     elif scenario.array is not None:
         refuse("for a scenario with an [array]", geojson=geojson, **of_one_dipole)
         found = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
@@ -103,27 +108,33 @@ def solve(
         refuse("for a scenario without an [array]", combining=combining)
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
         found = _solve_dipole(scenario, scheme, null_jammer, options, checked)
+    found = replace(found, error_sizes=sizes)
     rejected = checked and found.rigour.value != "verified"
     files = _write(found, None if rejected else certificate, geojson, figure, width)
     fault = _REJECTED.format(found.reason) if rejected else ""
     tell(found, result_view, json_output, files=files, fault=fault)
 
 
-def _solve_robustly(scenario: Scenario, options: dict[str, Any]) -> Result:
-    """Return the pose that guarantees most under the scenario's errors."""
-    from nullpose.errors import UsageError
+def _solve_robustly(scenario: Scenario, sizes: ErrorSizes, options: dict[str, Any]) -> Result:
+    """Return the pose that guarantees most under the scenario's errors, or those of the sizes."""
+    from nullpose.scenario.overrides import Override, apply_overrides
     from nullpose.solve.options import SolveOptions
     from nullpose.solve.robust import ROBUST_GAP, solve_robust
 
+    note, disc_m = "", [sizes.jammers_m, sizes.jammers_m, 0.0]
     if not scenario.is_uncertain:
-        raise UsageError(
-            "--robust: the scenario states no errors; add some, in the file or by --set: "
-            "receiver.attitude_error_deg, receiver.position_error_m, or uncertainty_m of a jammer or "
-            "an eavesdropper"
-        )
+        points = scenario.objective_record.interferers
+        errors = {
+            "receiver.attitude_error_deg": sizes.attitude_deg,
+            "receiver.position_error_m": sizes.position_m,
+            **{f"{points}[{i}].uncertainty_m": disc_m for i in range(len(getattr(scenario, points)))},
+        }
+        scenario = apply_overrides(scenario, [Override(path, size) for path, size in errors.items()])
+        note = "The scenario states no errors. These are taken in their place; --off changes them."
     target = SolveOptions(**options).of(scenario, ROBUST_GAP).target
     with compiling_announced(), GapBar(target) as bar:
-        return solve_robust(scenario, on_progress=bar, **options)
+        found = solve_robust(scenario, on_progress=bar, **options)
+    return replace(found, note=" ".join(filter(None, (note, found.note))))
 
 
 def _solve_array(scenario: Scenario, combining: CombiningName, options: dict[str, Any]) -> Result:

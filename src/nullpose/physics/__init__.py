@@ -48,17 +48,20 @@ from nullpose.physics.rotation import (
     rotation_world_from_body,
 )
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
+from nullpose.physics.sensitivity import ErrorSizes, Sensitivity, sensitivity
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
 __all__ = [
     "ErrorCase",
+    "ErrorSizes",
     "FramePose",
     "Geodetic",
     "Link",
     "Pose",
     "PoseFrames",
     "Poses",
+    "Sensitivity",
     "analogue_sinr",
     "analogue_weights",
     "antenna_axis",
@@ -95,6 +98,7 @@ __all__ = [
     "rotation_between",
     "rotation_world_from_body",
     "secrecy_rate",
+    "sensitivity",
     "sinr",
     "sinr_under",
     "steering_vectors",

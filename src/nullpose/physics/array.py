@@ -1,8 +1,8 @@
 """What an array of vertical dipoles receives: steering, digital combining and one shared analogue beam.
 
-The vehicle hovers level, so the dipoles stand upright and only the yaw is free. The model is the
-narrow-band far field: plane waves, and every dipole with the gain of eq. 1.2, whatever stands beside it (no
-mutual coupling). One wavelength serves for every node's channel.
+The vehicle hovers level, so the dipoles stand upright and only the yaw is free; an error can tilt it. The
+model is the narrow-band far field: plane waves, and every dipole with the gain of eq. 1.2, whatever stands
+beside it (no mutual coupling). One wavelength serves for every node's channel.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas
+from nullpose.physics.error_case import ErrorCase, actual_sources_m
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -94,12 +95,13 @@ def array_channels(
     powers_w: ArrayLike,
     reference_gain: float,
     ground: GroundAntennas | None = None,
+    axis: FloatArray = _VERTICAL,
 ) -> ComplexArray:
     """Return the channel of every ground transmitter to the elements.
 
-    ``h_i = sqrt(g0 P_i sin^2(gamma_i)) / |r_i| a_i``, ``gamma_i`` being the angle between the vertical and
-    the direction to the transmitter: the amplitude is that of the numerator of eq. 2.1 for a vertical
-    dipole, the phases are those of :func:`steering_vectors`.
+    ``h_i = sqrt(g0 P_i sin^2(gamma_i)) / |r_i| a_i``, ``gamma_i`` being the angle between the dipoles and
+    the direction to the transmitter: the amplitude is that of the numerator of eq. 2.1, the phases are those
+    of :func:`steering_vectors`.
 
     Source: paper eqs. 1.2 and 2.1 for the amplitude.
 
@@ -110,24 +112,31 @@ def array_channels(
         powers_w: their powers, shape ``(m,)``, watts.
         reference_gain: path gain at 1 m, a power ratio.
         ground: the transmitters' antennas; None where all are isotropic.
+        axis: of the dipoles, shape ``(..., 3)``, of unit length; vertical on a level vehicle.
 
     Returns:
         Array of shape ``(..., m, K)``, in the square root of a watt.
     """
-    power_w = received_power_w(position_m, _VERTICAL, points_m, powers_w, reference_gain, ground=ground)
+    power_w = received_power_w(position_m, axis, points_m, powers_w, reference_gain, ground=ground)
     return np.asarray(
         np.sqrt(power_w)[..., None] * steering_vectors(position_m, elements_wavelengths, points_m)
     )
 
 
-def digital_sinr(scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike) -> FloatArray:
+def digital_sinr(
+    scenario: Scenario,
+    position_m: ArrayLike,
+    elements_wavelengths: ArrayLike,
+    case: ErrorCase | None = None,
+) -> FloatArray:
     """Return every node's SINR with its own best combining of the elements.
 
     ``Gamma_k = h_k^H R^-1 h_k`` with ``R = sigma^2 I + sum_j h_j h_j^H`` over the jammers: the largest
     eigenvalue of ``(h_k h_k^H, R)``. The nodes have channels of their own in frequency and do not disturb
     each other. Evaluated along the jammers' principal directions, the left singular vectors ``u_i`` of their
-    channels, as ``sum_i |u_i^H h_k|^2 / (sigma^2 + s_i^2)``: a sum of positive terms, which keeps its digits
-    where ``R`` is close to singular.
+    channels, as ``sum_i |u_i^H h_k|^2 / (sigma^2 + s_i^2)``, and ``1 / sigma^2`` times the square of what
+    ``h_k`` has in no such direction: a sum of positive terms, which keeps its digits where ``R`` is close to
+    singular.
 
     Source: Van Trees, section 6.2 (minimum variance distortionless response, maximum SINR).
 
@@ -135,12 +144,16 @@ def digital_sinr(scenario: Scenario, position_m: ArrayLike, elements_wavelengths
         scenario: nodes, jammers and receiver.
         position_m: the array's centre, shape ``(..., 3)``, metres.
         elements_wavelengths: shape ``(..., K, 3)``.
+        case: where vehicle and jammers actually are; the combining follows. As stated, if left out.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    _, powers_w, parts = _principal(scenario, position_m, elements_wavelengths)
-    return np.asarray(np.sum(np.abs(parts) ** 2 / powers_w[..., None, :], axis=-1))
+    nodes, directions, jamming_w, parts = _principal(scenario, position_m, elements_wavelengths, case)
+    free = nodes - parts @ np.swapaxes(directions, -1, -2)  # in no jammer's direction
+    noise_w = scenario.receiver.noise_power_w
+    clear = np.sum(np.abs(free) ** 2, axis=-1) / noise_w
+    return np.asarray(clear + np.sum(np.abs(parts) ** 2 / (noise_w + jamming_w)[..., None, :], axis=-1))
 
 
 def digital_weights(
@@ -160,8 +173,9 @@ def digital_weights(
     Returns:
         Array of shape ``(..., n_nodes, K)``.
     """
-    directions, powers_w, parts = _principal(scenario, position_m, elements_wavelengths)
-    weights = (parts / powers_w[..., None, :]) @ np.swapaxes(directions, -1, -2)
+    nodes, directions, jamming_w, parts = _principal(scenario, position_m, elements_wavelengths)
+    share = jamming_w / (scenario.receiver.noise_power_w + jamming_w)  # of each direction that is given up
+    weights = nodes - (parts * share[..., None, :]) @ np.swapaxes(directions, -1, -2)
     length = np.linalg.norm(weights, axis=-1, keepdims=True)
     return np.asarray(weights / np.where(length > 0.0, length, 1.0))
 
@@ -223,29 +237,32 @@ def beam_sinr(
 
 
 def _both_channels(
-    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the channels of the nodes and of the jammers."""
-    g0 = scenario.reference_gain
-    nodes, jammers = (
-        array_channels(position_m, elements_wavelengths, points_m, powers_w, g0, ground)
-        for points_m, powers_w, ground in (
-            (scenario.node_positions_m, scenario.node_powers_w, scenario.node_antennas),
-            (scenario.jammer_positions_m, scenario.jammer_powers_w, scenario.jammer_antennas),
-        )
+    case = ErrorCase.none(scenario) if case is None else case
+    elements = np.asarray(elements_wavelengths, dtype=float) @ np.swapaxes(case.rotation_world, -1, -2)
+    channels = array_channels(
+        np.asarray(position_m, dtype=float) + case.position_offset_m,
+        elements,
+        actual_sources_m(scenario, case),
+        scenario.source_powers_w,
+        scenario.reference_gain,
+        scenario.source_antennas,
+        case.rotation_world[..., 2],
     )
-    return nodes, jammers
+    nodes = len(scenario.nodes)
+    return channels[..., :nodes, :], channels[..., nodes:, :]
 
 
 def _principal(
-    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
-) -> tuple[ComplexArray, FloatArray, ComplexArray]:
-    """Return the principal directions of noise and jamming, the power and the nodes' parts along each.
+    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
+) -> tuple[ComplexArray, ComplexArray, FloatArray, ComplexArray]:
+    """Return the nodes' channels, the principal directions of the jamming, its power and their parts there.
 
-    Shapes ``(..., K, K)``, one direction a column; ``(..., K)``, watts; ``(..., n_nodes, K)``.
+    Shapes ``(..., n_nodes, K)``; ``(..., K, d)``, one direction a column; ``(..., d)``, watts;
+    ``(..., n_nodes, d)``.
     """
-    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths)
-    directions, strengths, _ = np.linalg.svd(np.swapaxes(jammers, -1, -2), full_matrices=True)
-    powers_w = np.full(directions.shape[:-1], scenario.receiver.noise_power_w)
-    powers_w[..., : strengths.shape[-1]] += strengths**2
-    return directions, powers_w, nodes @ np.conj(directions)
+    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths, case)
+    directions, strengths, _ = np.linalg.svd(np.swapaxes(jammers, -1, -2), full_matrices=False)
+    return nodes, directions, strengths**2, nodes @ np.conj(directions)

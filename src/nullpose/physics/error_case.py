@@ -1,4 +1,4 @@
-"""One way in which everything that is uncertain may turn out, and what a pose gives then."""
+"""Ways in which everything that is uncertain may turn out, and what a pose gives then."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.antenna import PatternAntenna
 from nullpose.physics.secrecy import node_snr
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.types import FloatArray
@@ -18,12 +19,14 @@ from nullpose.scenario import Scenario
 class ErrorCase:
     """Where everything actually is, from where it was meant or thought to be; world frame.
 
+    One case, or several with the same leading shape ``(...)``.
+
     Args:
-        position_offset_m: shape ``(3,)``, the drone's actual position less the commanded one, metres.
-        rotation_world: shape ``(3, 3)``, the rotation that takes the commanded antenna axis to the actual
-            one.
-        jammer_offsets_m: shape ``(n_jammers, 3)``, actual less stated positions, metres.
-        eavesdropper_offsets_m: shape ``(n_eavesdroppers, 3)``, likewise.
+        position_offset_m: shape ``(..., 3)``, the drone's actual position less the commanded one, metres.
+        rotation_world: shape ``(..., 3, 3)``, the rotation that takes the commanded antenna axis to the
+            actual one.
+        jammer_offsets_m: shape ``(..., n_jammers, 3)``, actual less stated positions, metres.
+        eavesdropper_offsets_m: shape ``(..., n_eavesdroppers, 3)``, likewise.
     """
 
     position_offset_m: FloatArray
@@ -35,8 +38,8 @@ class ErrorCase:
         shapes = {"position_offset_m": (3,), "rotation_world": (3, 3)}
         for field in fields(self):
             array = np.array(getattr(self, field.name), dtype=float)
-            wanted = shapes.get(field.name, (len(array), 3))
-            if array.shape != wanted or not np.all(np.isfinite(array)):
+            wanted = shapes.get(field.name, (*array.shape[-2:-1], 3))
+            if array.shape[-len(wanted) :] != wanted or not np.all(np.isfinite(array)):
                 raise ValueError(
                     f"error case {field.name} must be finite, of shape {wanted}; given {array!r}"
                 )
@@ -102,15 +105,28 @@ def sinr_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case:
     Args:
         scenario: nodes, jammers and receiver.
         position_m: the commanded position, shape ``(..., 3)``, metres.
-        axis: the commanded unit antenna axis, shape ``(..., 3)``.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``; the attitude of an antenna with a pattern.
         case: what is actually the case.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    p, u = _actual(position_m, axis, case)
-    jammers_m = scenario.jammer_positions_m + case.jammer_offsets_m
-    return sinr(scenario, p, u, np.vstack([scenario.node_positions_m, jammers_m]))
+    p, u = _actual(scenario, position_m, axis, case)
+    return sinr(scenario, p, u, actual_sources_m(scenario, case))
+
+
+def actual_sources_m(scenario: Scenario, case: ErrorCase) -> FloatArray:
+    """Place the nodes and then the jammers where they are in an error case, ``(..., n_sources, 3)``, metres.
+
+    Args:
+        scenario: nodes and jammers.
+        case: what is actually the case.
+    """
+    jammers_m = scenario.jammer_positions_m.reshape(-1, 3) + case.jammer_offsets_m
+    nodes_m = np.broadcast_to(
+        scenario.node_positions_m, (*jammers_m.shape[:-2], *scenario.node_positions_m.shape)
+    )
+    return np.concatenate([nodes_m, jammers_m], axis=-2)
 
 
 def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:
@@ -134,11 +150,11 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
     if not scenario.objective_record.transmits:
         margins = sinr_under(scenario, position_m, axis, case) / scenario.node_required_sinr
         return np.asarray(margins[..., None])
-    p, u = _actual(position_m, axis, case)
+    p, u = _actual(scenario, position_m, axis, case)
     wanted = node_snr(scenario, p, u)
     assert scenario.transmitter is not None, "or the signal to noise ratio would have failed"
     listeners_m = scenario.eavesdropper_positions_m + case.eavesdropper_offsets_m
-    powers_w = np.full(len(listeners_m), scenario.transmitter.transmit_power_w)
+    powers_w = np.full(listeners_m.shape[-2], scenario.transmitter.transmit_power_w)
     link = (scenario.reference_gain, scenario.antenna_record, scenario.eavesdropper_antennas)
     overheard = received_power_w(p, u, listeners_m, powers_w, *link) / scenario.eavesdropper_noise_w
     return np.asarray((1.0 + wanted[..., :, None]) / (1.0 + overheard[..., None, :]))
@@ -165,6 +181,11 @@ def objective_under(
     return np.asarray(np.log2(np.maximum(1.0, smallest)) if is_rate else smallest)
 
 
-def _actual(position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> tuple[FloatArray, FloatArray]:
-    position = np.asarray(position_m, dtype=float) + case.position_offset_m
-    return position, np.asarray(np.asarray(axis, dtype=float) @ case.rotation_world.T)
+def _actual(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase
+) -> tuple[FloatArray, FloatArray]:
+    """Return the actual position, and the actual axis or attitude."""
+    position, rotation = np.asarray(position_m, dtype=float) + case.position_offset_m, case.rotation_world
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        return position, np.asarray(rotation @ np.asarray(axis, dtype=float))
+    return position, np.asarray((rotation @ np.asarray(axis, dtype=float)[..., None])[..., 0])

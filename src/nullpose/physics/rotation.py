@@ -40,6 +40,22 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
     return matrix.transpose(*range(2, matrix.ndim), 0, 1)
 
 
+def rotation_about(vector_rad: ArrayLike) -> FloatArray:
+    """Return the rotation about a vector by its length (Rodrigues' formula).
+
+    Args:
+        vector_rad: shape ``(..., 3)``, radians.
+
+    Returns:
+        Array of shape ``(..., 3, 3)``.
+    """
+    x, y, z = np.moveaxis(np.asarray(vector_rad, dtype=float), -1, 0)
+    angle, zero = np.sqrt(x * x + y * y + z * z)[..., None, None], np.zeros(x.shape)
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    sine, half = np.sinc(angle / np.pi), np.sinc(0.5 * angle / np.pi)  # over the angle, over half of it
+    return np.asarray(np.eye(3) + sine * cross + 0.5 * half**2 * (cross @ cross))
+
+
 def attitude_of(rotation: ArrayLike) -> tuple[float, float, float]:
     """Return the roll, pitch and yaw of a rotation, radians, the pitch in [-pi/2, pi/2].
 

@@ -27,6 +27,7 @@ from nullpose.report.numbers import (
     value_words,
     with_unit,
 )
+from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
 from nullpose.solve import Objective, Result, Rigour
@@ -124,6 +125,7 @@ def solution_view(solution: Result) -> View:
         _links_table(solution, columns),
         _nulls_table(scenario, pose),
         note if scenario.jammers and rate else None,
+        sensitivity_view(solution),
     )
 
 
@@ -156,6 +158,7 @@ def array_view(solution: Result) -> View:
         pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(solution.details))])),
         _links_table(solution, {}),
         table("Phase shifters", rows(phases)),
+        sensitivity_view(solution),
     )
 
 
@@ -173,7 +176,7 @@ def robust_view(solution: Result) -> View:
     combinations = f"upper bound from {count_of(solution.cases, 'combination')} of errors"
     errors = f"errors: {error_words(solution.scenario)}; {combinations}"
     return document(
-        _head(solution, "Robust, guaranteed", unbounded, errors),
+        _head(solution, "Robust, guaranteed", unbounded, errors, solution.note),
         table(
             "",
             beside({name: _guarded_cells(objective, one) for name, one in cells.items()}),
@@ -188,6 +191,7 @@ def robust_view(solution: Result) -> View:
             if solution.scenario.origin is not None
         ),
         f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.",
+        sensitivity_view(solution),
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray, Quantity
-from nullpose.physics import Pose
+from nullpose.physics import ErrorCase, Pose
 from nullpose.physics.array import (
     analogue_sinr,
     analogue_weights,
@@ -72,6 +72,17 @@ class ArrayDetails:
     def phases_rad(self) -> NDArray[np.float64]:
         """The phases of the weights, shape as ``weights``, radians."""
         return np.asarray(np.angle(self.weights))
+
+    def ratios_under(self, scenario: Scenario, pose: Pose, case: ErrorCase) -> FloatArray:
+        """Return every node's margin when error cases come true and digital combining follows them.
+
+        Args:
+            scenario: nodes, jammers and receiver.
+            pose: the commanded pose.
+            case: where vehicle and jammers actually are, in one case or several.
+        """
+        places = element_positions(self.elements, self.layout, self.spacing_wavelengths, pose.yaw_rad)
+        return digital_sinr(scenario, pose.position_m, places, case) / scenario.node_required_sinr
 
     def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
         """Return the array as plain data for JSON; a weight is [real part, imaginary part].

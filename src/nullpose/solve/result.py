@@ -13,7 +13,7 @@ from typing import Any
 from nullpose.errors import SolveError
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
-from nullpose.physics import Link, Pose, pose_frames
+from nullpose.physics import ErrorSizes, Link, Pose, Sensitivity, pose_frames, sensitivity
 from nullpose.scenario import Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve.proof import INTERRUPT, Proof
@@ -177,6 +177,7 @@ class Result:
         reason: what kept the gap from being reached, or the pose from being certified; empty if nothing did.
         null_jammer: the jammer that was asked to be nulled, if one was.
         proofs: what the branch and bound showed, for each axis field of the scheme.
+        error_sizes: the errors that :attr:`sensitivity` tries; None for one of many poses, which tells none.
         details: what this kind of solve has to tell beside that, with a ``to_dict`` of its own:
             :class:`ArrayDetails`, :class:`nullpose.solve.robust.RobustDetails`, or None.
     """
@@ -193,6 +194,7 @@ class Result:
     reason: str = ""
     null_jammer: str | None = None
     proofs: tuple[Proof, ...] = field(default=(), repr=False)
+    error_sizes: ErrorSizes | None = field(default=ErrorSizes(), repr=False)
     details: Any = None
 
     def __post_init__(self) -> None:
@@ -224,6 +226,15 @@ class Result:
     def rigour(self) -> Rigour:
         """How sure the bound is."""
         return self.objective.rigour
+
+    @property
+    def sensitivity(self) -> Sensitivity | None:
+        """The smallest values found when attitude, position or jammers are off, in milliseconds."""
+        if self.error_sizes is None:
+            return None
+        ratios = getattr(self.details, "ratios_under", None)  # of an antenna that is an array
+        under = None if ratios is None else partial(ratios, self.scenario, self.pose)
+        return sensitivity(self.scenario, self.pose, self.error_sizes, ratios=under)
 
     @property
     def interrupted(self) -> bool:
@@ -266,7 +277,7 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON; a number that JSON cannot hold becomes None."""
         stats = {key: value for key, value in asdict(self.stats).items() if value is not None}
-        objective = self.objective.to_dict()
+        objective, sensitivity = self.objective.to_dict(), self.sensitivity
         return {
             "scenario": self.scenario.to_dict(),
             "scheme": str(self.scheme),
@@ -280,6 +291,7 @@ class Result:
             "stats": stats,
             "provenance": dict(self.provenance),
             "note": self.note,
+            **({} if sensitivity is None else {"sensitivity": sensitivity.to_dict()}),
             **({} if self.details is None else self.details.to_dict(objective)),
         }
 

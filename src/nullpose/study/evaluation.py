@@ -99,7 +99,10 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
     """
     if best.scenario.array is not None:
         raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
-    return Evaluation(best=best, results=tuple(_against(best, pose) for pose in poses))
+    results = tuple(_against(best, pose) for pose in poses)
+    if len(results) > 1:
+        results = tuple(replace(result, error_sizes=None) for result in results)
+    return Evaluation(best=best, results=results)
 
 
 def _against(best: Result, pose: Pose) -> Result:

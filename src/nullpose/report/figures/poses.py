@@ -32,6 +32,7 @@ from nullpose.report.figures.scene import (
 from nullpose.report.figures.style import INK
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
+from nullpose.report.sensitivity import sensitivity_caption
 from nullpose.report.words import error_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.solve import Objective, Result
@@ -83,6 +84,7 @@ def draw_pose(solution: Result, width: str | None = None) -> Figure:
     """
     scenario, pose = solution.scenario, solution.pose
     words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
+    words = "\n".join(filter(None, (words, sensitivity_caption(solution))))
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
     is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
     look: dict[str, Any] = {"surface": _WHOLE if is_pattern else _SURFACE, "plan": True, "width": width}
@@ -170,7 +172,8 @@ def draw_array(solution: Result, width: str | None = None) -> Figure:
         Stage(scenario=solution.scenario, poses=(solution.pose,), view=view),
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
         surface=f"gain of the beam{whose}, horizontal cut as a line",
-        head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}",
+        head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}\n"
+        f"{sensitivity_caption(solution)}".rstrip(),
         plan=True,
         width=width,
     )

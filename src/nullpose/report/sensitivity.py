@@ -1,0 +1,106 @@
+"""What a pose loses if attitude, position or jammers are not as stated, as a table and in a sentence."""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.antenna import PatternAntenna
+from nullpose.physics import link_gain
+from nullpose.report.document import View, document, rows, table
+from nullpose.report.numbers import number, with_unit
+from nullpose.solve import Result
+from nullpose.solve.robust import RobustDetails
+
+NULL_LOSS_DB = 3.0
+"""A pose that loses more than this is said to depend on the errors."""
+
+_NULL_GAIN = 0.1  # of a link, relative to the strongest: below it an interferer counts as in a null
+
+
+def sensitivity_view(result: Result) -> View | None:
+    """Return the smallest values found under errors as a table, with a sentence on a large loss.
+
+    Args:
+        result: of a solve, or of one pose that was given.
+    """
+    found = result.sensitivity
+    if found is None:
+        return None
+    quantity, sizes = found.quantity, found.sizes
+    point = result.scenario.objective_record.interferers.removesuffix("s")
+    kinds = {
+        "attitude": f"attitude by {sizes.attitude_deg:g} deg",
+        "position": f"position by {sizes.position_m:g} m",
+        "jammers": f"each {point} by {sizes.jammers_m:g} m",
+        "all": "all together",
+    }
+    if not getattr(result.scenario, f"{point}s"):
+        del kinds["jammers"]
+    values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
+    columns = {
+        "error": list(kinds.values()),
+        f"lowest {quantity.noun} found ({quantity.unit})": [number(value, quantity) for value in values],
+        f"change ({quantity.unit})": [
+            number(value - quantity.in_unit(found.nominal), quantity) for value in values
+        ],
+    }
+    return document(table("If things are off", rows(columns)), sensitivity_words(result))
+
+
+def sensitivity_caption(result: Result) -> str:
+    """Return the smallest value found under all errors together, as a line for a figure; empty if none is.
+
+    Args:
+        result: of a solve, or of one pose that was given.
+    """
+    found = result.sensitivity
+    if found is None:
+        return ""
+    point, sizes = result.scenario.objective_record.interferers, found.sizes
+    moved = f", {point} {sizes.jammers_m:g} m" if getattr(result.scenario, point) else ""
+    value = with_unit(found.quantity.in_unit(found.all), found.quantity)
+    return (
+        f"{value} or less with attitude {sizes.attitude_deg:g}°, position {sizes.position_m:g} m{moved} off"
+    )
+
+
+def sensitivity_words(result: Result) -> str | None:
+    """Say that a pose loses much under errors, and towards whom its null is; None if it does not.
+
+    Args:
+        result: of a solve, or of one pose that was given.
+    """
+    found = result.sensitivity
+    if found is None or not found.loss_db() > NULL_LOSS_DB:
+        return None
+    names = ", ".join(nulled_names(result))
+    pose = f"The pose stands on a null (towards {names})" if names else "The pose depends on these values"
+    quantity = found.quantity
+    loss = quantity.in_unit(found.nominal) - quantity.in_unit(found.all)
+    words = with_unit(loss, quantity) if math.isfinite(loss) else "all of its value"
+    robust = "--robust finds the best pose for such errors." if _has_robust_pose(result) else ""
+    return f"{pose}: under these errors it loses {words} or more. {robust}".rstrip()
+
+
+def nulled_names(result: Result) -> list[str]:
+    """Return the names of the jammers or eavesdroppers whose link is in a null of the antenna.
+
+    Args:
+        result: with its pose.
+    """
+    scenario, antenna = result.scenario, result.scenario.antenna_record
+    point = scenario.objective_record.interferers.removesuffix("s")
+    points_m, names = getattr(scenario, f"{point}_positions_m"), getattr(scenario, f"{point}_names")
+    if not names:
+        return []
+    at = result.pose.position_m, result.pose.orientation(antenna), points_m, antenna
+    gains = link_gain(*at, getattr(scenario, f"{point}_antennas"))
+    peak = antenna.peak if isinstance(antenna, PatternAntenna) else 1.0
+    return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN * peak]
+
+
+def _has_robust_pose(result: Result) -> bool:
+    """Return whether a robust solve of the scenario can be asked for, and is not what was done."""
+    scenario = result.scenario
+    is_dipole = scenario.array is None and not isinstance(scenario.antenna_record, PatternAntenna)
+    return is_dipole and not isinstance(result.details, RobustDetails)
