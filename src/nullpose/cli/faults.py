@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
@@ -56,9 +57,10 @@ class FaultReportingGroup(TyperGroup):
                 raise typer.Exit(code) from error
             except _WRONG_USAGE as error:
                 error.message = _plain_choice(error.message)
-                if not as_json:
-                    raise
-                say(_as_json(UsageError(error.format_message()), BAD_INPUT), err=True, broken=False)
+                shown = io.StringIO()
+                error.show(shown)
+                json_text = _as_json(UsageError(error.format_message()), BAD_INPUT)
+                say(json_text if as_json else shown.getvalue().rstrip(), err=True, broken=not as_json)
                 raise typer.Exit(BAD_INPUT) from error
             except BrokenPipeError as closed:
                 # Whoever read our output has gone; the interpreter must not complain when it flushes at exit.

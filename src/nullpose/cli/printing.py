@@ -7,7 +7,7 @@ import io
 import sys
 import unicodedata
 from shutil import get_terminal_size
-from textwrap import wrap
+from textwrap import TextWrapper
 
 _PLAIN = {"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "\N{EM DASH}": "-", "\N{INFINITY}": "inf"}
 
@@ -42,12 +42,6 @@ def say(text: str, *, err: bool = False, broken: bool = True) -> None:
     """
     stream = sys.stderr if err else sys.stdout
     if broken and stream.isatty():
-        width = get_terminal_size().columns
-        text = "\n".join(_wrapped(line, width) for line in text.split("\n"))
+        wrapper = TextWrapper(get_terminal_size().columns, break_long_words=False, break_on_hyphens=False)
+        text = "\n".join(wrapper.fill(line) for line in text.split("\n"))
     print(text, file=stream, flush=True)
-
-
-def _wrapped(line: str, width: int) -> str:
-    indent = " " * (len(line) - len(line.lstrip()))
-    lines = wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
-    return "\n".join(lines)

@@ -14,6 +14,7 @@ from nullpose.report.document import View, document, grouped, head, rows, table
 from nullpose.report.numbers import begun, bound_text, fixed, less_or_more, percent, short
 from nullpose.solve import Status
 from nullpose.study import AirframeComparison, AirframeResult
+from nullpose.study.airframe_comparison import TOLERANCE
 
 _STATUS = {
     Status.CERTIFIED: "certified",
@@ -182,8 +183,8 @@ def _difference(comparison: AirframeComparison, result: AirframeResult) -> str:
 def _near(comparison: AirframeComparison) -> str:
     """Return how near to the omnidirectional vehicle suffices: as a rate, or in decibels of a power ratio."""
     if Quantity.of(comparison.scenario).is_rate:
-        return f"within {percent(comparison.tolerance)}"
-    return f"within {-10.0 * math.log10(1.0 - comparison.tolerance):.2f} dB"
+        return f"within {percent(TOLERANCE)}"
+    return f"within {-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB"
 
 
 def _errors_line(comparison: AirframeComparison) -> str:
@@ -197,7 +198,7 @@ def _errors_line(comparison: AirframeComparison) -> str:
         for result in comparison.dipoles
         if result.guaranteed is not None
         and result.guaranteed.robust_pose is not None
-        and result.guaranteed.robust_pose >= (1.0 - comparison.tolerance) * whole.robust_pose
+        and result.guaranteed.robust_pose >= (1.0 - TOLERANCE) * whole.robust_pose
     )
     all_tilt = quantity.in_unit(whole.robust_pose)
     kept = less_or_more(all_tilt - quantity.in_unit(comparison.omnidirectional.value), quantity)

@@ -40,16 +40,13 @@ def too_small(
     """
     span_m = max((np.ptp(axis) for axis in list(zip(*positions_m, strict=True))[:2]), default=0.0)
     for (place, table), (key, (share, most_m)) in product(tables.items(), _LEAST.items()):
-        if not (corners_m := getattr(table, key, None)):
-            continue
-        least = {f"the ground points are {span_m:.3g} m apart": min(share * span_m, most_m)}
-        if (keep_out_m := getattr(table, "keep_out_m", None)) is not None:
-            least[f"keep_out_m is {keep_out_m:g} m"] = _LEAST_OF_KEEP_OUT * keep_out_m
-        (why, least_m), (east_m, north_m) = (
-            max(least.items(), key=lambda each: each[1]),
-            np.ptp(corners_m, axis=0),
+        keep_out_m = getattr(table, "keep_out_m", None) or 0.0
+        least_m, why = max(
+            (min(share * span_m, most_m), f"the ground points are {span_m:.3g} m apart"),
+            (_LEAST_OF_KEEP_OUT * keep_out_m, f"keep_out_m is {keep_out_m:g} m"),
         )
-        if max(east_m, north_m) < least_m:
+        if (corners_m := getattr(table, key, None)) and np.ptp(corners_m, axis=0).max() < least_m:
+            east_m, north_m = np.ptp(corners_m, axis=0)
             earthly = next(each for each, metric in EARTHLY_CORNERS.items() if metric == key)
             yield (
                 (*place, key if getattr(table, earthly) is None else earthly),
@@ -99,21 +96,21 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         for kind in POINT_LISTS
         for index, point in enumerate(getattr(scenario, kind))
     }
-    metric = {place: point.position_m for place, point in points.items() if point.lat_deg is None}
-    remedy = "lat_deg, lon_deg and an altitude"
-    degrees = close_to_degrees(scenario.origin, list(metric.values()), remedy)
-    kinds = " and ".join(dict.fromkeys(place.partition("[")[0] for place in metric))
+    metric_m = [point.position_m for point in points.values() if point.lat_deg is None]
+    degrees = close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
     return (
         *_powers(scenario, points),
-        *(Fault(kinds, doubt) for doubt in degrees),
+        *(Fault("position_m", doubt) for doubt in degrees),
         *_altitudes(points),
     )
 
 
 def _powers(scenario: Scenario, points: Mapping[str, Any]) -> Iterator[Fault]:
-    powers: dict[str, Powered] = {place: each for place, each in points.items() if isinstance(each, Powered)}
-    if scenario.transmitter is not None:
-        powers["transmitter"] = scenario.transmitter
+    powers = {
+        place: each
+        for place, each in {**points, "transmitter": scenario.transmitter}.items()
+        if isinstance(each, Powered)
+    }
     in_dbm = [emitter.power_dbm for emitter in powers.values()]
     for place, emitter in powers.items() if any(dbm is not None for dbm in in_dbm) else ():
         power = emitter.power_w

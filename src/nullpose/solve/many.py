@@ -74,7 +74,8 @@ class ManySolutions:
 
     def __repr__(self) -> str:
         scenes, vehicles = self.value.shape
-        words = ", ".join(f"{count} {name}" for name, count in Counter(self._status_names()).items())
+        counts = Counter(getattr(each, "value", "without a pose") for each in self.status.flat)
+        words = ", ".join(f"{count} {name}" for name, count in counts.items())
         return f"ManySolutions(scenes: {scenes}, vehicles: {vehicles}; {words})"
 
     def __str__(self) -> str:
@@ -89,24 +90,15 @@ class ManySolutions:
         Raises:
             UsageError: pandas is not installed.
         """
-        return imported("pandas").DataFrame(self._columns())
+        return imported("pandas").DataFrame(self._rows())
 
     def _rows(self) -> list[dict[str, object]]:
-        columns = self._columns()
-        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-
-    def _status_names(self) -> list[str]:
-        return [getattr(each, "value", "without a pose") for each in self.status.flat]
-
-    def _columns(self) -> dict[str, NDArray[Any]]:
-        scene, vehicle = np.indices(self.value.shape)
-        bound = np.where(np.isfinite(self.upper_bound), self.upper_bound, math.nan)
+        """Return a row for each scene and vehicle; what is not known is not a number."""
         columns = {
-            "scene": scene,
-            "vehicle": vehicle,
+            **dict(zip(("scene", "vehicle"), np.indices(self.value.shape), strict=True)),
             "value_db": to_db(self.value),
-            "upper_bound_db": to_db(bound),
-            "status": np.array(self._status_names(), dtype=object),
+            "upper_bound_db": to_db(np.where(np.isfinite(self.upper_bound), self.upper_bound, math.nan)),
+            "status": self.status,
             **dict(zip(("x_m", "y_m", "z_m"), np.moveaxis(self.position_m, -1, 0), strict=True)),
             "roll_deg": np.degrees(self.roll_rad),
             "pitch_deg": np.degrees(self.pitch_rad),
@@ -115,7 +107,8 @@ class ManySolutions:
             "boxes": self.boxes,
             "reason": self.reason,
         }
-        return {name: values.ravel() for name, values in columns.items()}
+        cells = zip(*(values.ravel().tolist() for values in columns.values()), strict=True)
+        return [dict(zip(columns, row, strict=True)) for row in cells]
 
     @classmethod
     def blank(cls, scenes: int, airframes: int) -> ManySolutions:

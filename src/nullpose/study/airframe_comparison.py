@@ -160,11 +160,6 @@ class AirframeComparison:
         return next((one for one in self.dipoles if self.suffices(one)), None)
 
     @property
-    def tolerance(self) -> float:
-        """What a vehicle may fall short of the omnidirectional one by and still suffice, relative."""
-        return TOLERANCE
-
-    @property
     def stated(self) -> AirframeResult | None:
         """What the scenario's own vehicle gives; None if it states none, or one of the usual."""
         return next((result for result in self.results if result.case.name == STATED), None)
@@ -221,7 +216,7 @@ class AirframeComparison:
                 }
                 for result in self.results
             ],
-            "tolerance": self.tolerance,
+            "tolerance": TOLERANCE,
             "least_sufficient": None if least is None else least.case.name,
             "provenance": dict(self.provenance),
         }

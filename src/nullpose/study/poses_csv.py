@@ -18,6 +18,7 @@ from nullpose.scenario.units import ALTITUDE_KEYS
 from nullpose.scenario.wording import described, listed
 
 _LOCAL, _ANGLES = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
+_NO_ORIGIN = "lat_deg and lon_deg need the [origin] of a scenario; add it, or give x_m, y_m and z_m"
 _KIND = FileKind("a file of poses", "poses.csv", (".csv",))
 
 
@@ -46,14 +47,15 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
     """
     try:
         rows = csv.DictReader(io.StringIO(file_text(path, _KIND), newline=""), skipinitialspace=True)
-        place = _place_columns(rows.fieldnames or ())
-        columns = (*place, *_ANGLES)
-        absent = [name for name in columns[:-1] if name not in (rows.fieldnames or ())]
+        header = rows.fieldnames or ()
+        altitude = next((key for key in ALTITUDE_KEYS if key in header), ALTITUDE_KEYS[0])
+        earthly = "x_m" not in header and ("lat_deg" in header or "lon_deg" in header)
+        columns = (*(("lat_deg", "lon_deg", altitude) if earthly else _LOCAL), *_ANGLES)
+        absent = [name for name in columns[:-1] if name not in header]
         told = "there is no column {}, must be " + listed(columns)
         faults = [Fault("line 1", told.format(name)) for name in absent]
-        if place != _LOCAL and origin is None:
-            needed = "lat_deg and lon_deg need the [origin] of a scenario; add it, or give x_m, y_m and z_m"
-            faults.append(Fault("line 1", needed))
+        if earthly and origin is None:
+            faults.append(Fault("line 1", _NO_ORIGIN))
         numbers = [] if faults else [_numbers(row, rows.line_num, columns, faults, origin) for row in rows]
         if not numbers and not faults:
             faults.append(Fault("", "there is no line below the header, must be one for each pose"))
@@ -66,13 +68,6 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
     table = np.array(numbers)
     roll, pitch, yaw = np.radians(table[:, 3:].T)
     return Poses(table[:, :3], roll, pitch, yaw, mount_rad)
-
-
-def _place_columns(header: Sequence[str]) -> tuple[str, ...]:
-    """Return the columns of a position: metres, or degrees with the altitude that there is."""
-    if "x_m" in header or not {"lat_deg", "lon_deg"} & set(header):
-        return _LOCAL
-    return "lat_deg", "lon_deg", next((key for key in ALTITUDE_KEYS if key in header), ALTITUDE_KEYS[0])
 
 
 def _numbers(
