@@ -35,7 +35,7 @@ def test_a_report(run: Run, folder: Path) -> None:
     """The answer is printed, and the files that were written."""
     result = run("study", "report", folder, "--requirement-db", "3")
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout.startswith("Over 4 scenes the fixed pose ")
+    assert result.stdout.startswith("Over 4 scenes the given pose ")
     for name in ("report.md", "report.html", "summary.csv", "study.csv"):
         assert str(folder / "report" / name) in result.stdout
         assert (folder / "report" / name).stat().st_size > 0
