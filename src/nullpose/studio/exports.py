@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 from io import BytesIO
+from types import SimpleNamespace
 from typing import Any
+
+import numpy as np
 
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
@@ -12,6 +15,14 @@ from nullpose.studio.drone import LINK_RANGE_DB
 from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.session import Session
 from nullpose.studio.toml_like import toml_like
+
+_PHONE_PX = {"image_width": 390, "image_height": 844}
+
+_ON_A_PHONE = """if (innerWidth < 600 && innerWidth < innerHeight) {
+  const seen = { initialCameraPosition: %s, initialCameraLookAt: %s }, { get } = URLSearchParams.prototype;
+  URLSearchParams.prototype.get = function (name) { return seen[name]?.join() ?? get.call(this, name); };
+}"""
+"""Gives viser, which asks the address of a page for it, a camera that sees the whole scene on a phone."""
 
 
 def scenario_toml(session: Session) -> bytes:
@@ -88,7 +99,8 @@ def scene_html(
         chosen_map: the map that is shown.
         link_range_db: ends of the links' colours, dB.
         look: its colours.
-        camera: of the page, to begin with what it sees; None for one that sees the whole scene.
+        camera: of the page, to begin with what it sees; None for one that sees the whole scene, as it is on a
+            phone in any case.
         pattern: whether the antenna's pattern is shown.
 
     Raises:
@@ -116,11 +128,14 @@ def scene_html(
         stage.show(first.position, chosen_map=chosen_map, pattern=pattern)
         labels.arrange(Eye.of(first))
         page = str(server.scene.as_html(dark_mode=look.dark))
+        ends = {"position": first.position, "look_at": first.look_at, "fov": first.fov}
+        phone = aim(SimpleNamespace(**ends, **_PHONE_PX), session.view.scenario, best.result.pose)
     finally:
         with unannounced():
             server.stop()
     card = (
         f"{look_html()}<div id=np-overlay>{overlay_html(session, stage.scale)}</div>"
+        f"<script>{_ON_A_PHONE % tuple(np.array(phone[:2]).tolist())}</script>"
         "<script>document.documentElement.style.setProperty('--np-height',"
         "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
     )

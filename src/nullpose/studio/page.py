@@ -92,7 +92,7 @@ class Page:
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
         self._exchange = Exchange(*own, self.stage, self.sight, look, address, self._change)
-        self.present = Present(client, self.sight.enlarge)
+        self.present = Present(client, self.sight)
         self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay, card=card)
         self._listen()
         if left is not None:
@@ -129,7 +129,7 @@ class Page:
             (panel.redo, session.redo),
             (panel.aim, self.sight.aim),
             (panel.new, self._new),
-            (panel.present, self.present.begin),
+            (panel.present, self.present.toggle),
         ]
         for control, action in controls:
             control.on_update(by_hand(action))

@@ -98,7 +98,7 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
         "present": (
             "button",
             "Present",
-            "Fold the panel and let the camera go round (key: P); Escape ends it.",
+            "Fold the panel and let the camera go round (key: P); again, or Escape: stop.",
             {},
         ),
     },

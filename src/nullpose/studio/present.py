@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable
 
 import numpy as np
 from viser import ClientHandle
 
-from nullpose.physics import rotation_world_from_body
+from nullpose.studio.sight import Sight
 
 ENLARGED = 1.5
 """How much larger the labels are in present mode."""
@@ -24,11 +23,11 @@ class Present:
 
     Args:
         client: the browser.
-        enlarge: called with how large the labels are to be.
+        sight: its camera and labels.
     """
 
-    def __init__(self, client: ClientHandle, enlarge: Callable[[float], None]) -> None:
-        self._client, self._enlarge = client, enlarge
+    def __init__(self, client: ClientHandle, sight: Sight) -> None:
+        self._client, self._sight = client, sight
         self._ended = threading.Event()
         self._thread: threading.Thread | None = None
 
@@ -45,7 +44,8 @@ class Present:
         """Fold the panel, enlarge the labels, and set the camera going."""
         if self._thread is None:
             self._client.gui.main_panel.minimize()
-            self._enlarge(ENLARGED)
+            # on a phone they would not fit beside each other
+            self._sight.enlarge(min(ENLARGED, max(1.1, self._client.camera.image_width / 500.0)))
             self._ended.clear()
             self._thread = threading.Thread(target=self._go_round, name="nullpose-studio-camera", daemon=True)
             self._thread.start()
@@ -54,7 +54,7 @@ class Present:
         """Give the page back as it was, the camera where it is."""
         if self.close():
             self._client.gui.main_panel.expand()
-            self._enlarge(1.0)
+            self._sight.enlarge(1.0)
 
     def close(self) -> bool:
         """Return whether the camera was going, which ends; the browser, which may be gone, is not told."""
@@ -66,8 +66,7 @@ class Present:
 
     def _go_round(self) -> None:
         camera, began = self._client.camera, time.monotonic()
-        middle_m, first_m = np.array(camera.look_at), np.array(camera.position)
+        east_m, north_m, _ = np.subtract(camera.position, camera.look_at)
+        first_rad = math.atan2(north_m, east_m) + math.pi / 2.0  # from the south
         while not self._ended.wait(_STEP_S):
-            turn = rotation_world_from_body(0.0, 0.0, _TURN_RAD_S * (time.monotonic() - began))
-            with self._client.atomic():
-                camera.position, camera.look_at = middle_m + turn @ (first_m - middle_m), middle_m
+            self._sight.go_round(first_rad + _TURN_RAD_S * (time.monotonic() - began))

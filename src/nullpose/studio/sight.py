@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from viser import ClientHandle
 
-from nullpose.studio.camera import CARD_PX, aim
+from nullpose.physics import rotation_world_from_body
+from nullpose.studio.camera import CARD_PX, aim, around
 from nullpose.studio.eye import Eye
 from nullpose.studio.labels import Labels
 from nullpose.studio.session import Session
@@ -43,6 +45,7 @@ class Sight:
         self._client, self._session, self._lock = client, session, lock
         self._is_dragging, self._face = is_dragging, face
         self._fit: Eye | None = None
+        self._way: tuple[Any, ...] | None = None
         self._moved: threading.Timer | None = None
         self._open = True
         self.labels, self.aimed = Labels(client.scene), False
@@ -67,6 +70,22 @@ class Sight:
             self.aim()  # which says how far it sees
             camera.position, camera.look_at = np.asarray(eye_m), np.asarray(look_at_m)
         self.aimed, self._fit = True, None
+
+    def go_round(self, turn_rad: float) -> None:
+        """Let the camera see points and drone from a side, whatever a hand has done with it.
+
+        Args:
+            turn_rad: from the south to that side, anticlockwise, radians.
+        """
+        view, camera = self._session.view, self._client.camera
+        answer, canvas = self._session.answer(view.case), (camera.image_width, camera.image_height)
+        if self._way is None or self._way[:3] != (view.scenario, answer, canvas):
+            seen = around(camera, view.scenario, answer.result.pose if answer else None)
+            self._way = view.scenario, answer, canvas, seen
+        eye, foot_m = self._way[3]
+        turn = rotation_world_from_body(0.0, 0.0, turn_rad)
+        with self._client.atomic():
+            camera.position, camera.look_at = (foot_m + turn @ end for end in eye[:2])
 
     def arrange(self) -> None:
         """Put the labels where they do not overlap; aim again if only the canvas has another size now."""

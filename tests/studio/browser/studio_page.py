@@ -293,18 +293,23 @@ def test_the_pattern_opens_towards_the_camera(page: Page, session: Session, runn
 
 
 def test_presenting_folds_the_panel_and_goes_round(page: Page, session: Session, running: Studio) -> None:
-    """P begins it and Escape ends it; what the camera looks at stays where it is on the screen."""
+    """P begins it and Escape ends it; the drone stays where it is on the screen, from the same distance."""
     ours = next(one for one in running.pages.values() if one.session is session)
     camera = ours._client.camera
-    before, middle = np.array(camera.position), np.array(camera.look_at)
+    answer = session.current(session.view.case)
+    assert answer is not None
+    here = answer.result.pose.position_m
     page.mouse.click(400, 20)
     page.keyboard.press("p")
     page.wait_for_timeout(3000)
     assert not page.get_by_role("tab", name="Files").is_visible()
     assert page.locator("#np-overlay").is_visible()
+    before, seen = np.array(camera.position), Eye.of(camera).pixels([here])[0]
+    page.wait_for_timeout(2000)
     after = np.array(camera.position)
-    assert np.linalg.norm(after - before) > 0.02 * np.linalg.norm(before - middle)
-    assert np.linalg.norm(after - middle) == pytest.approx(np.linalg.norm(before - middle), rel=1e-3)
+    assert np.linalg.norm(after - before) > 0.05 * np.linalg.norm(before - here)
+    assert np.linalg.norm(after - here) == pytest.approx(np.linalg.norm(before - here), rel=1e-3)
+    assert Eye.of(camera).pixels([here])[0] == pytest.approx(seen, rel=1e-2)
     page.keyboard.press("Escape")
     page.get_by_role("tab", name="Files").wait_for()
     assert not ours.present.is_on

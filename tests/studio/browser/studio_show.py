@@ -1,14 +1,19 @@
 """A scene is shown in a notebook and in the browser, by itself."""
 
+import io
 import stat
 import webbrowser
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
+from matplotlib.image import imread
 from playwright.sync_api import Browser
 
 import nullpose
+from nullpose.studio.camera import CARD_PX, aim
 
 PAPER = Path(__file__).parents[3] / "examples" / "paper.toml"
 
@@ -67,3 +72,32 @@ def test_in_a_notebook_it_is_below_the_cell(browser: Browser, tmp_path: Path) ->
     path = tmp_path / "notebook.html"
     path.write_text(f"<meta charset=utf-8>{output.data['text/html']}", encoding="utf-8")
     assert _value(browser, path) == nullpose.solve(nullpose.load(PAPER)).objective.value
+
+
+@pytest.mark.parametrize("name", ["paper", "field"])
+def test_on_a_phone_the_drone_is_in_the_frame(
+    browser: Browser, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Below the card, where the camera for a phone has it; and nothing of viser's can be opened."""
+    monkeypatch.setattr(webbrowser, "open", lambda address: None)
+    result = nullpose.solve(nullpose.load(PAPER.with_name(f"{name}.toml")), certify=False)
+    path = nullpose.show(result)
+    assert path is not None
+    page = browser.new_page(viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True)
+    page.goto(path.as_uri())
+    page.wait_for_selector("canvas")
+    page.wait_for_timeout(3000)
+    for button in page.locator("button.mantine-Notification-closeButton").all():
+        button.click()
+    page.wait_for_timeout(1000)
+    camera = SimpleNamespace(
+        position=np.ones(3), look_at=np.zeros(3), fov=1.309, image_width=390, image_height=844
+    )
+    x, y, _ = aim(camera, result.scenario, result.pose).pixels([result.pose.position_m])[0]
+    picture = imread(io.BytesIO(page.screenshot()))[..., :3]
+    drone = picture[int(y) - 6 : int(y) + 7, int(x) - 6 : int(x) + 7]
+    assert y > CARD_PX[1]
+    assert np.mean(drone.max(axis=-1) < 0.75) > 0.3, "there is no drone where it is to be"
+    assert [one for one in page.get_by_label("scene tree").all() if one.is_visible()] == []
+    page.close()
+    path.unlink()

@@ -85,13 +85,20 @@
     overlay.firstChild.outerHTML = content;
   }
 
-  let folded = !matchMedia("(max-width: 36em)").matches; // viser's own limit for its sheet at the bottom
+  // viser's own limit for its sheet at the bottom; asked for late, since a phone is as wide as a desk's screen
+  // until the page has said how wide it is
+  const sheet = matchMedia("(max-width: 36em)");
+  let folds = true; // whether the sheet is to be folded as soon as it is there
   function fold() {
     const handle = document.querySelector("svg.tabler-icon-cloud-check")?.parentElement;
-    if (folded || !handle) return;
-    folded = true;
-    handle.click();
+    if (!folds || !sheet.matches || !handle) return;
+    folds = false;
+    if (handle.querySelector("button")) handle.click(); // folded, it has none
   }
+  sheet.addEventListener("change", () => { // the phone was turned, and the sheet is a new one
+    folds = true;
+    setTimeout(fold, 100);
+  });
 
   // What is typed. viser gathers all messages of 50 ms and sends only the last of them, so that of 36 and Enter
   // the 6 could be lost. Here the whole text of a field is sent, once: with Enter, or when the field is left.
@@ -152,6 +159,8 @@
     } else if (data?.type === "message_batch") {
       data.messages.forEach(show);
       data.messages.forEach(set);
+      // what viser folds is its panel beside the scene, and not the sheet
+      folds ||= data.messages.some((one) => one.type === "GuiSetPanelCollapsedMessage" && one.collapsed);
       fold();
     }
   }
@@ -165,6 +174,10 @@
 
     postMessage(data, ...more) {
       const isKey = data?.message?.type === "GuiUpdateMessage" && texts.has(data.message.uuid);
+      if (data?.message?.type === "ViewerCameraMessage") { // which has the pixels of the screen, finer than the page's
+        const { clientWidth, clientHeight } = document.querySelector("canvas[data-engine]");
+        Object.assign(data.message, { image_width: clientWidth, image_height: clientHeight });
+      }
       if (!isKey) super.postMessage(data, ...more);
     }
 
