@@ -65,6 +65,17 @@ def test_other_scenes_are_proved(name: str, antenna: dict[str, object], changes:
     assert verdict.proved, verdict.message
 
 
+@pytest.mark.parametrize(
+    ("antenna", "changes"),
+    [({"kind": "half-wave"}, TILTED), (UNEVEN, ["airframe.tilt_max_deg=0"])],
+    ids=["tilted", "level"],
+)
+def test_wide_gaps_are_proved(antenna: dict[str, object], changes: list[str]) -> None:
+    """Leaves are few and large, many with axes out of reach."""
+    verdict = verify(certificate("paper", antenna, *changes, gap=0.5))
+    assert verdict.proved, verdict.message
+
+
 def lower(made: Certificate) -> Certificate:
     """Claim next to no gap."""
     bound = made.value * (1.0 + 1e-9)

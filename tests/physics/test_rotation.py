@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics import antenna_axis, attitude_from_axis, rotation_world_from_body
+from nullpose.physics import Pose, antenna_axis, attitude_from_axis, rotation_world_from_body
+from nullpose.physics.rotation import attitude_of
 
 ANGLES = st.floats(-math.pi, math.pi)
 SEEDS = st.integers(0, 2**32 - 1)
@@ -132,3 +133,18 @@ def test_shapes_follow_the_angles() -> None:
     back_roll, back_pitch = attitude_from_axis(axes, yaw)
     assert back_roll.shape == back_pitch.shape == (4, 5)
     np.testing.assert_allclose(back_pitch, np.broadcast_to(pitch, (4, 5)), atol=1e-15)
+
+
+@given(SEEDS, st.one_of(st.just(0.0), st.floats(1e-9, math.pi)), st.floats(-16.0, -6.0))
+def test_attitudes_keep_within_a_tilt(seed: int, tilt_max: float, error: float) -> None:
+    """What is beyond a tilt by rounding is not beyond it as angles, and level is exactly level."""
+    rng = np.random.default_rng(seed)
+    yaw, towards = rng.uniform(-math.pi, math.pi, 2)
+    tilt = min(tilt_max + 10.0**error, math.pi)
+    stated = Rotation.from_euler("ZYZ", [towards, tilt, yaw - towards]).as_matrix()
+    roll, pitch, found = attitude_of(stated, tilt_max)
+    assert Pose([0.0, 0.0, 8.0], roll, pitch, found).tilt_rad <= tilt_max
+    assert tilt_max > 0.0 or (roll, pitch) == (0.0, 0.0)
+    if abs(abs(pitch) - math.pi / 2.0) > 1e-2:  # there roll and yaw turn about one axis
+        moved = Rotation.from_matrix(rotation_world_from_body(roll, pitch, found).T @ stated).magnitude()
+        assert moved <= 200.0 * 10.0**error + 1e-7

@@ -11,8 +11,11 @@ from nullpose.antenna import PatternAntenna
 from nullpose.antenna.harmonics import directions, fit
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import UsageError
+from nullpose.family import build_family
 from nullpose.physics import Pose, evaluate, min_sinr
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solve.certificate_from_proof import certificate_of, verified
+from nullpose.solve.options import SolveOptions
+from nullpose.solve.pattern import PatternRun, reach_of
 from nullpose.solve.robust import solve_robust
 
 PAPER = load("examples/paper.toml")
@@ -29,6 +32,10 @@ def pattern_rows(function: Any, degree: int) -> list[list[float]]:
 def lobed(x: Any, y: Any, z: Any) -> Any:
     """Return a pattern of degree 4 without symmetry."""
     return (1.0 - z**2) * (1.0 + 0.3 * x + 0.2 * y * z) + 0.01 + 0.05 * x**2 * z**2
+
+
+UNEVEN = [[2.0], [-0.6, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0, 0.0]]
+"""A gain that is the same all round, but not upside down."""
 
 
 def with_antenna(scenario: Scenario, antenna: dict[str, Any], power_w: float = 1.0) -> Scenario:
@@ -85,6 +92,35 @@ def test_airframe(kind: str) -> None:
         pose = Pose(place_m, 0.4 * roll, 0.4 * pitch, math.pi * yaw, math.radians(30.0))
         if pose.tilt_rad <= math.radians(20.0):
             assert min_sinr(tilted, pose) <= less.objective.upper_bound
+
+
+@pytest.mark.parametrize(
+    ("kind", "mount_deg"), [("half-wave", 0.0), ("half-wave", 89.999), ("uneven", 45.0), ("pattern", 30.0)]
+)
+def test_level_vehicles(kind: str, mount_deg: float) -> None:
+    """Roll and pitch are exactly zero, no less than the search alone finds, what is promised is verified."""
+    rows = {"pattern": pattern_rows(lobed, 4), "uneven": UNEVEN, "half-wave": None}[kind]
+    antenna = {"kind": "half-wave"} if rows is None else {"kind": "pattern", "harmonics": rows}
+    level = apply_overrides(
+        with_antenna(PAPER, antenna), ["airframe.tilt_max_deg=0", f"airframe.mount_deg={mount_deg}"]
+    )
+    result = solve(level, gap=0.3, threads=1, time_limit_s=5.0)
+    assert (result.pose.roll_rad, result.pose.pitch_rad) == (0.0, 0.0)
+    assert result.objective.value >= solve(level, certify=False).objective.value * (1.0 - 1e-6)
+    if kind != "pattern":
+        assert verified(result).rigour == "verified"
+
+
+def test_leaves_stay_with_their_root() -> None:
+    """A stage that stops short leaves bound, root and leaves of the one before, which belong together."""
+    data = load("examples/eavesdropper.toml").to_dict() | {"antenna": {"kind": "half-wave"}}
+    scenario = Scenario.from_dict(data)
+    antenna, options = scenario.antenna_record, SolveOptions(threads=1, gap=0.3).of(scenario)
+    run = PatternRun(build_family(scenario, any_antenna=True), antenna, reach_of(scenario, antenna), options)
+    run.outcome()
+    before = run.proved, run.root.tolist(), len(run.leaves)
+    assert run._stage(1e-6, 0.0) == f"the time limit of {options.time_limit_s:g} s"
+    assert (run.proved, run.root.tolist(), len(run.leaves)) == before
 
 
 def test_limits_leave_a_bound() -> None:

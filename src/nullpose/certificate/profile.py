@@ -109,10 +109,10 @@ class ProfileField(AxisField):
         ValueError: the gain changes round the axis.
     """
 
-    __slots__ = ("even", "profile", "tilts")
+    __slots__ = ("ends", "even", "profile")
 
     profile: Profile
-    tilts: tuple[tuple[float, float], ...]
+    ends: tuple[tuple[float, float], tuple[float, float]]
     even: bool
 
     def __init__(self, antenna: PatternAntenna, scenario: Scenario) -> None:
@@ -122,7 +122,7 @@ class ProfileField(AxisField):
         even = antenna.harmonics.is_even
         for name, value in (
             ("profile", _profile(antenna.harmonics.cosine[:, 0].tobytes())),
-            ("tilts", _tilts(scenario, even)),
+            ("ends", _ends(scenario)),
             ("even", even),
         ):
             object.__setattr__(self, name, value)
@@ -155,15 +155,14 @@ def _profile(terms: bytes) -> Profile:
     return Profile(cosine * np.sqrt(2.0 * np.arange(len(cosine)) + 1.0))
 
 
-def _tilts(scenario: Scenario, even: bool) -> tuple[tuple[float, float], ...]:
-    """Return least and greatest vertical component of the axes that the airframe reaches, a hair wider."""
+def _ends(scenario: Scenario) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return sine and cosine of the least and of the greatest angle from the vertical that an axis has."""
     airframe = scenario.airframe
     if airframe is None or airframe.tilt_max_rad >= math.pi:
-        return ((-1.0, 1.0),)
-    ends = airframe.mount_rad + airframe.tilt_max_rad, airframe.mount_rad - airframe.tilt_max_rad
-    low, high = (float(sine_cosine(Fraction(min(max(end, 0.0), math.pi)))[1]) for end in ends)
-    one = (low - 1e-12, high + 1e-12)
-    return (one, (-one[1], -one[0])) if even else (one,)
+        return (0.0, 1.0), (0.0, -1.0)
+    least, most = airframe.mount_rad - airframe.tilt_max_rad, airframe.mount_rad + airframe.tilt_max_rad
+    low, high = (sine_cosine(Fraction(min(max(end, 0.0), math.pi))) for end in (least, most))
+    return (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
 
 
 def _powers(weights: FloatArray) -> list[Fraction]:

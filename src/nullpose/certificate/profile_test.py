@@ -8,7 +8,8 @@ order from the leaf's chart on, the cosine between axis and w_j is
                 - sin u cos s (z d_x - x d_z) / sqrt f,   f = x^2 + z^2.
 
 The sum of ``g(c_j) / |w_j|^2`` with the leaf's multipliers is bounded by its value and slopes at the centre
-and its second derivatives over the box.
+and its second derivatives over the box. Where the polynomial g is below zero, the gain is zero. For an
+interferer the sum is then too large, which is safe; for a node its ratio is below the level, which is tested.
 """
 
 from __future__ import annotations
@@ -28,12 +29,15 @@ from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.family import AxisField, Family
 
-_ROUNDS = 16  # of halving what is not excluded
-_MOST = 4  # pieces of a leaf at once, on average: a certificate that holds needs one or two
+_ROUNDS = 60  # of halving what is not excluded
+_MOST = (
+    4  # pieces of a leaf at once, on average, and some thousand: a certificate that holds needs one or two
+)
 _PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
 _TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
 _CHUNK = 4096
 _DEEPEST = 50  # halvings of a turn: with more its middle is no floating-point number
+_HAIR = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
 _SQUARES = [n for n, (i, j) in enumerate(PAIRS) if i == j]
 
 
@@ -68,10 +72,12 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     """
     assert isinstance(field, ProfileField)
     holds = _all_kept_out(family, field, leaves, boxes)
-    rows = np.flatnonzero(~holds)
+    isotropic = family.denominator_isotropic[family.denominator_of]
+    unheard = Interval(leaves.level[:, None]) * isotropic - family.numerator_isotropic
+    rows = np.flatnonzero(~holds & np.all(unheard.low > 0.0, axis=1))
     own = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows])
     cells = _Cells(own, leaves.cell[rows, 1:])
-    most = _MOST * max(1, len(rows))
+    most = _MOST * len(rows) + _CHUNK
     for _ in range(_ROUNDS):
         if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > _DEEPEST):
             break
@@ -140,14 +146,19 @@ def _negative(
     span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
     half = np.vstack([cells.boxes.half.T[order], (_PI * (span * np.ldexp(0.5, -depth))).high])
     turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
+    missed = _out_of_reach(field, way, turns, half, (2 - chart) % 3)
+    if np.any(missed):
+        side, left = np.zeros(len(missed), dtype=np.int64), ~missed
+        if np.any(left):
+            missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))
+        return missed, side
     wide = way + Interval(-half[:3], half[:3]), [_about(t, h) for t, h in zip(turns, half[3:], strict=True)]
     bound = _largest(
         family, field.profile, leaves, (_links(apart, anchor, way, turns), _links(apart, anchor, *wide)), half
     )
-    excluded = (bound < 0.0) | _out_of_reach(field, *wide, (2 - chart) % 3)
     length_m = np.linalg.norm(way.middle(), axis=0)
     side = np.argmax(half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))]), axis=0)
-    return excluded, np.where(side < 3, order[np.minimum(side, 2)], side)
+    return bound < 0.0, np.where(side < 3, order[np.minimum(side, 2)], side)
 
 
 def _largest(
@@ -169,40 +180,60 @@ def _largest(
         reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
         c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
         ranges = [profile.within(n, c) for n in range(3)]
-        # a negative gain counts as 0: with the lift none is, and those that are taken away need none
-        weight, lift = gain - loss, gain * np.maximum(0.0, -ranges[0].low)
+        weight = gain - loss
         link = cosine.of(*(profile.near(n, cosine.value) for n in range(3))) * near
-        at_centre = at_centre + link.value * weight + near.value * lift
-        slopes = slopes + link.slopes * weight + near.slopes * lift
+        at_centre = at_centre + link.value * weight
+        slopes = slopes + link.slopes * weight
         link = wide.of(*ranges) * near_wide
-        over = over + link.value * weight + near_wide.value * lift
-        bends = bends + link.bends * weight + near_wide.bends * lift
+        over = over + link.value * weight
+        bends = bends + link.bends * weight
     return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high))
 
 
 def _out_of_reach(
-    field: ProfileField, way: Interval, turns: list[tuple[Interval, Interval]], upright: int
+    field: ProfileField,
+    way: Interval,
+    turns: list[tuple[Interval, Interval]],
+    half: FloatArray,
+    upright: int,
 ) -> np.ndarray:
     """Return which cells have no axis that the airframe reaches.
 
+    Along a straight line the frame turns by less than the way over its least distance from the chart's pole.
+    With t the angle between the vertical and the axis at the centre, and b that of an end of what is reached,
+    ``sin(t - b)`` and ``cos t`` change by less than the axis moves.
+
     Args:
-        field: with the vertical components of those.
-        way: (3, b) to the anchor, all over the cells.
-        turns: sine and cosine of the angle, then of the spin.
+        field: with the ends of what is reached.
+        way: (3, b) to the anchor, at the centres.
+        turns: sine and cosine of the angle, then of the spin, at the centres.
+        half: (5, b) the cells' half sides.
         upright: which coordinate is the altitude.
     """
-    if field.tilts == ((-1.0, 1.0),):
-        return np.zeros(way.low.shape[1], dtype=bool)
     (su, cu), (ss, cs) = turns
     x, y, z = way[0], way[1], way[2]
-    level2 = x.squared() + z.squared()
-    level = level2.sqrt()
-    length = (level2 + y.squared()).sqrt()
-    first = (z / level, Interval(0.0), -x / level)
-    second = (-(x * y) / (level * length), level / length, -(y * z) / (level * length))
-    axis = su * (ss * second[upright] - cs * first[upright]) + cu * (way[upright] / length)
-    missed = [(axis.high < low) | (axis.low > high) for low, high in field.tilts]
-    return np.asarray(np.all(missed, axis=0))
+    level = (x.squared() + z.squared()).sqrt()
+    length = (way.squared().total()).sqrt()
+    first = z / level, Interval(0.0), -x / level
+    second = -(x * y) / (level * length), level / length, -(y * z) / (level * length)
+    axis = [su * (ss * second[i] - cs * first[i]) + cu * (way[i] / length) for i in range(3)]
+    sine = (axis[upright - 1].squared() + axis[upright - 2].squared()).sqrt()
+    wide = way + Interval(-half[:3], half[:3])
+    nearest2 = Interval((wide[0].squared() + wide[2].squared()).low)
+    turned = (Interval(half[:3]).squared().total() / nearest2).sqrt()
+    spun = Interval(np.minimum(su.magnitude() + half[3], 1.0)) * half[4]
+    moved = Interval((turned + half[3] + spun + _HAIR).high)
+    (sine_low, cosine_low), (sine_high, cosine_high) = field.ends
+    missed = np.ones(half.shape[1], dtype=bool)
+    for cosine in (axis[upright], -axis[upright])[: 1 + field.even]:
+        below = ((cosine * sine_low - sine * cosine_low - moved).low > 0.0) | (
+            (cosine - moved).low > cosine_low
+        )
+        above = ((sine * cosine_high - cosine * sine_high - moved).low > 0.0) | (
+            (cosine + moved).high < cosine_high
+        )
+        missed &= below | above
+    return missed
 
 
 def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], list[Interval]]:

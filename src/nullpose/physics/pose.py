@@ -114,7 +114,8 @@ class Pose:
         mount_rad = 0.0 if airframe is None else airframe.mount_rad
         if np.ndim(axis) == 2:
             body = np.asarray(axis) @ rotation_world_from_body(0.0, mount_rad, 0.0).T
-            return cls(np.asarray(position_m, dtype=float), *attitude_of(body), mount_rad)
+            angles = attitude_of(body, math.pi if airframe is None else airframe.tilt_max_rad)
+            return cls(np.asarray(position_m, dtype=float), *angles, mount_rad)
         if airframe is None:
             return cls.from_axis(position_m, axis)
         roll, pitch, yaw = attitude_within_tilt(axis, airframe.tilt_max_rad, mount_rad)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -56,17 +58,24 @@ def rotation_about(vector_rad: ArrayLike) -> FloatArray:
     return np.asarray(np.eye(3) + sine * cross + 0.5 * half**2 * (cross @ cross))
 
 
-def attitude_of(rotation: ArrayLike) -> tuple[float, float, float]:
+def attitude_of(rotation: ArrayLike, tilt_max_rad: float = math.pi) -> tuple[float, float, float]:
     """Return the roll, pitch and yaw of a rotation, radians, the pitch in [-pi/2, pi/2].
 
-    The inverse of :func:`rotation_world_from_body`.
+    The inverse of :func:`rotation_world_from_body`. What tilts beyond a limit by rounding is turned back to
+    it; roll and pitch are exactly zero if it is zero.
 
     Args:
         rotation: to the world from the body's axes, shape ``(3, 3)``.
+        tilt_max_rad: largest angle between the body's vertical and the world's, in [0, pi], radians.
     """
     r = np.asarray(rotation, dtype=float)
-    pitch = np.arctan2(-r[2, 0], np.hypot(r[2, 1], r[2, 2]))
-    return float(np.arctan2(r[2, 1], r[2, 2])), float(pitch), float(np.arctan2(r[1, 0], r[0, 0]))
+    level = np.hypot(r[2, 0], r[2, 1])
+    # so far inside that the tilt of the angles, rounded again, is not beyond
+    tilt = min(np.arctan2(level, r[2, 2]), tilt_max_rad * (1.0 - 1e-15))
+    forward, left = (r[2, :2] * (np.sin(tilt) / level) if level > 0.0 else np.zeros(2)) + 0.0
+    pitch = np.arctan2(-forward, np.hypot(left, np.cos(tilt)))
+    roll = np.arctan2(left, np.cos(tilt))
+    return float(roll), float(pitch) + 0.0, float(np.arctan2(r[1, 0], r[0, 0]))
 
 
 def antenna_axis(

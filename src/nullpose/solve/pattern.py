@@ -81,17 +81,18 @@ class PatternRun:
         self.family, self.antenna, self.reach, self.options = family, antenna, reach, options
         self.search = PatternSearch(family, antenna, reach, options.seed)
         self.cells = 0
-        self.proved = math.inf
         self.doubt = _DOUBT
-        self.root = np.zeros((2, 3))
         self.leaves: FloatArray | None = None
+        self.root = np.zeros((2, 3))
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
         from nullpose.solve.kernels.pattern_branch import branch_pattern
+        from nullpose.solve.kernels.root import reach_by_distance
 
         self.branch = branch_pattern
         self.search.compile()  # before the clock begins
+        self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         began = time.perf_counter()
         self.search.run(light=self.options.certify)
         if not math.isfinite(self.search.best):
@@ -102,7 +103,7 @@ class PatternRun:
         position_m, rotation = self.search.pose
         found = Incumbent(
             position_m=position_m,
-            axis=rotation,
+            axis=self.search.least_tilted(rotation),
             log_value=self.search.best,
             multipliers=np.full(len(self.family.numerator_point), 1.0 / len(self.family.numerator_point)),
             starts=self.search.starts,
@@ -126,16 +127,13 @@ class PatternRun:
 
     @property
     def value(self) -> float:
-        """The best smallest ratio so far."""
-        return math.exp(self.search.best)
+        """The best smallest ratio so far; 1 at least if it is one of a rate, which is never below zero."""
+        return math.exp(max(self.search.best, 0.0) if self.options.of_rate else self.search.best)
 
     def _proved(self, began: float) -> str:
         """Close the gap asked for, or else wider ones; return why it was not closed."""
-        from nullpose.solve.kernels.root import reach_by_distance
-
         limits = self.options
         whole = began + limits.time_limit_s
-        self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         target = _INSIDE * limits.ratio_gap(self.value)
         try:
             if self.proved <= self.value * (1.0 + target):
@@ -152,7 +150,8 @@ class PatternRun:
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         threads = self.options.threads or processors()
-        workers, keep = WorkerPool(self.roots(gap), threads, orientation=(3, 3)), self.reach.spins
+        root = self.root_of(gap)
+        workers, keep = WorkerPool(self.cells_of(root), threads, orientation=(3, 3)), self.reach.spins
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
                 if time.perf_counter() > until:
@@ -166,8 +165,10 @@ class PatternRun:
                     self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
                 if self.options.on_progress is not None:
                     self.options.on_progress(self.proved / self.value - 1.0, self.cells)
-        self.proved = min(self.proved, self.value * (1.0 + gap))
-        self.leaves = workers.leaves() if keep else None
+        bound = self.value * (1.0 + gap)
+        if bound < self.proved:
+            self.proved, self.root = bound, root
+            self.leaves = workers.leaves() if keep else None
         return ""
 
     def _excluding(self, gap: float, keep: bool) -> Kernel:
@@ -176,19 +177,24 @@ class PatternRun:
         problem = family.arrays, family.domain, antenna.arrays, self.reach
         return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt), keep)
 
-    def roots(self, gap: float) -> FloatArray:
-        """Return the cells that hold every pose above the best value, or above a gap over it.
+    def root_of(self, gap: float) -> FloatArray:
+        """Return corners, (2, 3), of a box outside which no pose reaches the best value, or a gap over it.
 
         Args:
-            gap: relative; it counts where ratios tend to one far away.
+            gap: relative; it counts for a rate, whose ratios tend to one far away.
         """
-        level = self.search.best
-        if np.any(self.family.numerator_isotropic):  # ratios tend to one far away: the bound that is stated
-            level = max(level, 0.0) + math.log1p(gap)
+        level = math.log(self.value) + (math.log1p(gap) if self.options.of_rate else 0.0)
         low_m, high_m = self.search.box(level)
+        return np.array([low_m, np.maximum(low_m, high_m)])
+
+    def cells_of(self, root_m: FloatArray) -> FloatArray:
+        """Return cells of positions and attitudes to begin with.
+
+        Args:
+            root_m: (2, 3) corners of the box of all positions.
+        """
         found: list[FloatArray] = []
-        self.root = np.array([low_m, np.maximum(low_m, high_m)])
-        self._add_roots(self.root[0], self.root[1], found)
+        self._add_roots(root_m[0], root_m[1], found)
         return np.array(found)
 
     def _add_roots(self, low_m: FloatArray, high_m: FloatArray, found: list[FloatArray]) -> None:

@@ -52,6 +52,10 @@ class PatternSearch:
 
         self.kernels, self.cut = pattern_search, search.cut_box
         self.judged(np.ones((1, 3)), np.eye(3)[None])
+        self._climbed(np.ones(3), self.reached(np.eye(3)))
+        self.box(0.0)
+        scratch = np.ones(3), np.eye(3), self.links, self.logs
+        pattern_search.fill_log_ratios(self.family.arrays, self.arrays, *scratch)
         none, pose = np.empty((8, attitude.WARM + len(self.logs))), (np.empty(3), np.empty((3, 3)))
         problem = self.family.arrays, self.family.domain, self.arrays, self.reach
         pattern_branch.branch_pattern(*problem, 1.0, 1.0, False, none, 0, none, 0, 1, *pose)
@@ -164,7 +168,7 @@ class PatternSearch:
             rotation: (3, 3) to the world from the antenna's axes.
         """
         before = self.best
-        rotation = self.least_tilted(rotation)
+        rotation = self.reached(rotation)
         self.take(position_m, rotation)
         self.polish(position_m, rotation)
         return self.best > before
@@ -180,44 +184,34 @@ class PatternSearch:
         if value > self.best:
             self.best, self.pose = value, (position_m, rotation)
 
-    def tilt(self, rotation: FloatArray) -> float:
-        """Return how far the body is tilted, radians.
+    def reached(self, rotation: FloatArray) -> FloatArray:
+        """Return the nearest rotation that the airframe reaches, exact to rounding.
 
         Args:
             rotation: (3, 3) to the world from the antenna's axes.
         """
-        return math.acos(max(-1.0, min(1.0, float(rotation[2] @ self.reach.up))))
-
-    def least_tilted(self, rotation: FloatArray) -> FloatArray:
-        """Return a rotation of the same gains and the least tilt, or the nearest that is reached.
-
-        Args:
-            rotation: (3, 3) to the world from the antenna's axes.
-        """
-        if self.reach.spins and self.reach.tilt_max_rad < math.pi:
-            axes = [rotation[:, 2], -rotation[:, 2]] if self.reach.even else [rotation[:, 2]]
-            rotation = min((self._spun(axis) for axis in axes), key=self.tilt)
-        excess = self.tilt(rotation) - self.reach.tilt_max_rad
-        if excess <= 0.0:
-            return rotation
-        up = rotation @ self.reach.up
-        level = math.hypot(up[0], up[1])
-        about = np.array([up[1], -up[0], 0.0]) / level if level > 0.0 else np.array([1.0, 0.0, 0.0])
-        return np.asarray(Rotation.from_rotvec(excess * about).as_matrix() @ rotation)
+        nearest = np.array(rotation, order="C")
+        self.kernels.bring_within_reach(self.reach, nearest)
+        return nearest
 
     def _all_reached(self, rotations: FloatArray) -> FloatArray:
-        """Return :meth:`least_tilted` of many rotations, where that is not all of them."""
+        """Return :meth:`reached` of many rotations, where that is not all of them."""
         if self.reach.tilt_max_rad >= math.pi:
             return rotations
-        return np.array([self.least_tilted(rotation) for rotation in rotations])
+        return np.array([self.reached(rotation) for rotation in rotations])
 
-    def _spun(self, axis: FloatArray) -> FloatArray:
-        """Return the rotation of least tilt that has the antenna's axis there."""
-        across = axis * axis[2] - np.array([0.0, 0.0, 1.0])
-        if np.linalg.norm(across) < 1e-12:
-            across = np.array([1.0, 0.0, 0.0])
-        first = across / np.linalg.norm(across)
-        return np.stack([first, np.cross(axis, first), axis], axis=1)
+    def least_tilted(self, rotation: FloatArray) -> FloatArray:
+        """Return the rotation of the same gains and the least tilt.
+
+        Args:
+            rotation: (3, 3) to the world from the antenna's axes.
+        """
+        if not self.reach.spins or self.reach.tilt_max_rad >= math.pi:
+            return rotation
+        axis = -rotation[:, 2] if self.reach.even and rotation[2, 2] < 0.0 else rotation[:, 2]
+        level = math.hypot(axis[0], axis[1])
+        side = np.array([-axis[1], axis[0], 0.0]) / level if level > 0.0 else np.array([0.0, 1.0, 0.0])
+        return np.stack([np.cross(side, axis), side, axis], axis=1)
 
     def polish(self, position_m: FloatArray, rotation: FloatArray) -> None:
         """Climb from a pose: by random steps, then by sequential quadratic programming.
@@ -228,14 +222,14 @@ class PatternSearch:
         """
         position_m, rotation = position_m.copy(), np.array(rotation, order="C")
         self._climbed(position_m, rotation)
-        rotation = self.least_tilted(rotation)
+        rotation = self.reached(rotation)
         self.take(position_m, rotation)
         low_m, high_m, scale = self.family.low_m, self.family.high_m, self._scale_m(position_m)
         logs = np.empty((7, len(self.logs)))
 
         def pose(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             where = np.clip(position_m + scale * x[:3], low_m, high_m)
-            return where, self.least_tilted(rotation @ Rotation.from_rotvec(x[3:6]).as_matrix())
+            return where, self.reached(rotation @ Rotation.from_rotvec(x[3:6]).as_matrix())
 
         def ratios(x: FloatArray) -> FloatArray:
             self.kernels.fill_log_ratios(self.family.arrays, self.arrays, *pose(x), self.links, logs[0])

@@ -203,12 +203,12 @@ def _pattern_tree(result: Result, antenna: PatternAntenna) -> _Tree:
 
     scenario, (value, bound) = result.scenario, _ratios(result)
     family, reach = build_family(scenario, any_antenna=True), reach_of(scenario, antenna)
-    run = PatternRun(family, antenna, reach, SolveOptions())
+    run = PatternRun(family, antenna, reach, SolveOptions().of(scenario))
     run.search.compile()
     run.search.best, run.search.pose = math.log(value), (result.pose.position_m, np.eye(3))
     problem = family.arrays, family.domain, antenna.arrays, reach
     return _Tree(
-        run.roots(bound / value - 1.0),
+        run.cells_of(run.root_of(bound / value - 1.0)),
         [0, 1, 2, HALF, HALF + 1, HALF + 2],
         list(range(WARM)),
         lambda level: partial(branch_pattern, *problem, level, math.inf, True),

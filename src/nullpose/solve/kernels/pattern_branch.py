@@ -22,7 +22,9 @@ from nullpose.solve.kernels.pattern_bound import (
     middle,
     square_range,
 )
+from nullpose.solve.kernels.pattern_search import bring_within_reach, fill_log_ratios, tilt_of
 from nullpose.solve.kernels.symmetric import copy_into
+from nullpose.solve.kernels.vectors import row as row_of
 
 _HAIR = 1e-9  # radians
 
@@ -75,16 +77,6 @@ def choose(family, row, room, multipliers):
 
 
 @inner_kernel
-def tilt_of(reach, x, y, z):
-    """Return the least tilt of the body, radians, at an attitude in whose axes the vertical is (x, y, z)."""
-    if not reach.spins:
-        return math.acos(max(-1.0, min(1.0, x * reach.up[0] + y * reach.up[1] + z * reach.up[2])))
-    angle = math.acos(max(-1.0, min(1.0, z)))
-    least = abs(angle - reach.mount_rad)
-    return min(least, abs(math.pi - angle - reach.mount_rad)) if reach.even else least
-
-
-@inner_kernel
 def kept(keep, row, by, leaves, filled):
     """Keep an excluded cell if that is asked for; return how many leaves there are then.
 
@@ -116,7 +108,8 @@ def branch_pattern(
         pattern: the antenna's arrays.
         reach: which attitudes there are.
         level: no pose of an excluded cell has its smallest ratio above this.
-        floor: an allowed middle above this is a better pose, and ends the call.
+        floor: an allowed middle above this is a better pose, at the nearest attitude that is reached, and
+            ends the call.
         stack: (size, columns) cells.
         top: how many of them there are.
         keep: whether excluded cells become leaves.
@@ -169,22 +162,24 @@ def branch_pattern(
             filled = kept(keep, row, -1, leaves, filled)
             continue
         turning = fill_points(family, pattern, row, room)
-        up = room.frame[(2 - int(row[CHART])) % 3]
-        least = tilt_of(reach, up[0], up[1], up[2])
+        tilt, _ = tilt_of(reach, row_of(room.frame, (2 - int(row[CHART])) % 3))
         weak = hopeless(family, level, room)
-        if weak >= 0 or least - turning > reach.tilt_max_rad + _HAIR:
+        if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _HAIR:
             filled = kept(keep, row, weak, leaves, filled)
             continue
         multipliers[:] = row[WARM : WARM + n]
         value, promising = middle(family, pattern, level, row, room)
-        if value > floor and least <= reach.tilt_max_rad and contains(domain, row[:3]):
+        if value > floor and contains(domain, row[:3]):
             first = int(row[CHART])
             for i in range(3):
                 position[i] = row[i]
                 for k in range(3):
                     rotation[(first + i) % 3, k] = room.frame[i, k]
-            stack[top] = row
-            return BETTER, top + 1, filled, done, 0
+            bring_within_reach(reach, rotation)
+            nearest = fill_log_ratios(family, pattern, position, rotation, room.parts, room.by_l)
+            if math.exp(nearest) > floor:
+                stack[top] = row
+                return BETTER, top + 1, filled, done, 0
         if promising:
             expand(family, pattern, row, room)
             fill_constants(family, level, room)

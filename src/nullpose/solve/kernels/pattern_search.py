@@ -7,9 +7,8 @@ import math
 from nullpose.solve.kernels.domain import contains
 from nullpose.solve.kernels.harmonics import gain_at
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.pattern_branch import tilt_of
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
-from nullpose.solve.kernels.vectors import cross, row
+from nullpose.solve.kernels.vectors import cross, dot, norm, row, scaled, unit
 
 _FIRST_STEP, _LONGEST_STEP, _LONGER, _SHORTER = 0.1, 0.5, 1.5, 0.91  # radians; a fifth of steps succeed
 
@@ -73,9 +72,41 @@ def turned_by(rotation, x, y, z, out):
             out[i, k] = a[k] + s * first[k] + c * second[k]
 
 
+@inner_kernel
+def tilt_of(reach, vertical):
+    """Return the tilt of an attitude, radians, which is negative from the mount's angle inwards if it spins.
+
+    And the axis that a turn about adds to it, of any length.
+
+    Args:
+        reach: which attitudes there are.
+        vertical: the vertical in the antenna's axes.
+    """
+    upright, mount = (reach.up[0], reach.up[1], reach.up[2]), 0.0
+    if reach.spins:
+        upright, mount = (0.0, 0.0, -1.0 if reach.even and vertical[2] < 0.0 else 1.0), reach.mount_rad
+    about = cross(vertical, upright)
+    return math.atan2(norm(about), dot(vertical, upright)) - mount, about
+
+
+@kernel
+def bring_within_reach(reach, rotation):
+    """Turn an attitude to the nearest that the airframe reaches, in place.
+
+    Args:
+        reach: which attitudes there are.
+        rotation: (3, 3) to the world from the antenna's axes.
+    """
+    tilt, about = tilt_of(reach, row(rotation, 2))
+    turn = min(max(tilt, -reach.tilt_max_rad), reach.tilt_max_rad) - tilt
+    if turn != 0.0:
+        x, y, z = scaled(turn, unit(about)) if norm(about) > 0.0 else (0.0, turn, 0.0)
+        turned_by(rotation, x, y, z, rotation)
+
+
 @kernel
 def wander(family, domain, pattern, reach, noise, scale_m, position, rotation, links, logs, p, r):
-    """Climb by random steps, each kept if it is better and allowed; return the smallest log ratio.
+    """Climb by random steps, each kept if it is better and allowed; return the smallest log ratio there.
 
     Steps grow where they succeed and shrink where they do not: ridges, of which a smallest ratio is full, do
     not throw it off. The pose is changed in place.
@@ -100,8 +131,9 @@ def wander(family, domain, pattern, reach, noise, scale_m, position, rotation, l
         for i in range(3):
             p[i] = min(max(position[i] + step * scale_m * noise[t, i], domain.low_m[i]), domain.high_m[i])
         turned_by(rotation, step * noise[t, 3], step * noise[t, 4], step * noise[t, 5], r)
+        bring_within_reach(reach, r)
         value = -math.inf
-        if tilt_of(reach, r[2, 0], r[2, 1], r[2, 2]) <= reach.tilt_max_rad and contains(domain, p):
+        if contains(domain, p):
             value = fill_log_ratios(family, pattern, p, r, links, logs)
         if value > best:
             best = value
