@@ -64,6 +64,7 @@ def made_row(scene: int, point: int, case: str, cell: Cell) -> Row:
         roll_rad=0.1,
         pitch_rad=0.2,
         yaw_rad=0.0,
+        null_gain=10.0 ** -(2 + scene % 4),
         binding_node="S1",
         boxes=100,
         seconds=0.01 * (scene + 1),

@@ -6,7 +6,13 @@ from typing import Any
 
 import pytest
 
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import (
+    answer_of,
+    certainty_of,
+    null_words,
+    outage_words,
+    unfinished_note,
+)
 from nullpose.report.study.markdown import gain_tables
 from nullpose.report.study.summary import Summary
 
@@ -184,3 +190,18 @@ def test_rates_are_no_decibels(summed: Summed) -> None:
     summary = summed([[[0.0, 0.0, 3.0103]]] * 40, scene=scene, nodes=None, jammers=None)
     assert f"{FREE} gains 1 bits/s/Hz in the median (95 % confidence: 1 to 1)" in answer_of(summary)
     assert "dB" not in answer_of(summary)
+
+
+def test_poses_on_a_null_are_counted(summed: Summed, ladder: Ladder) -> None:
+    """They are those whose gain towards a jammer is that within a degree of a dipole's axis, 3.05e-4."""
+    summary = summed(ladder(8, 1.0, 2.0))
+    words = null_words(summary)
+    assert words.startswith("The pose stands on a null towards a jammer")
+    assert words.count("50.0 % of scenes by ") == 3
+    assert list(summary.frame["null_share"]) == [0.5] * 3
+
+
+def test_without_jammers_no_null_is_told(summed: Summed) -> None:
+    """Rows without a pose have no gain either."""
+    failed = summed([[["no room"] * 3]], requirement=0.0)
+    assert (null_words(failed), outage_words(failed)) == ("", "")

@@ -50,6 +50,36 @@ def test_a_given_pose_is_evaluated(spec: Spec) -> None:
     assert (row["status"], row["reason"], row["bound"], row["gap"]) == ("given", "", None, None)
 
 
+@pytest.mark.parametrize("away_m", [0.0, 0.1, 1.0, 10.0])
+def test_the_gain_towards_the_nearest_null_is_a_column(spec: Spec, away_m: float) -> None:
+    """Above a jammer an upright dipole has the squared sine of the angle; with a whip there, its square."""
+    pose = {"position_m": [away_m, 25.0, 14.0]}
+    scene = {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "jammers": [{"position_m": [90.0, 0.0, 4.0], "power_w": 1.0}],
+    }
+    above = {"position_m": [0.0, 25.0, 4.0], "power_w": 1.0, "gain_dbi": 2.15}
+    sine_squared = away_m**2 / (away_m**2 + 10.0**2)
+    for antenna, expected in (
+        ("isotropic", sine_squared),
+        ("circular", sine_squared),
+        ("dipole", sine_squared**2),
+    ):
+        scene["jammers"][1:] = [above | {"antenna": antenna}]
+        row, _ = _row(spec(scene=scene, jammers=None, cases=[{"pose": pose}]))
+        assert row["null_gain"] == pytest.approx(expected)
+
+
+def test_without_a_jammer_there_is_no_null(spec: Spec) -> None:
+    """Nor with an array, whose weights make its nulls."""
+    row, _ = _row(spec(jammers=None, cases=[{"pose": {"position_m": [1.0, 25.0, 9.0]}}]))
+    assert row["null_gain"] is None
+    array = {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5}
+    row, _ = _row(spec(cases=[{"array": array, "certify": False}]))
+    assert row["null_gain"] is None
+
+
 def test_a_given_pose_that_is_not_allowed_says_so(spec: Spec) -> None:
     """A tilt that the vehicle does not reach is the reason of the row, as in an evaluation."""
     pose = {"position_m": [1.0, 25.0, 9.0], "roll_deg": 80.0}

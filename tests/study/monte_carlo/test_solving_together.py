@@ -1,10 +1,12 @@
 """What is solved together is what is solved alone, and one at fault takes no other with it."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from nullpose.physics import Pose, antenna_gain
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.solve import solve_many
 from nullpose.study.monte_carlo import StudySpec, solving
@@ -15,6 +17,7 @@ from nullpose.study.monte_carlo.solving import solved_row
 Spec = Callable[..., StudySpec]
 
 CASES = [{"name": "free"}, {"name": "tilt", "airframe": "tilt-10"}, {"scheme": "vertical"}, {"gap": 0.1}]
+MOUNTS = {"free": 0.0, "tilt": math.pi / 2.0}
 SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
 
 
@@ -39,6 +42,16 @@ def test_together_or_by_solve(spec: Spec) -> None:
         assert row["value"] == pytest.approx(single["value"], rel=1e-2)
         assert single["value"] <= row["bound"] * (1.0 + 1e-9)
         assert row["status"] == single["status"] == "certified"
+        pose = Pose(
+            [row["x_m"], row["y_m"], row["z_m"]],
+            row["roll_rad"],
+            row["pitch_rad"],
+            row["yaw_rad"],
+            MOUNTS[row["case"]],
+        )
+        scene = draws.at(*at)
+        gains = antenna_gain(pose.position_m, pose.antenna_axis, scene.jammer_positions_m)
+        assert row["null_gain"] == pytest.approx(gains.min(), abs=1e-12)
 
 
 def test_one_at_fault(spec: Spec, monkeypatch: pytest.MonkeyPatch) -> None:

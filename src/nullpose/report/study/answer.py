@@ -141,14 +141,37 @@ def outage_words(summary: Summary) -> str:
     Args:
         summary: of a study.
     """
-    if summary.requirement is None or not summary.values.scenes:
+    if summary.requirement is None or not (parts := _shares_of_scenes(summary, "outage")):
         return ""
-    point = len(summary.spec.points) - 1
-    shares = [(case, float(summary.row(point, case)["outage"])) for case in summary.cases]
-    parts = [f"{percent(share, 1)} of scenes by {case.phrase}" for case, share in shares]
     required = f"a {summary.quantity.smallest} of {summary.requirement:g} {summary.quantity.unit}"
-    words = summary.points.words(point)
+    words = summary.points.words(len(summary.spec.points) - 1)
     return f"{begun(f'at {words} {required}' if words else required)} is missed in {listed(parts)}."
+
+
+def null_words(summary: Summary) -> str:
+    """Return how often the poses stand on a null, in a sentence; empty without jammers and eavesdroppers.
+
+    Args:
+        summary: of a study.
+    """
+    if not (parts := _shares_of_scenes(summary, "null_share")):
+        return ""
+    words = summary.points.words(len(summary.spec.points) - 1)
+    source = (
+        f"{'an eavesdropper' if summary.quantity.is_rate else 'a jammer'}{f' at {words}' if words else ''}"
+    )
+    return (
+        f"The pose stands on a null towards {source} (gain 35 dB or more below the largest, as within 1 "
+        f"degree of a dipole's axis) in {listed(parts)}. There small errors of attitude or position may cost "
+        "much; `nullpose evaluate` states how much."
+    )
+
+
+def _shares_of_scenes(summary: Summary, name: str) -> list[str]:
+    """Return a share of scenes for each case that has one, at the last combination of swept values."""
+    point = len(summary.spec.points) - 1
+    shares = ((case, float(summary.row(point, case)[name])) for case in summary.cases)
+    return [f"{percent(share, 1)} of scenes by {case.phrase}" for case, share in shares if share >= 0.0]
 
 
 def certainty_of(summary: Summary) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from nullpose.report.document import markdown_table
 from nullpose.report.numbers import NONE, begun, count_of, escaped, number, percent, with_interval
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import answer_of, certainty_of, null_words, outage_words, unfinished_note
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.statistics import CONFIDENCE, FEW_SCENES, quantile, replicates_of
 from nullpose.report.study.summary import Summary, three_of
@@ -77,7 +77,9 @@ def report_text(summary: Summary, figures: Collection[str]) -> str:
     """
     note = unfinished_note(summary)
     blocks = [f"# {escaped(title_of(summary))}", f"> **{note}**" if note else ""]
-    blocks += map(escaped, (answer_of(summary), outage_words(summary), certainty_of(summary)))
+    blocks += map(
+        escaped, (answer_of(summary), outage_words(summary), null_words(summary), certainty_of(summary))
+    )
     if summary.values.scenes:
         blocks.append(_definitions(summary))
         along = f"Median and worst tenth of the {summary.quantity.smallest} along the sweep."

@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 Columns = dict[str, Any]  # numbers by case, or one for all
 Counts = NDArray[np.int64]
 
+NULL_GAIN = math.sin(math.radians(1.0)) ** 2
+"""Gain of a short dipole towards a point one degree from its axis."""
+
 _RESAMPLED = ("shift_worst_tenth", "difference_median", "difference_worst_tenth")
 
 
@@ -173,6 +176,7 @@ def _reached(at: StudyValues) -> Columns:
         **_quantiles("worst_tenth", at.value, WORST_TENTH),
         **_quantiles("median", at.value, MEDIAN),
         "best_tenth": _quantile(at.value, 1.0 - WORST_TENTH),
+        **_shares("null_share", np.sum(at.null_gain <= NULL_GAIN, 0), np.sum(at.null_gain >= 0.0, 0)),
     }
 
 

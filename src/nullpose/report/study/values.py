@@ -21,12 +21,20 @@ if TYPE_CHECKING:
 STATUSES = ("certified", "gap-not-reached", "best-found", "given", "failed")
 FAILED = STATUSES.index("failed")
 
+_KINDS = {
+    "value": np.float64,
+    "bound": np.float64,
+    "gap": np.float32,
+    "status": np.uint8,
+    "seconds": np.float32,
+    "null_gain": np.float32,
+}
 _MOST_REASONS = 10_000  # reasons may quote numbers, so that each row has its own
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyValues:
-    """What the rows of a study say, by scene, combination of swept values, and case: 25 bytes for each.
+    """What the rows of a study say, by scene, combination of swept values, and case: 29 bytes for each.
 
     Args:
         value: what the pose reaches, in dB or bits/s/Hz, shape ``(n, p, c)``; NaN of a failure.
@@ -34,6 +42,7 @@ class StudyValues:
         gap: relative gap; NaN if nothing is proved.
         status: places in ``STATUSES``.
         seconds: how long each took; NaN of a failure.
+        null_gain: smallest gain towards a jammer or an eavesdropper, over its largest; NaN without one.
         reasons: how often each case failed, or kept from its gap, for which reason, by case, status, reason.
     """
 
@@ -42,6 +51,7 @@ class StudyValues:
     gap: NDArray[np.float32]
     status: NDArray[np.uint8]
     seconds: NDArray[np.float32]
+    null_gain: NDArray[np.float32]
     reasons: Counter[tuple[str, str, str]]
 
     @property
@@ -55,8 +65,7 @@ class StudyValues:
         Args:
             point: the combination's number.
         """
-        names = ("value", "bound", "gap", "status", "seconds")
-        return replace(self, **{name: getattr(self, name)[:, point] for name in names})
+        return replace(self, **{name: getattr(self, name)[:, point] for name in _KINDS})
 
     def counts(self) -> dict[str, int]:
         """Return how many rows have each status."""
@@ -76,8 +85,7 @@ def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], object] | None 
     spec, quantity = table.spec, table.quantity
     inner = (len(spec.points), len(spec.cases))
     shape = (table.scenes_done, *inner)
-    kinds = {"value": float, "bound": float, "gap": np.float32, "status": np.uint8, "seconds": np.float32}
-    arrays = {name: np.zeros(shape, kind) for name, kind in kinds.items()}
+    arrays = {name: np.zeros(shape, kind) for name, kind in _KINDS.items()}
     reasons: Counter[tuple[str, str, str]] = Counter()
     done = 0
     for batch in table.batches():
@@ -91,7 +99,7 @@ def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], object] | None 
             for name in ("bound", "value"):
                 columns[name] = to_db(batch[name].to_numpy(float, na_value=np.nan))
                 batch.insert(place, f"{name}_db", columns[name])
-        for name, kind in kinds.items():
+        for name, kind in _KINDS.items():
             arrays[name][done:end] = columns[name].to_numpy(kind).reshape(-1, *inner)
         _count_reasons(reasons, batch)
         if on_batch is not None:

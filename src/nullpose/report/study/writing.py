@@ -11,7 +11,7 @@ from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
-from nullpose.report.study.answer import answer_of, certainty_of, outage_words, unfinished_note
+from nullpose.report.study.answer import answer_of, certainty_of, null_words, outage_words, unfinished_note
 from nullpose.report.study.cases import report_cases
 from nullpose.report.study.html import report_page
 from nullpose.report.study.markdown import report_text, title_of
@@ -94,7 +94,7 @@ def report_study(
         data,
         *(path for pair in figures.values() for path in pair),
     ]
-    notes = (unfinished_note(summary), outage_words(summary), certainty_of(summary))
+    notes = (unfinished_note(summary), outage_words(summary), null_words(summary), certainty_of(summary))
     return StudyReport(
         answer=answer_of(summary),
         notes=tuple(note for note in notes if note),

@@ -28,6 +28,7 @@ _COLUMNS = {
     "roll_rad": "float64",
     "pitch_rad": "float64",
     "yaw_rad": "float64",
+    "null_gain": "float64",
     "binding_node": "string",
     "boxes": "int64",
     "seconds": "float64",

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
-from nullpose.physics import evaluate
+from nullpose.physics import Pose, evaluate, link_gain
 from nullpose.scenario import Airframe, Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve import (
@@ -81,24 +83,41 @@ def _options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
     }
 
 
+def _null_gain(scene: Scenario, pose: Pose) -> float | None:
+    """Return the smallest gain towards a jammer (an eavesdropper, if the drone transmits), over its largest.
+
+    As in :func:`nullpose.physics.link_gain`, without the largest gain of the antenna on the ground; None
+    of an array, or if there is no such point.
+    """
+    kind, antenna = ("eavesdropper" if scene.objective_record.transmits else "jammer"), scene.antenna_record
+    points_m, ground = getattr(scene, f"{kind}_positions_m"), getattr(scene, f"{kind}_antennas")
+    if scene.array is not None or not len(points_m):
+        return None
+    gains = link_gain(pose.position_m, pose.orientation(antenna), points_m, antenna, ground)
+    return float(np.min(gains / (1.0 if ground is None else ground.shares)))
+
+
 def _found(
-    status: Status, place: Iterable[float], value: float, bound: float | None, gap: float | None
+    scene: Scenario, status: Status, pose: Pose, value: float, bound: float | None, gap: float | None
 ) -> dict[str, Any]:
     """Return the columns of a pose with what is proved of it; a bound or gap that is not finite is none.
 
     Args:
+        scene: with jammers or eavesdroppers.
         status: how the solve ended.
-        place: position and attitude, six numbers.
+        pose: position and attitude.
         value: a power ratio, or bits/s/Hz.
         bound: no pose exceeds it; None if nothing is proved.
         gap: relative, between the two.
     """
     proved = {"bound": bound, "gap": gap}
+    place = (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
     return {
         "status": status.value,
         "value": float(value),
         **{name: each if each is not None and math.isfinite(each) else None for name, each in proved.items()},
         **dict(zip(_PLACE, map(float, place), strict=True)),
+        "null_gain": _null_gain(scene, pose),
     }
 
 
@@ -107,13 +126,7 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
         weakest = min(evaluate(scene, pose), key=quantity.at)
-        columns = _found(
-            Status.GIVEN,
-            (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
-            quantity.at(weakest),
-            None,
-            None,
-        )
+        columns = _found(scene, Status.GIVEN, pose, quantity.at(weakest), None, None)
         return columns | {"reason": faults, "binding_node": weakest.node}
     result = solved_case(
         scene,
@@ -123,13 +136,8 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
         **options,
     )
     objective, pose = result.objective, result.pose
-    columns = _found(
-        result.status,
-        (*pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad),
-        objective.value,
-        objective.upper_bound,
-        objective.relative_gap,
-    )
+    proved = objective.upper_bound, objective.relative_gap
+    columns = _found(scene, result.status, pose, objective.value, *proved)
     node = result.details.robust.binding_node if case.robust else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
 
@@ -180,14 +188,19 @@ def _rows(
     seconds = (time.perf_counter() - began) / (len(scenes) * len(cases))
     for number, (at, scene) in enumerate(places):
         for column, case in enumerate(cases):
-            yield row_of(*at, case.name, seconds=seconds, **_known(many, (number, column), scene))
+            columns = _known(many, (number, column), scene, case.airframe or own)
+            yield row_of(*at, case.name, seconds=seconds, **columns)
 
 
-def _known(many: ManySolutions, at: tuple[int, int], scene: Scenario) -> dict[str, Any]:
+def _known(
+    many: ManySolutions, at: tuple[int, int], scene: Scenario, airframe: Airframe | None
+) -> dict[str, Any]:
     status, reason = many.status[at], str(many.reason[at])
     if status is None:
         return {"status": FAILED, "reason": reason}
-    place = (*many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at])
-    columns = _found(status, place, many.value[at], float(many.upper_bound[at]), float(many.relative_gap[at]))
+    mount_rad = 0.0 if airframe is None else airframe.mount_rad
+    pose = Pose(many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at], mount_rad)
+    proved = float(many.upper_bound[at]), float(many.relative_gap[at])
+    columns = _found(scene, status, pose, many.value[at], *proved)
     node = scene.node_names[int(many.binding_node[at])]
     return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}

@@ -17,7 +17,7 @@ from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.versions import versions
 
-FORMAT = 1  # version of the folder's layout
+FORMAT = 2  # version of the folder's layout
 MANIFEST, JOURNAL, PARTS = "manifest.json", "parts.jsonl", "parts"
 
 _MOST_BYTES = 64_000_000  # of a manifest, which holds what all scenario files of the study say
