@@ -77,7 +77,7 @@ def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     first, nearest, *_ = answer_lines(worse)
     assert first.startswith("Of the vehicles compared with one dipole, only the omnidirectional one")
     assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 0.46 dB less")
-    assert "Of the vehicles compared with one dipole, no simpler one was found within" in nearest
+    assert "Of the vehicles compared with one dipole, it comes nearest" in nearest
 
 
 def test_a_vehicle_that_was_not_compared_is_not_judged() -> None:
@@ -109,7 +109,7 @@ def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     digital, analogue = answer_lines(poor)[1:]
     assert "with an array of 2 with digital combining reaches 3.28 dB more" in digital
     assert "with an array of 8 with one analogue beam reaches 0.97 dB less" in analogue
-    assert "compared with an array and analogue combining, none was found within 0.04 dB" in analogue
+    assert "compared with an array and analogue combining, it comes nearest" in analogue
 
 
 def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:

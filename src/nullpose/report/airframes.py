@@ -157,15 +157,13 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
 
 def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
     """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
-    best = max(results, key=lambda result: result.value)
-    compared = f"Of the vehicles compared with {_kind(best)}"
-    verdict = f"{compared}, {'none' if best.case.combining else 'no simpler one'} was found"
+    best, verdict = max(results, key=lambda result: result.value), "comes nearest"
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
-        best, verdict = least, f"{compared}, it is the simplest"
+        best, verdict = least, f"is the simplest {_near(comparison)} of that"
     return (
-        f"{begun(best.case.phrase)} reaches {_difference(comparison, best)} in this scene. {verdict} "
-        f"{_near(comparison)} of that."
+        f"{begun(best.case.phrase)} reaches {_difference(comparison, best)} in this scene. Of the vehicles "
+        f"compared with {_kind(best)}, it {verdict}."
     )
 
 
