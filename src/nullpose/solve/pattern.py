@@ -26,6 +26,7 @@ from nullpose.solve.rigour import bound_above
 from nullpose.solve.solve_and_prove import Outcome
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
+_AT_ONCE = 60_000  # cells that take about as long as a thorough search
 _CHUNK = 20_000  # cells between two looks at the clock
 _MOST_LEAVES = 250_000  # of a certificate; with more the proof goes on, and has none
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
@@ -94,7 +95,7 @@ class PatternRun:
         self.search.compile()  # before the clock begins
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         began = time.perf_counter()
-        self.search.run(light=self.options.certify)
+        self.thorough = not self.search.run(light=self.options.certify)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
         reason = ""
@@ -143,6 +144,8 @@ class PatternRun:
             for gap in _GAPS if reason and self.cells < limits.node_limit else ():
                 if gap > target and self._stage(gap, whole):
                     break
+            if reason:
+                self._search_thoroughly()
             return reason
         except KeyboardInterrupt:
             return INTERRUPT
@@ -163,6 +166,8 @@ class PatternRun:
                 for position_m, rotation in workers.better():
                     # what does not help, by rounding, must not be met again and again
                     self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
+                if self.cells >= _AT_ONCE and not workers.done:
+                    self._search_thoroughly()
                 if self.options.on_progress is not None:
                     self.options.on_progress(self.proved / self.value - 1.0, self.cells)
         bound = self.value * (1.0 + gap)
@@ -170,6 +175,17 @@ class PatternRun:
             self.proved, self.root = bound, root
             self.leaves = workers.leaves() if keep else None
         return ""
+
+    def _search_thoroughly(self) -> None:
+        """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
+        if not self.thorough:
+            self.thorough, light = True, self.search
+            self.search = PatternSearch(self.family, self.antenna, self.reach, self.options.seed)
+            self.search.compile()
+            self.search.run(light=False)
+            self.search.take(*light.pose)
+            self.search.starts += light.starts
+            self.search.evaluations += light.evaluations
 
     def _excluding(self, gap: float, keep: bool) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``, and keeps the leaves if asked to."""

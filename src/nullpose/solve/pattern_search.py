@@ -84,11 +84,11 @@ class PatternSearch:
         self.evaluations += len(positions_m)
         return values
 
-    def run(self, *, light: bool) -> None:
-        """Draw poses, and polish the best of them.
+    def run(self, *, light: bool) -> bool:
+        """Draw poses, and polish the best of them; return whether these were few.
 
         Args:
-            light: whether a proof follows.
+            light: whether few are enough, since a proof follows; not for an antenna of many lobes.
         """
         lobes = max(1, self.arrays.cosine.shape[0] // _FEW)  # of which most climbs lead to a small one
         light = light and lobes == 1
@@ -120,6 +120,7 @@ class PatternSearch:
             low_m, high_m = self.box(self.best)
             low_m, high_m = np.maximum(low_m, widest_m[0]), np.minimum(high_m, widest_m[1])
             high_m = np.maximum(low_m, high_m)
+        return light
 
     def _attitudes(self, count: int) -> FloatArray:
         """Return rotations that the airframe reaches, (count, 3, 3)."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -20,6 +21,7 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
+_AT_ONCE = 5_000  # nodes that take as long as a thorough search
 _DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
 _ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
 _DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
@@ -79,6 +81,7 @@ class _Run:
         began: float,
         nodes: int,
         bound: float,
+        search: Callable[[], Incumbent] | None,
     ) -> None:
         from nullpose.solve.kernels import branch, node, root
         from nullpose.solve.kernels.linked import entry_of
@@ -87,6 +90,7 @@ class _Run:
         self.family, self.axis_field = family, axis_field
         self.kernel, self.node, self.branch = branch, node, entry_of(branch.branch, ratios)
         self.incumbent, self.limits, self.on_progress = incumbent, limits, limits.on_progress
+        self.search = search
         self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
         self.nodes = 0
@@ -175,6 +179,8 @@ class _Run:
                 self.nodes += workers.work(self._excluding(gap), budget, pool)
                 for position_m, axis in workers.better():
                     self._improve(position_m, axis)
+                if self.nodes >= _AT_ONCE and not workers.done:
+                    self.search_thoroughly()
                 if workers.done:
                     self.proved, done = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
                     if done[:, self.node.LEVEL].max() <= self.proved:  # or the bound was better before
@@ -206,16 +212,23 @@ class _Run:
         found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
-        if found.log_value > self.incumbent.log_value:
-            self.incumbent = replace(
-                found,
-                starts=self.incumbent.starts + 1,
-                evaluations=self.incumbent.evaluations + found.evaluations,
-            )
-            self.favourite, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
-            self.node.keep_largest(weights, len(weights), self.favourite)
-        else:  # the two evaluations differ in their rounding: do not ask again
+        if not self._take(found):  # the two evaluations differ in their rounding: do not ask again
             self.doubt = max(1e-9, 10.0 * self.doubt)
+
+    def _take(self, found: Incumbent) -> bool:
+        """Make a pose the incumbent if it is better; return whether it is."""
+        if not found.log_value > self.incumbent.log_value:
+            return False
+        self.incumbent = found
+        self.favourite, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
+        self.node.keep_largest(weights, len(weights), self.favourite)
+        return True
+
+    def search_thoroughly(self) -> None:
+        """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
+        search, self.search = self.search, None
+        if search is not None:
+            self._take(search())
 
     def result(self, reason: str) -> Proof:
         """Return what the run has come to."""
@@ -240,6 +253,7 @@ def prove(
     began: float | None = None,
     nodes: int = 0,
     bound: float = math.inf,
+    search: Callable[[], Incumbent] | None = None,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
@@ -255,9 +269,10 @@ def prove(
         began: when the clock of the limits began, that of ``time.perf_counter``; now, if left out.
         nodes: nodes examined before, which count towards the limit.
         bound: known before, of a field that holds all axes of this one; the leaves do not show it.
+        search: a thorough search, made once if the proof does not close at once.
     """
     began = time.perf_counter() if began is None else began
-    run = _Run(family, axis_field, incumbent, limits, began, nodes, bound)
+    run = _Run(family, axis_field, incumbent, limits, began, nodes, bound, search)
     target, reason = run.target, ""
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
@@ -275,6 +290,8 @@ def prove(
                 if reason:
                     break
                 start = done
+        if reason:
+            run.search_thoroughly()
     except KeyboardInterrupt:
         reason = INTERRUPT
     return run.result(reason)

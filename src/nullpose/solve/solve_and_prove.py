@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from nullpose.family import AxisField, Family
 from nullpose.solve.incumbent import Incumbent
@@ -51,7 +52,8 @@ def solve_and_prove(
 ) -> Outcome:
     """Return the best pose over the axis fields, with a proof if one is asked for.
 
-    Every field is searched; then it is proved of each that it does not beat the best of all.
+    Every field is searched; then it is proved of each that it does not beat the best of all. The search
+    before a proof is light; where the proof does not close at once, the one without a proof is made, too.
 
     Args:
         family: the ratios and their domain.
@@ -66,10 +68,14 @@ def solve_and_prove(
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)(family.ground_axes is not None)
     began = time.perf_counter()
-    each = [
-        known or multistart(family, one, seed=options.seed, settings=search_settings(options.certify, one))
-        for one in fields
-    ]
+    searches: list[Incumbent] = []
+
+    def searched(field: AxisField, proof_follows: bool) -> Incumbent:
+        settings = search_settings(proof_follows, field)
+        searches.append(multistart(family, field, seed=options.seed, settings=settings))
+        return searches[-1]
+
+    each = [known or searched(one, options.certify) for one in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []
@@ -82,13 +88,17 @@ def solve_and_prove(
         level, start = max(best.log_value, least), each[i]
         start = start if start.log_value == level else replace(start, log_value=level)
         nodes = sum(p.nodes for p in proofs)
-        proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound)
+        search = partial(searched, field, False)
+        proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound, search=search)
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:
             best, chosen = proof.incumbent, i
-    if best is not each[0] or len(each) > 1:
-        starts, evaluations = sum(found.starts for found in each), sum(found.evaluations for found in each)
+    if searches:
+        starts, evaluations = (
+            sum(found.starts for found in searches),
+            sum(found.evaluations for found in searches),
+        )
         best = replace(best, starts=starts, evaluations=evaluations)
     return Outcome(
         incumbent=best,
