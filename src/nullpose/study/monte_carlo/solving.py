@@ -115,7 +115,7 @@ def _found(
     return {
         "status": status.value,
         "value": float(value),
-        **{name: each if each is not None and math.isfinite(each) else None for name, each in proved.items()},
+        **{name: float(x) if x is not None and math.isfinite(x) else None for name, x in proved.items()},
         **dict(zip(_PLACE, map(float, place), strict=True)),
         "null_gain": _null_gain(scene, pose),
     }
@@ -136,8 +136,9 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
         **options,
     )
     objective, pose = result.objective, result.pose
-    proved = objective.upper_bound, objective.relative_gap
-    columns = _found(scene, result.status, pose, objective.value, *proved)
+    columns = _found(
+        scene, result.status, pose, objective.value, objective.upper_bound, objective.relative_gap
+    )
     node = result.details.robust.binding_node if case.robust else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
 
@@ -200,7 +201,6 @@ def _known(
         return {"status": FAILED, "reason": reason}
     mount_rad = 0.0 if airframe is None else airframe.mount_rad
     pose = Pose(many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at], mount_rad)
-    proved = float(many.upper_bound[at]), float(many.relative_gap[at])
-    columns = _found(scene, status, pose, many.value[at], *proved)
+    columns = _found(scene, status, pose, many.value[at], many.upper_bound[at], many.relative_gap[at])
     node = scene.node_names[int(many.binding_node[at])]
     return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}

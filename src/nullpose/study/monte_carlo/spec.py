@@ -105,8 +105,8 @@ class StudySpec(Section):
         cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
         yield from shared_names(dict(cases))
         for index, (kind, points) in product(range(self.scene.size if self.scene else 0), self.drawn.items()):
-            replaced = list(filter(None, getattr(self.scene.whole(index), kind)))
-            for key, values in points.values(replaced).items():
+            replaced = filter(None, getattr(self.scene.whole(index), kind))
+            for key, values in points.values(list(replaced)).items():
                 if len(values) > 1:
                     remedy = "add it" if key in type(points).model_fields else "give all of them the same"
                     yield (
