@@ -71,12 +71,53 @@ def test_each_point_has_the_antenna_it_states(seed: int) -> None:
     """Isotropic: the drone's gain; circular: half of it; dipole: its own."""
     position_m, axis, points_m, axes = random_pose(seed)
     ground = GroundAntennas(
-        np.array([np.zeros(3), np.zeros(3), axes[2], axes[3]]), np.array([1.0, 0.5, 1.0, 1.0])
+        np.array([np.zeros(3), np.zeros(3), axes[2], axes[3]]),
+        np.array([1.0, 0.5, 1.0, 1.0]),
+        np.array([1.0, 1.0, 0.0, 0.0]),
     )
     gains = link_gain(position_m, axis, points_m, LEAKING, ground)
     whole = antenna_gain(position_m, axis, points_m, LEAKING)
     assert gains[:2].tolist() == [whole[0], 0.5 * whole[1]]
     assert gains[2:].tolist() == dipole_gain(position_m, axis, points_m, axes, LEAKING)[2:].tolist()
+
+
+def ground_of(axes: np.ndarray, leak: float) -> GroundAntennas:
+    """Return dipoles of one leak."""
+    return GroundAntennas(axes, np.ones(len(axes)), np.full(len(axes), leak))
+
+
+@given(seed=SEEDS, through=st.floats(0.0, 1.0))
+def test_leaks_at_both_ends_are_alike(seed: int, through: float) -> None:
+    """The gain is that of a mean of antennas, at most 1, and the same if drone and point change places."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    gains = link_gain(position_m, axis, points_m, LEAKING, ground_of(axes, through))
+    assert np.all((gains >= 0.0) & (gains <= 1.0 + 1e-14))
+    there = QuadraticAntenna(name="dipole", label="a whip beside a mast", leak=through)
+    for gain, point_m, own in zip(gains, points_m, axes, strict=True):
+        back = link_gain(point_m, own, position_m[None], there, ground_of(axis[None], LEAKING.leak))
+        assert back == pytest.approx([gain], abs=1e-14)
+
+
+@given(seed=SEEDS)
+def test_the_limits_of_a_leak(seed: int) -> None:
+    """A perfect null without one, an isotropic antenna at 1, and 1 where both dipoles are seen broadside."""
+    position_m, axis, points_m, axes = random_pose(seed)
+    at = (position_m, axis, points_m, LEAKING)
+    perfect, isotropic = link_gain(*at, ground_of(axes, 0.0)), link_gain(*at, ground_of(axes, 1.0))
+    assert perfect.tolist() == dipole_gain(position_m, axis, points_m, axes, LEAKING).tolist()
+    assert isotropic.tolist() == antenna_gain(*at).tolist()
+    across = np.cross(points_m - position_m, axis)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    for point_m, broadside in zip(points_m, across, strict=True):
+        whole = link_gain(position_m, broadside, point_m[None], LEAKING, ground_of(broadside[None], 0.3))
+        assert whole == pytest.approx([1.0], abs=1e-14)
+
+
+def test_straight_above_a_whip_there_is_what_leaks() -> None:
+    """A level dipole above an upright whip receives its leak, in place of nothing."""
+    whip = ground_of(np.array([[0.0, 0.0, 1.0]]), 0.01)
+    above = ([0.0, 0.0, 30.0], [1.0, 0.0, 0.0], [[0.0, 0.0, 0.0]])
+    assert link_gain(*above, ground=whip) == pytest.approx([0.01], rel=1e-15)
 
 
 def test_a_flat_dipole_does_not_hear_a_whip() -> None:

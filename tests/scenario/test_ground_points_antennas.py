@@ -48,6 +48,8 @@ def test_axes_are_upright_or_as_stated(paper: Callable) -> None:
             "nodes[0].antenna_axis",
             'write antenna = "dipole"',
         ),
+        ({"null_depth_db": 20.0}, "nodes[0].null_depth_db", 'antenna = "isotropic" has no null'),
+        ({"antenna": "dipole", "null_depth_db": -1.0}, "nodes[0].null_depth_db", "a depth in dB"),
         ({"antenna": "dipole", "antenna_axis": [0, 0, 0]}, "nodes[0].antenna_axis", "length 0"),
         ({"antenna": "dipole", "antenna_axis": [0, 1]}, "nodes[0].antenna_axis", "three numbers"),
         (
@@ -63,6 +65,17 @@ def test_faults_are_told_by_their_place(keys: dict, path: str, words: str, paper
         stated(paper, **keys)
     assert [each.path for each in fault.value.faults] == [path]
     assert words in str(fault.value)
+
+
+def test_the_depth_of_a_null_is_told(paper: Callable) -> None:
+    """As a leak along the dipole's axis; at 0 dB there is no direction left."""
+    whip, level = (stated(paper, antenna="dipole", null_depth_db=depth) for depth in (20.0, 0.0))
+    assert whip.node_antennas.leaks.tolist() == [0.01, 1.0]
+    assert level.node_antennas.leaks.tolist() == [1.0, 1.0]
+    assert not np.any(level.node_antennas.axes)
+    assert Scenario.from_dict(whip.to_dict()) == whip
+    assert "null_depth_db = 20" in whip.to_toml()
+    assert whip.nodes[0].isotropic == paper().nodes[0]
 
 
 def test_an_array_hears_isotropic_antennas_only(paper: Callable) -> None:

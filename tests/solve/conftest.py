@@ -40,11 +40,14 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
 def ratios_over() -> Callable[..., Ratios]:
     """Returns a builder: one ratio over some points, for what asks for points, leak and dipoles only."""
 
-    def build(points_m: np.ndarray, leak: float, axes: np.ndarray | None = None) -> Ratios:
+    def build(
+        points_m: np.ndarray, leak: float, axes: np.ndarray | None = None, through: float = 0.0
+    ) -> Ratios:
         none, first = np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
         one, start = np.ones(1), np.zeros(2, dtype=np.int64)
         numbers = (np.zeros(1), one, first, first, one, start, none, np.zeros(0))
-        return Ratios(points_m, *numbers, leak=leak, ground_axes=axes)
+        leaks = None if axes is None else np.full(len(axes), through)
+        return Ratios(points_m, *numbers, leak=leak, ground_axes=axes, ground_leaks=leaks)
 
     return build
 

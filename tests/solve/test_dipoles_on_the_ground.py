@@ -59,6 +59,53 @@ def test_every_case_is_certified(
     assert verify(certificate_of(solution)).proved
 
 
+@pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference", "maximum-gain"])
+@pytest.mark.parametrize("null_depth_db", [None, 25.0])
+def test_whips_that_leak_are_certified(scheme: str, null_depth_db: float | None, paper: Callable) -> None:
+    """With the null of the drone perfect and not, at nodes and jammers; the verifier finds the same."""
+    data = with_antennas(paper(100.0), antenna="dipole", null_depth_db=20.0).to_dict()
+    if null_depth_db is not None:
+        data["antenna"] = {"null_depth_db": null_depth_db}
+    solution = solve(Scenario.from_dict(data), scheme, gap=1e-3)
+    assert solution.status == "certified"
+    assert verify(certificate_of(solution)).proved
+
+
+def test_between_a_perfect_null_and_none(paper: Callable) -> None:
+    """The best value with a null of 0 dB is that with isotropic antennas, with one of 200 dB the perfect."""
+    whips, plain = solve(with_antennas(paper(1.0)), gap=1e-4), solve(paper(1.0), gap=1e-4)
+    for depth, limit in ((0.0, plain), (200.0, whips)):
+        solution = solve(with_antennas(paper(1.0), antenna="dipole", null_depth_db=depth), gap=1e-4)
+        assert solution.objective.value == pytest.approx(limit.objective.value, rel=2e-4)
+
+
+def test_no_needle_is_left_straight_above_a_whip(paper: Callable) -> None:
+    """A level dipole above the jammer's whip hears what leaks: not both nulls, whatever the power."""
+    strong = with_antennas(paper(1e6), ("jammers",), antenna="dipole", null_depth_db=30.0)
+    perfect = with_antennas(paper(1e6), ("jammers",), antenna="dipole")
+    place_m, axis = np.array([17.0, 15.0, 8.0]), np.array([0.0, 1.0, 0.0])
+    values = [float(objective_value(one, place_m, axis)) for one in (strong, perfect)]
+    assert values[1] > 1e3 * values[0]
+    isotropic = paper(1e3)
+    assert values[0] == pytest.approx(float(objective_value(isotropic, place_m, axis)), rel=1e-9)
+
+
+@pytest.mark.parametrize("depth", [15.0, 25.0])
+def test_a_certificate_for_another_leak_is_refused(depth: float, paper: Callable) -> None:
+    """The pose's value and the bound are those of the stated depth: with another one the claim is false."""
+    from dataclasses import replace
+
+    certificate = certificate_of(
+        solve(with_antennas(paper(9.0), antenna="dipole", null_depth_db=20.0), gap=1e-3)
+    )
+    assert verify(certificate).proved
+    other = with_antennas(paper(9.0), antenna="dipole", null_depth_db=depth)
+    assert not verify(replace(certificate, scenario=other)).proved
+    value = solve(other, certify=False).objective.value
+    spoiled = replace(certificate, scenario=other, value=0.9 * value, upper_bound=0.95 * value)
+    assert not verify(spoiled).proved
+
+
 @pytest.mark.parametrize("ratio", [0.01, 1.0, 100.0])
 def test_circular_antennas_are_twice_the_noise(ratio: float, paper: Callable) -> None:
     """Half the power of nodes and jammers alike is what twice the noise is, to the last bit."""
@@ -80,6 +127,8 @@ def test_no_pose_exceeds_the_bound(seed: int, random_scene: Callable) -> None:
     for point in [*data["nodes"], *data.get("jammers", [])]:
         if rng.random() < 0.7:
             point["antenna"], point["antenna_axis"] = "dipole", rng.normal(size=3).tolist()
+            if rng.random() < 0.5:
+                point["null_depth_db"] = float(rng.uniform(3.0, 40.0))
     if rng.random() < 0.5:
         data["antenna"] = {"null_depth_db": float(rng.uniform(15.0, 40.0))}
     scenario = Scenario.from_dict(data)
@@ -111,7 +160,7 @@ def test_secrecy_and_airframes_know_dipoles(paper: Callable) -> None:
     data |= {
         "objective": "secrecy-rate",
         "transmitter": {"power_w": 1.0},
-        "eavesdroppers": [{"position_m": [17.0, 15.0, 4.0], "antenna": "dipole"}],
+        "eavesdroppers": [{"position_m": [17.0, 15.0, 4.0], "antenna": "dipole", "null_depth_db": 20.0}],
     }
     for node in data["nodes"]:
         del node["power_w"]

@@ -20,13 +20,18 @@ through.
 class GroundAntennas(NamedTuple):
     """The antennas of some ground points.
 
+    A dipole of leak f counts as ``1 - f`` of the same dipole with a perfect null and f of an isotropic
+    antenna at the same place: what leaks through its null has no known direction and polarisation.
+
     Args:
         axes: (m, 3) unit axis of a point's short dipole; zero where the point has none.
         shares: (m,) the largest gain of a link that each allows: its own, times its share of the power.
+        leaks: (m,) f, the gain of each dipole along its axis, 1 being that across it; 1 without a dipole.
     """
 
     axes: NDArray[np.float64]
     shares: NDArray[np.float64]
+    leaks: NDArray[np.float64]
 
 
 def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:

@@ -175,7 +175,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         leaves: of the boxes, with multipliers and level.
         boxes: to be tested.
     """
-    identity, above, below = weighted_sum(family, leaves)
+    family, identity, above, below = weighted_sum(family, leaves)
     terms = above + [(point, -scale) for point, scale in below]
     dipoles = np.zeros_like(family.points_m) if family.ground_axes is None else family.ground_axes
     at = ((scale, family.points_m[point], dipoles[point]) for point, scale in terms)

@@ -250,7 +250,7 @@ def dipole_sum(
         constants: forms, (6, b), that are not negative in the cells and the band, and their multipliers.
     """
     shear = shear_of(family, leaves, boxes)
-    identity, above, below = weighted_sum(family, leaves)
+    family, identity, above, below = weighted_sum(family, leaves)
     wanted = [(_vectors(family, shear, boxes, point), point, scale) for point, scale in above]
     unwanted = [(_vectors(family, shear, boxes, point), point, scale) for point, scale in below]
     held = [(constant_form(shear, q), q, weight) for q, weight in constants if np.any(weight != 0.0)]

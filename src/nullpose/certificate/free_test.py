@@ -79,7 +79,7 @@ def ratio_forms(
     With vectors, (3, b) in the basis, along which the sums are largest, denominators that are small there
     get the remainder that is sharp near a null if it is the smaller one.
     """
-    identity, above, below = weighted_sum(family, leaves)
+    family, identity, above, below = weighted_sum(family, leaves)
     half2 = boxes.half2 * 0.5
     total = Linear(frames.gram * identity, Interval(np.zeros((6, 3, len(boxes)))))
     for point, scale in above:

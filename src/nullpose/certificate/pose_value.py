@@ -107,17 +107,27 @@ def profile_link(point: Exact, position: Exact, axis: Exact, profile: Profile) -
     return profile.exact(cosine if along >= 0 else -cosine) / square
 
 
-def link(point: Exact, position: Exact, axis: Exact, leak: Fraction, dipole: Exact | None = None) -> Fraction:
+def link(
+    point: Exact,
+    position: Exact,
+    axis: Exact,
+    leak: Fraction,
+    dipole: Exact | None = None,
+    through: Fraction = Fraction(0),
+) -> Fraction:
     """Return a link's gain over ``|r|^2``, exactly; without a leak and a dipole, paper eqs. 1.2 to 1.4.
 
-    With a dipole along v, ``(1 - l) B^2 / (|u|^2 |r|^6) + l |r x v|^2 / |r|^4``, ``B = (u x r).(v x r)``.
+    With a dipole along v, ``(1 - l) B^2 / (|u|^2 |r|^6) + l |r x v|^2 / |r|^4``, ``B = (u x r).(v x r)``; if
+    it leaks itself, ``1 - through`` times that and ``through`` times the first.
     """
     r = point - position
+    isotropic = (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
     if dipole is not None and np.any(dipole != 0):
         across, square = np.cross(dipole, r), r @ r
         kept = (1 - leak) * (np.cross(axis, r) @ across) ** 2 / (axis @ axis)
-        return Fraction((kept / square + leak * (across @ across)) / square**2)
-    return (leak + (1 - leak) * sine2(r, axis)) / Fraction(r @ r)
+        of_dipole = Fraction((kept / square + leak * (across @ across)) / square**2)
+        return (1 - through) * of_dipole + through * isotropic
+    return isotropic
 
 
 def smallest_ratio(family: Family, position: Exact, axis: Exact, profile: Profile | None = None) -> Fraction:
@@ -130,15 +140,15 @@ def smallest_ratio(family: Family, position: Exact, axis: Exact, profile: Profil
         profile: its gain, if it is no dipole.
     """
     leak = Fraction(family.leak)
-    axes = family.ground_axes
-    dipoles = [None] * len(family.points_m) if axes is None else exact(axes)
-    pairs = zip(exact(family.points_m), dipoles, strict=True)
+    none = np.zeros_like(family.points_m), np.ones(len(family.points_m))
+    dipoles = none if family.ground_axes is None else (family.ground_axes, family.ground_leaks)
+    rows = zip(*map(exact, (family.points_m, *dipoles)), strict=True)
     links = np.array(
         [
-            link(point, position, axis, leak, dipole)
+            link(point, position, axis, leak, dipole, through)
             if profile is None
             else profile_link(point, position, axis, profile)
-            for point, dipole in pairs
+            for point, dipole, through in rows
         ]
     )
     entries = exact(family.denominator_weight) * links[family.denominator_point]

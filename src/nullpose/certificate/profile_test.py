@@ -238,7 +238,7 @@ def _out_of_reach(
 
 def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], list[Interval]]:
     """Return a sum's constant, and by what each point's gain over squared distance adds and takes away."""
-    identity, above, below = weighted_sum(family, leaves)
+    _, identity, above, below = weighted_sum(family, leaves)
     sides: list[list[Interval]] = []
     for parts in (above, below):
         each = []

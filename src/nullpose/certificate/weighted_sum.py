@@ -29,13 +29,28 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
     return ratio[:, which], weight[:, which]
 
 
-def weighted_sum(family: Family, leaves: Leaves) -> tuple[Interval, list[Multiple], list[Multiple]]:
+def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Multiple], list[Multiple]]:
     """Return a sum's multiple of the identity, and those of numerators and (positive) of denominators.
+
+    A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
+    The family that is returned first has both.
 
     Args:
         family: the ratios.
         leaves: with multipliers and level.
     """
+    through = family.ground_leaks  # 1 without a dipole: such a point stays one
+    leaks = np.zeros(len(family.points_m)) if through is None else np.where(through < 1.0, through, 0.0)
+    leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
+
+    def parts(point: IntArray, scale: Interval) -> list[Multiple]:
+        leak = leaks[point]
+        split = (leak > 0.0) & (scale.high > 0.0)
+        if not np.any(split):
+            return [(point, scale)]
+        dipole = where(split, scale * (1.0 - Interval(leak)), scale)
+        return [(point, dipole), (np.where(split, twin[point], point), where(split, scale * leak, 0.0))]
+
     ratio, weight = mix_slots(leaves)
     identity = Interval(np.zeros(len(leaves)))
     above: list[Multiple] = []
@@ -43,7 +58,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Interval, list[Multipl
     for k, w in zip(ratio, weight, strict=True):
         identity = identity + Interval(w) * family.numerator_isotropic[k]
         scale = Interval(w) * family.numerator_weight[k]
-        above.append((family.numerator_point[k], where(w > 0.0, scale, 0.0)))
+        above += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0))
     for g, isotropic in enumerate(family.denominator_isotropic):
         mine = np.where(family.denominator_of[ratio] == g, weight, 0.0)
         counts = np.any(mine > 0.0, axis=0)
@@ -51,5 +66,11 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Interval, list[Multipl
         identity = where(counts, identity - level * isotropic, identity)
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])
-            below.append((point, where(counts, level * family.denominator_weight[e], 0.0)))
-    return identity, above, below
+            below += parts(point, where(counts, level * family.denominator_weight[e], 0.0))
+    if len(leaky):
+        family = family.changed(
+            points_m=np.vstack([family.points_m, family.points_m[leaky]]),
+            ground_axes=np.vstack([family.ground_axes, np.zeros((len(leaky), 3))]),
+            ground_leaks=None,
+        )
+    return family, identity, above, below

@@ -79,6 +79,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     points_m, rotations, originals = (np.array(each) for each in zip(*copies.values(), strict=True))
     return nominal.changed(
         ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
+        ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],

@@ -20,7 +20,7 @@ def _ratios(scenario: Scenario) -> Ratios:
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
     scale = scenario.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
-    axes, shares = ground_of(scenario, "node", "jammer")
+    axes, leaks, shares = ground_of(scenario, "node", "jammer")
     return Ratios(
         points_m=scenario.source_positions_m,
         numerator_isotropic=np.zeros(n_nodes),
@@ -32,6 +32,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_point=np.arange(n_nodes, n_nodes + n_jammers, dtype=np.int64),
         denominator_weight=scale * scenario.jammer_powers_w * shares[n_nodes:],
         ground_axes=axes,
+        ground_leaks=leaks,
     )
 
 

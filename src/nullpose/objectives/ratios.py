@@ -16,6 +16,7 @@ class Ratios(NamedTuple):
 
     With ``r_j = points[j] - p`` and ``M(r) = (|r|^2 I - (1 - l) r r^T) / |r|^4``, or for a point with a
     dipole along the unit vector v ``M(r) = (1 - l) a a^T + l |a|^2 I``, ``a = (|r|^2 v - (v.r) r) / |r|^3``,
+    or where that dipole has a leak f of its own ``1 - f`` times the second form and f times the first,
     ratio k is ``N_k = n_k I + w_k M(r_a(k))`` over ``D_g(k) = d_g I + sum_e b_e M(r_j(e))``, the sum being
     over the entries e from ``denominator_start[g]`` to ``denominator_start[g + 1]``. Ratios may share a
     denominator. Everything is dimensionless but the positions.
@@ -34,6 +35,8 @@ class Ratios(NamedTuple):
         leak: l, the antenna's gain along its axis; it is 1 across it.
         ground_axes: (m, 3) v, the unit axis of a point's dipole, zero where it has none; None where no point
             has one.
+        ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; None where no
+            point has one.
     """
 
     points_m: FloatArray
@@ -48,18 +51,17 @@ class Ratios(NamedTuple):
     turn: FloatArray = np.zeros((0, 3, 3))
     leak: float = 0.0
     ground_axes: FloatArray | None = None
+    ground_leaks: FloatArray | None = None
 
 
-def ground_of(scenario: Any, *kinds: str) -> tuple[FloatArray | None, FloatArray]:
-    """Return the dipoles' axes, (m, 3), None if there are none, and the points' shares of power, (m,).
+def ground_of(scenario: Any, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:
+    """Return the dipoles' axes, (m, 3), and leaks, (m,), None without dipoles, and the largest gains, (m,).
 
     Args:
         scenario: with its points.
         kinds: whose points, in order, as in ``"node"``.
     """
     groups = [(getattr(scenario, f"{k}_antennas"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
-    if all(some is None for some, _ in groups):
-        return None, np.ones(sum(n for _, n in groups))
-    shares = np.concatenate([np.ones(n) if some is None else some.shares for some, n in groups])
-    axes = np.vstack([np.zeros((n, 3)) if some is None else some.axes for some, n in groups])
-    return (axes if np.any(axes) else None), shares
+    parts = [antennas or (np.zeros((n, 3)), np.ones(n), np.ones(n)) for antennas, n in groups]
+    axes, shares, leaks = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return (axes, leaks, shares) if np.any(axes) else (None, None, shares)

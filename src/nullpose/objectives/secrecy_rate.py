@@ -27,7 +27,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         scenario.eavesdropper_positions_m,
         scenario.jammer_positions_m.reshape(-1, 3),  # in no ratio, but to be kept clear of
     )
-    axes, shares = ground_of(scenario, "node", "eavesdropper", "jammer")
+    axes, leaks, shares = ground_of(scenario, "node", "eavesdropper", "jammer")
     return Ratios(
         points_m=np.vstack(positions),
         numerator_isotropic=np.ones(len(node)),
@@ -39,6 +39,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_point=np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
         denominator_weight=sent * shares[n_nodes : n_nodes + n_eavesdroppers] / scenario.eavesdropper_noise_w,
         ground_axes=axes,
+        ground_leaks=leaks,
     )
 
 

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas, PatternAntenna, QuadraticAntenna
+from nullpose.antenna import (
+    SHORT_DIPOLE,
+    Antenna,
+    GroundAntennas,
+    PatternAntenna,
+    QuadraticAntenna,
+)
 from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import Scenario
+from nullpose.scenario import GroundPoint, Node, Scenario
 
 
 def dipole_gain(
@@ -55,7 +63,8 @@ def link_gain(
     """Return the power gain between the drone's antenna and that at each point, polarisation included.
 
     The drone's gain alone for an isotropic antenna (paper eq. 2.1), half of it for a circular one, and
-    :func:`dipole_gain` for a dipole, each times the largest gain of the antenna on the ground. The largest
+    :func:`dipole_gain` for a dipole, or where f leaks through its null the weighted mean ``(1 - f)
+    dipole_gain + f antenna_gain``, each times the largest gain of the antenna on the ground. The largest
     gain of a dipole on the drone counts as 1.
 
     Args:
@@ -74,22 +83,29 @@ def link_gain(
     if isinstance(antenna, PatternAntenna):
         return np.asarray(ground.shares * gain)  # of a dipole on the ground it says nothing: there is none
     of_dipoles = dipole_gain(position_m, axis, points_m, ground.axes, antenna)
-    return np.asarray(ground.shares * np.where(np.any(ground.axes, axis=-1), of_dipoles, gain))
+    return np.asarray(ground.shares * ((1.0 - ground.leaks) * of_dipoles + ground.leaks * gain))
 
 
 def worst_polarised(scenario: Scenario) -> Scenario:
-    """Return a scenario whose jammers and eavesdroppers have no dipoles, itself if it has none.
+    """Return a scenario whose jammers and eavesdroppers have no dipoles, itself if nothing is changed.
 
-    An isotropic antenna is the worst that they could have: no dipole lets more through, at any pose.
+    An isotropic antenna is the worst that they could have: no dipole lets more through, at any pose. Nodes
+    keep their dipoles, but nothing of what leaks through a null: its polarisation could leave as little.
 
     Args:
         scenario: any.
     """
     changed = {
-        kind: tuple(
-            point.isotropic if point.antenna == "dipole" else point for point in getattr(scenario, kind)
-        )
-        for kind in ("jammers", "eavesdroppers")
-        if any(point.antenna == "dipole" for point in getattr(scenario, kind))
+        kind: tuple(map(_worst, getattr(scenario, kind))) for kind in ("nodes", "jammers", "eavesdroppers")
     }
+    changed = {kind: points for kind, points in changed.items() if points != getattr(scenario, kind)}
     return scenario.model_copy(update=changed) if changed else scenario
+
+
+def _worst(point: GroundPoint) -> GroundPoint:
+    if not isinstance(point, Node):
+        return point.isotropic if point.antenna == "dipole" else point
+    if not 0.0 < point.leak < 1.0:
+        return point
+    kept_db = 10.0 * math.log10(1.0 - point.leak)
+    return point.model_copy(update={"null_depth_db": None, "gain_dbi": point.gain_dbi + kept_db})

@@ -237,8 +237,9 @@ def _points_table(
 
 def _antenna_words(point: _Point) -> str | None:
     """Return which antenna a point has, how it lies and its gain; None for an isotropic one of 0 dBi."""
-    axis = () if point.antenna_axis is None else point.antenna_axis
-    words = f"{point.antenna}{' along ' * bool(axis)}{', '.join(f'{x:g}' for x in axis)}{_gain_words(point)}"
+    axis = "" if point.antenna_axis is None else f" along {', '.join(f'{x:g}' for x in point.antenna_axis)}"
+    null = "" if point.null_depth_db is None else f", null of {point.null_depth_db:g} dB"
+    words = f"{point.antenna}{axis}{null}{_gain_words(point)}"
     return None if words == "isotropic" else words
 
 

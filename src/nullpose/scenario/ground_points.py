@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
-from nullpose.antenna import GROUND_ANTENNAS
+from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.scenario.faults import Place
 from nullpose.scenario.names import Label
 from nullpose.scenario.rules import Choice
@@ -24,6 +24,7 @@ from nullpose.scenario.units import (
     GroundHeight,
     Latitude,
     Longitude,
+    NullDepthDecibels,
     Position,
     RatioDecibels,
     SeaAltitude,
@@ -56,6 +57,8 @@ class GroundPoint(Section):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
+            perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
     """
 
@@ -112,6 +115,12 @@ class GroundPoint(Section):
         "out: upright.",
         examples=[[0.0, 0.0, 1.0]],
     )
+    null_depth_db: NullDepthDecibels | None = Field(
+        default=None,
+        description="How deep a dipole's null is, in dB below its broadside gain: beside a mast or a body 15 "
+        "to 35. What is received through it has no known polarisation. Left out: the null is perfect.",
+        examples=[20.0],
+    )
     gain_dbi: DecibelsIsotropic = Field(
         default=0.0,
         description="Gain of its antenna in the direction where it is largest, in dBi (dBic for a circular "
@@ -121,13 +130,19 @@ class GroundPoint(Section):
     )
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault that an axis is given of an antenna that has none."""
+        """Returns the fault that an axis or the depth of a null is given of an antenna that has none."""
         yield from super().faults(stated)
-        if self.antenna_axis is not None and self.antenna in GROUND_ANTENNAS and self.antenna != "dipole":
-            yield (
-                ("antenna_axis",),
-                f'given, but antenna = "{self.antenna}" has no axis; remove it, or write antenna = "dipole"',
-            )
+        for key, noun in (("antenna_axis", "axis"), ("null_depth_db", "null")):
+            if (
+                getattr(self, key) is not None
+                and self.antenna in GROUND_ANTENNAS
+                and self.antenna != "dipole"
+            ):
+                yield (
+                    (key,),
+                    f'given, but antenna = "{self.antenna}" has no {noun}; remove it, or write antenna = '
+                    '"dipole"',
+                )
 
     @property
     def largest_gain(self) -> float:
@@ -135,11 +150,16 @@ class GroundPoint(Section):
         return GROUND_ANTENNAS[self.antenna] * ratio_from_db(self.gain_dbi)
 
     @property
+    def leak(self) -> float:
+        """The gain along a dipole's axis, linear, 1 being the gain across it; 1 without a dipole."""
+        return short_dipole(self.null_depth_db).leak if self.antenna == "dipole" else 1.0
+
+    @property
     def isotropic(self) -> Self:
         """The point with an isotropic antenna of the same gain; itself if it has one."""
         if self.antenna == "isotropic":
             return self
-        return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None})
+        return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None, "null_depth_db": None})
 
 
 class Emitter(Powered, GroundPoint):
@@ -153,6 +173,8 @@ class Emitter(Powered, GroundPoint):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
+            perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
@@ -172,6 +194,8 @@ class Node(Emitter):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
+            perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm; both may be left out where the drone transmits.
@@ -251,6 +275,8 @@ class Jammer(Uncertain, Emitter):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
+            perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
@@ -273,6 +299,8 @@ class Eavesdropper(Uncertain, GroundPoint):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
+            perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
         noise_w: its receiver's noise [W]; or else
         noise_dbm: the same in dBm; the noise of [receiver] when both are left out.

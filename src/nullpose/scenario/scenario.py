@@ -402,6 +402,6 @@ def require_scenario(value: object) -> None:
 def _antennas_of(points: Sequence[GroundPoint]) -> GroundAntennas | None:
     if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
         return None
-    axes = [unit_axis(p.antenna_axis) if p.antenna == "dipole" else np.zeros(3) for p in points]
-    shares = [point.largest_gain for point in points]
-    return GroundAntennas(read_only(axes, (-1, 3)), read_only(shares, (-1,)))
+    axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
+    numbers = [(point.largest_gain, point.leak) for point in points]
+    return GroundAntennas(read_only(axes, (-1, 3)), *read_only(numbers, (-1, 2)).T)

@@ -140,6 +140,7 @@ def _smallest_family(dipoles: bool) -> Family:
     """Return a family of one ratio: its arrays have the types of any other's."""
     return Family(
         ground_axes=np.zeros((1, 3)) if dipoles else None,
+        ground_leaks=np.zeros(1) if dipoles else None,
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),

@@ -45,6 +45,7 @@ _ALIKE = (
     "power_dbm",
     "antenna",
     "antenna_axis",
+    "null_depth_db",
     "gain_dbi",
     "noise_w",
     "noise_dbm",

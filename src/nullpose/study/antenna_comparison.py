@@ -106,9 +106,7 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
         drone: whether to keep the drone's.
         ground: whether to keep those on the ground.
     """
-    gain_dbi = scenario.antenna_gain_dbi
-    papers = Antenna(gain_dbi=gain_dbi) if gain_dbi else None
-    changed: dict[str, Any] = {} if drone else {"antenna": papers}
+    changed: dict[str, Any] = {} if drone else {"antenna": Antenna(gain_dbi=scenario.antenna_gain_dbi)}
     for kind in () if ground else _POINTS:
         changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)

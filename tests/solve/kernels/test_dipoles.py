@@ -49,6 +49,7 @@ def family_of(rng: np.random.Generator, leak: float) -> Family:
     axes = rng.normal(size=(4, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True) * (1.0 + 1e-15)
     axes[rng.random(4) < 0.3] = 0.0
+    leaks = np.where(rng.random(4) < 0.5, 10.0 ** rng.uniform(-3.0, -0.1, 4), 0.0)
     return Family(
         points_m=rng.uniform([0.0, 0.0, 0.0], [60.0, 60.0, 4.0], (4, 3)),
         numerator_isotropic=np.array([0.0, rng.choice([0.0, 1.0])]),
@@ -65,6 +66,7 @@ def family_of(rng: np.random.Generator, leak: float) -> Family:
         keep_out_m=1.0,
         leak=leak,
         ground_axes=axes,
+        ground_leaks=np.where(np.any(axes, axis=1), leaks, 1.0),
     )
 
 
@@ -72,13 +74,13 @@ def exact_form(family: Family, weights: np.ndarray, level: float, p: np.ndarray)
     """Return the sum at a position, from the definition of the forms."""
 
     def form(j: int) -> np.ndarray:
-        r, v = family.points_m[j] - p, family.ground_axes[j]
+        r, v, through = family.points_m[j] - p, family.ground_axes[j], family.ground_leaks[j]
         square = r @ r
-        if not np.any(v):
-            plain = (square * np.eye(3) - np.outer(r, r)) / square**2
-            return (1.0 - family.leak) * plain + family.leak * np.eye(3) / square
+        plain = (square * np.eye(3) - np.outer(r, r)) / square**2
+        plain = (1.0 - family.leak) * plain + family.leak * np.eye(3) / square
         a = (square * v - (v @ r) * r) / square**1.5
-        return (1.0 - family.leak) * np.outer(a, a) + family.leak * (a @ a) * np.eye(3)
+        of_dipole = (1.0 - family.leak) * np.outer(a, a) + family.leak * (a @ a) * np.eye(3)
+        return (1.0 - through) * of_dipole + through * plain
 
     below = np.eye(3) + sum(family.denominator_weight[e] * form(2 + e) for e in range(2))
     above = [

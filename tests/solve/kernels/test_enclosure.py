@@ -19,8 +19,13 @@ FIELDS = {
 PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
-def link(field: AxisField, p: np.ndarray, leak: float, dipole: np.ndarray | None) -> float:
+def link(
+    field: AxisField, p: np.ndarray, leak: float, dipole: np.ndarray | None, through: float = 0.0
+) -> float:
     """Return gain over ``|r|^2`` at a position, from the definition."""
+    if through > 0.0:
+        both = link(field, p, leak, dipole), link(field, p, leak, None)
+        return (1.0 - through) * both[0] + through * both[1]
     offset, matrix = field.arrays.offset, field.arrays.matrix
     axis, r = offset + matrix @ p, POINT[0] - p
     if dipole is not None:
@@ -37,43 +42,58 @@ def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(rng.uniform(low, high), 10.0 ** rng.uniform(-2.5, 0.4, size=3)) for _ in range(count)]
 
 
-@pytest.mark.parametrize("dipole", DIPOLES)
+@pytest.mark.parametrize(("dipole", "through"), [*((each, 0.0) for each in DIPOLES), (DIPOLES[2], 0.2)])
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
 def test_value_and_gradient_at_the_centre(
-    field: AxisField, leak: float, dipole: np.ndarray | None, ratios_over: Callable[..., Ratios]
+    field: AxisField,
+    leak: float,
+    dipole: np.ndarray | None,
+    through: float,
+    ratios_over: Callable[..., Ratios],
 ) -> None:
     """They agree with the definition and its central differences."""
     jet, step = np.empty(JET), 1e-4
     for centre, half in boxes(1, 30):
-        link_jet(ratios_over(POINT, leak, dipole), 0, field.arrays, centre, half, jet)
-        assert jet[0] == pytest.approx(link(field, centre, leak, dipole), rel=1e-9, abs=1e-15)
+        link_jet(ratios_over(POINT, leak, dipole, through), 0, field.arrays, centre, half, jet)
+        assert jet[0] == pytest.approx(link(field, centre, leak, dipole, through), rel=1e-9, abs=1e-15)
         slopes = [
-            (link(field, centre + step * e, leak, dipole) - link(field, centre - step * e, leak, dipole))
+            (
+                link(field, centre + step * e, leak, dipole, through)
+                - link(field, centre - step * e, leak, dipole, through)
+            )
             / (2 * step)
             for e in np.eye(3)
         ]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
 
 
-@pytest.mark.parametrize("dipole", DIPOLES)
+@pytest.mark.parametrize(("dipole", "through"), [*((each, 0.0) for each in DIPOLES), (DIPOLES[2], 0.2)])
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
 def test_the_box_is_enclosed(
-    field: AxisField, leak: float, dipole: np.ndarray | None, ratios_over: Callable[..., Ratios]
+    field: AxisField,
+    leak: float,
+    dipole: np.ndarray | None,
+    through: float,
+    ratios_over: Callable[..., Ratios],
 ) -> None:
     """Anywhere in a box the value is within its bounds and every second difference within the Hessian's."""
     rng = np.random.default_rng(2)
     jet, step = np.empty(JET), 1e-3
     for centre, half in boxes(3, 40):
-        link_jet(ratios_over(POINT, leak, dipole), 0, field.arrays, centre, half, jet)
+        link_jet(ratios_over(POINT, leak, dipole, through), 0, field.arrays, centre, half, jet)
         for _ in range(6):
             p = centre + rng.uniform(-1.0, 1.0, size=3) * half
-            assert jet[16] * (1.0 - 1e-12) <= link(field, p, leak, dipole) <= jet[17] * (1.0 + 1e-12)
+            assert jet[16] * (1.0 - 1e-12) <= link(field, p, leak, dipole, through) <= jet[17] * (1.0 + 1e-12)
             for entry, (i, k) in enumerate(PAIRS):
                 a, b = step * np.eye(3)[i], step * np.eye(3)[k]
-                second = link(field, p + a + b, leak, dipole) - link(field, p + a - b, leak, dipole)
-                second -= link(field, p - a + b, leak, dipole) - link(field, p - a - b, leak, dipole)
+                second = link(field, p + a + b, leak, dipole, through) - link(
+                    field, p + a - b, leak, dipole, through
+                )
+                second -= link(field, p - a + b, leak, dipole, through) - link(
+                    field, p - a - b, leak, dipole, through
+                )
                 error = abs(second / (4.0 * step * step) - jet[4 + entry])
                 assert error <= jet[10 + entry] * (1.0 + 1e-3) + 1e-8
 

@@ -20,6 +20,8 @@ def erring(scenario: Scenario, null_depth_db: float | None) -> Scenario:
     data = scenario.to_dict()
     for point in [*data["nodes"], *data["jammers"]]:
         point["antenna"] = "dipole"
+        if null_depth_db is not None:
+            point["null_depth_db"] = 15.0
     data["receiver"] |= {"attitude_error_deg": 2.0, "position_error_m": 0.5}
     data["jammers"][0]["uncertainty_m"] = 3.0
     if null_depth_db is not None:

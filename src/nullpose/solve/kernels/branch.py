@@ -20,7 +20,7 @@ from nullpose.solve.kernels.exclusion import excludes, is_level, out_of_reach, w
 from nullpose.solve.kernels.expansion import frame_at, min_distance, min_square
 from nullpose.solve.kernels.forms import add_denominator
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solve.kernels.links import has_dipole, min_log_ratio
+from nullpose.solve.kernels.links import isotropic_share, min_log_ratio
 from nullpose.solve.kernels.multipliers import free_multipliers
 from nullpose.solve.kernels.node import (
     AFFINE,
@@ -107,7 +107,9 @@ def best_frame(family, axis_field, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
-    if has_dipole(family.ground_axes, anchor):  # the nearer to its own null, the faster its form turns
+    if (
+        isotropic_share(family.ground_leaks, anchor) < 1.0
+    ):  # the nearer to its own null, the faster its form turns
         rho *= own_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
         if not rho > 0.0:
             return WORLD, anchor

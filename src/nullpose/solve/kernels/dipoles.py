@@ -20,7 +20,7 @@ from nullpose.solve.kernels.link_vectors import (
     third_of,
     vector_jet,
 )
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solve.kernels.records import WORLD
 from nullpose.solve.kernels.scratch import scratch
@@ -100,15 +100,17 @@ def fill_basis(family, frame, j, basis):
 
 
 @inner_kernel
-def add_leak(family, j, shear, frame, centre, half, sign, scale, matrix, slopes, rest):
-    """Add ``sign * scale`` times what leaks to a point, ``leak g I``, g being its gain over ``|r|^2``."""
+def add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, slopes, rest):
+    """Add ``sign * scale`` times what leaks to a point, ``leak g I``, g being its gain over ``|r|^2``.
+
+    It is that of its dipole if ``has`` says so, or of an isotropic point.
+    """
     r, v, a, basis = scratch(3), scratch(3), scratch(3), scratch(3, 3)
     fill_basis(family, frame, j, basis)
     first, second = scratch(3, 3), scratch(6, 3)
     point = family.points_m[j]
     r[0], r[1], r[2] = in_frame(basis, (point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]))
     least = math.sqrt(min_square(family.points_m, j, centre, half))
-    has = has_dipole(family.ground_axes, j)
     if has:
         v[0], v[1], v[2] = in_frame(basis, family.ground_axes[j])
         vector_jet(r, v, basis, a, first, second)
@@ -221,11 +223,21 @@ def add_constant(shear, half, weight, q, matrix, slopes, rest):
 
 @inner_kernel
 def add_link(family, j, shear, frame, centre, half, v, sign, scale, matrix, slopes, rest):
-    """Add ``sign * scale`` times the form of a point, expanded over the box."""
+    """Add ``sign * scale`` times the form of a point, expanded over the box, in its two parts."""
+    share = isotropic_share(family.ground_leaks, j)
+    for has in (False, True):
+        part = scale * (1.0 - share if has else share)
+        if part > 0.0:
+            add_part(family, j, has, shear, frame, centre, half, v, sign, part, matrix, slopes, rest)
+
+
+@inner_kernel
+def add_part(family, j, has, shear, frame, centre, half, v, sign, scale, matrix, slopes, rest):
+    """Add ``sign * scale`` times the form of point j's dipole if ``has`` says so, or of an isotropic one."""
     if family.leak > 0.0:
-        add_leak(family, j, shear, frame, centre, half, sign, scale, matrix, slopes, rest)
+        add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, slopes, rest)
     scale *= 1.0 - family.leak
-    if sign < 0.0 and shear.kind != WORLD and j == frame.anchor:
+    if sign < 0.0 and shear.kind != WORLD and j == frame.anchor and has == shear.is_dipole:
         add_anchor(family, shear, frame, centre, half, scale, matrix, slopes, rest)
         return
     r, w, basis = scratch(3), scratch(3), scratch(3, 3)
@@ -234,7 +246,6 @@ def add_link(family, j, shear, frame, centre, half, v, sign, scale, matrix, slop
     point = family.points_m[j]
     r[0], r[1], r[2] = in_frame(basis, (point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]))
     third = third_of(shear, math.sqrt(min_square(family.points_m, j, centre, half)))
-    has = has_dipole(family.ground_axes, j)
     for m in range(1 if has else 3):
         if has:
             w[0], w[1], w[2] = in_frame(basis, family.ground_axes[j])

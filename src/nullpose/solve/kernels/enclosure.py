@@ -15,7 +15,7 @@ import numpy as np
 
 from nullpose.solve.kernels.forms import entry
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.symmetric import copy_into, copy_table
 from nullpose.solve.kernels.vectors import cross, dot
@@ -204,11 +204,15 @@ def link_jet(family, j, axis_field, centre, half, jet):
     dc, hc, hr = scratch(4, 3), scratch(4, 3, 3), zeroed(4, 3, 3)
     for i in range(3):
         r[i] = family.points_m[j, i] - centre[i]
-    if has_dipole(family.ground_axes, j):
-        dipole_jet(family.leak, family.ground_axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, jet)
-        return
-    count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
-    quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+    share, axes = isotropic_share(family.ground_leaks, j), family.ground_axes
+    if share > 0.0:
+        count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
+        quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+    if share < 1.0:
+        of_dipole = scratch(JET)
+        dipole_jet(family.leak, axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, of_dipole)
+        for m in range(JET):
+            jet[m] = (share * jet[m] if share > 0.0 else 0.0) + (1.0 - share) * of_dipole[m]
 
 
 @inner_kernel

@@ -15,7 +15,7 @@ import math
 
 from nullpose.solve.kernels.forms import seen_from
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import tangents
@@ -62,7 +62,7 @@ def frame_at(family, kind, anchor, centre, half, basis):
     x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
     rho = math.sqrt(x * x + y * y + z * z)
     c[0], c[1], c[2] = x / rho, y / rho, z / rho
-    if has_dipole(family.ground_axes, anchor):
+    if isotropic_share(family.ground_leaks, anchor) < 1.0:
         turn_to_form(family.ground_axes, anchor, c)
     tangents(c, a, b)
     for i in range(3):

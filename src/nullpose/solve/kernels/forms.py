@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.scratch import scratch, zeroed
 from nullpose.solve.kernels.vectors import along, dot, scaled
 
@@ -119,8 +119,8 @@ def add_form(x, y, z, leak, weight, isotropic, out):
 
 
 @inner_kernel
-def add_dipole_form(family, axes, j, basis, r, weight, isotropic, out):
-    """Add what ``add_form`` does for point j, which has a dipole; r is in the frame."""
+def add_dipole_form(family, axes, j, basis, r, weight, out):
+    """Add ``weight`` times the form of point j's dipole with a perfect null; r is in the frame."""
     if axes is not None:
         v = in_frame(basis, axes[j])
         if family.turn.shape[0] > 0:
@@ -128,7 +128,7 @@ def add_dipole_form(family, axes, j, basis, r, weight, isotropic, out):
         rho2 = dot(r, r)
         a = along(scaled(rho2, v), -dot(v, r), r)
         s = weight / (rho2 * rho2 * rho2)
-        level = isotropic + family.leak * s * dot(a, a)
+        level = family.leak * s * dot(a, a)
         for m in range(3):
             out[m] += level
         for k in range(6):
@@ -140,10 +140,10 @@ def add_dipole_form(family, axes, j, basis, r, weight, isotropic, out):
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
     x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
-    if has_dipole(family.ground_axes, j):
-        add_dipole_form(family, family.ground_axes, j, basis, (x, y, z), weight, isotropic, out)
-    else:
-        add_form(x, y, z, family.leak, weight, isotropic, out)
+    share = isotropic_share(family.ground_leaks, j)
+    add_form(x, y, z, family.leak, share * weight, isotropic, out)
+    if share < 1.0:
+        add_dipole_form(family, family.ground_axes, j, basis, (x, y, z), (1.0 - share) * weight, out)
 
 
 @inner_kernel
@@ -156,19 +156,6 @@ def add_denominator(family, g, weight, p, basis, out):
         add_point(family, family.denominator_point[e], p, basis, scale, 0.0, out)
 
 
-@inner_kernel
-def fill_form(family, j, p, weight, isotropic, out):
-    """Add ``weight * M(Q_j^T (q_j - p))`` and ``isotropic * I`` to a form of six numbers."""
-    point = family.points_m[j]
-    x, y, z = turned_back(family.turn, j, point[0] - p[0], point[1] - p[1], point[2] - p[2])
-    if has_dipole(family.ground_axes, j):
-        still = zeroed(3, 3)
-        still[0, 0] = still[1, 1] = still[2, 2] = 1.0
-        add_dipole_form(family, family.ground_axes, j, still, (x, y, z), weight, isotropic, out)
-    else:
-        add_form(x, y, z, family.leak, weight, isotropic, out)
-
-
 @kernel
 def fill_forms(family, p, numerators, denominators):
     """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
@@ -177,10 +164,12 @@ def fill_forms(family, p, numerators, denominators):
     dpt, dw = family.denominator_point, family.denominator_weight
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
+    world = zeroed(3, 3)
+    world[0, 0] = world[1, 1] = world[2, 2] = 1.0
     for k in range(nw.shape[0]):
-        fill_form(family, npt[k], p, nw[k], n0[k], numerators[k])
+        add_point(family, npt[k], p, world, nw[k], n0[k], numerators[k])
     for g in range(d0.shape[0]):
         for i in range(3):
             denominators[g, i] = d0[g]
         for e in range(dstart[g], dstart[g + 1]):
-            fill_form(family, dpt[e], p, dw[e], 0.0, denominators[g])
+            add_point(family, dpt[e], p, world, dw[e], 0.0, denominators[g])

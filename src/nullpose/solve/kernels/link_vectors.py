@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from nullpose.solve.kernels.expansion import min_square
 from nullpose.solve.kernels.forms import entry, in_frame
 from nullpose.solve.kernels.jit import inner_kernel
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.records import TOWARDS_POINT, WORLD
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.vectors import dot, row
@@ -184,7 +184,7 @@ def shear_at(family, frame, centre, half, shear):
     if frame.kind == WORLD:
         return shear
     j = frame.anchor
-    has = has_dipole(family.ground_axes, j)
+    has = isotropic_share(family.ground_leaks, j) < 1.0
     if has:
         fine = dipole_shear(family, j, centre, half, frame, shear)
     else:

@@ -3,6 +3,7 @@
 With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
 antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a
 point with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4``, ``B = (u x r).(v x r)``.
+Of a dipole with a leak f of its own these are the parts f and ``1 - f``.
 Ratio k is ``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not
 depend on the length of ``u``, so an axis that is an affine function of the position needs no normalising and
 no second derivative of its own.
@@ -33,14 +34,14 @@ def seen_axis(turn, j, u):
 
 
 @inner_kernel
-def has_dipole(axes, j):
-    """Return whether point j has a dipole; otherwise its antenna is isotropic.
+def isotropic_share(leaks, j):
+    """Return which part of point j is isotropic: all of it, or what leaks through the null of its dipole.
 
-    Where no point has one, the axes are None, and what dipoles need is not even compiled.
+    Where no point has a dipole, the leaks are None, and what dipoles need is not even compiled.
     """
-    if axes is not None:
-        return axes[j, 0] != 0.0 or axes[j, 1] != 0.0 or axes[j, 2] != 0.0
-    return False
+    if leaks is not None:
+        return leaks[j]
+    return 1.0
 
 
 @inner_kernel
@@ -55,7 +56,7 @@ def dipole_link(leak, axes, j, r, u):
 
 @kernel
 def link_form(family, j, p, u):
-    """Return ``(|u x r|^2 + leak (u.r)^2) / |r|^4`` for point j, without cancellation beside the null."""
+    """Return the link of point j, without cancellation beside the null."""
     point = family.points_m[j]
     rx, ry, rz = point[0] - p[0], point[1] - p[1], point[2] - p[2]
     ux, uy, uz = seen_axis(family.turn, j, u)
@@ -64,9 +65,12 @@ def link_form(family, j, p, u):
     cy = uz * rx - ux * rz
     cz = ux * ry - uy * rx
     rho2 = rx * rx + ry * ry + rz * rz
-    if has_dipole(family.ground_axes, j):
-        return dipole_link(family.leak, family.ground_axes, j, (rx, ry, rz), (ux, uy, uz))
-    return (cx * cx + cy * cy + cz * cz + family.leak * ahead * ahead) / (rho2 * rho2)
+    link = (cx * cx + cy * cy + cz * cz + family.leak * ahead * ahead) / (rho2 * rho2)
+    share = isotropic_share(family.ground_leaks, j)
+    if share < 1.0:
+        of_dipole = dipole_link(family.leak, family.ground_axes, j, (rx, ry, rz), (ux, uy, uz))
+        return share * link + (1.0 - share) * of_dipole
+    return link
 
 
 @inner_kernel
@@ -111,19 +115,14 @@ def min_log_ratio(family, p, u, log_denominators, out):
 
 @inner_kernel
 def add_form(family, j, weight, p, u, grad, hess, second):
-    """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_seen_form`` does for the axis seen."""
+    """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_parts`` does for the axis seen."""
     turn = family.turn
     if turn.shape[0] == 0:
-        if has_dipole(family.ground_axes, j):
-            return add_dipole_form(family, family.ground_axes, j, weight, p, u, grad, hess, second)
-        return add_seen_form(family, j, weight, p, u, grad, hess, second)
+        return add_parts(family, j, weight, p, u, grad, hess, second)
     q = turn[j]
     v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
     v[0], v[1], v[2] = seen_axis(turn, j, u)
-    if has_dipole(family.ground_axes, j):
-        value = add_dipole_form(family, family.ground_axes, j, weight, p, v, g, h, second)
-    else:
-        value = add_seen_form(family, j, weight, p, v, g, h, second)
+    value = add_parts(family, j, weight, p, v, g, h, second)
     for i in range(3):
         grad[i] += g[i]
         for a in range(3):
@@ -137,6 +136,18 @@ def add_form(family, j, weight, p, u, grad, hess, second):
                     hess[i, 3 + k] += h[i, 3 + a] * q[a, k]
                     for b in range(3):
                         hess[3 + i, 3 + k] += q[a, i] * h[3 + a, 3 + b] * q[b, k]
+    return value
+
+
+@inner_kernel
+def add_parts(family, j, weight, p, u, grad, hess, second):
+    """Do what ``add_seen_form`` does, for an isotropic point, one with a dipole, or a dipole that leaks."""
+    value, share = 0.0, isotropic_share(family.ground_leaks, j)
+    if share < 1.0:
+        of_dipole = (1.0 - share) * weight
+        value += add_dipole_form(family, family.ground_axes, j, of_dipole, p, u, grad, hess, second)
+    if share > 0.0:
+        value += add_seen_form(family, j, share * weight, p, u, grad, hess, second)
     return value
 
 

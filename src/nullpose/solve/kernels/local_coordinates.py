@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from nullpose.solve.kernels.jit import inner_kernel, kernel
-from nullpose.solve.kernels.links import has_dipole
+from nullpose.solve.kernels.links import isotropic_share
 from nullpose.solve.kernels.scratch import scratch
 from nullpose.solve.kernels.symmetric import (
     add_scaled,
@@ -89,7 +89,7 @@ def rotation_rates(family, p, u, out):
         return
     r = minus(row(family.points_m, j), p)
     rho2 = dot(r, r)
-    if not has_dipole(family.ground_axes, j):
+    if isotropic_share(family.ground_leaks, j) == 1.0:
         for i in range(3):
             out[i, i] = math.copysign(1.0 / math.sqrt(rho2), -dot(u, r))
         return

@@ -27,7 +27,10 @@ from nullpose.solve.robust.solution import GuardedPose, RobustDetails
 ROBUST_GAP = 1e-2
 """The relative gap asked for unless another is."""
 
-POLARISATION = "jammers and eavesdroppers with a dipole count as isotropic, the worst that they could be"
+POLARISATION = (
+    "jammers and eavesdroppers with a dipole count as isotropic, and what leaks through a node's null counts "
+    "as lost: the worst that they could be"
+)
 """The note of a solution whose scenario states such."""
 
 

@@ -21,6 +21,7 @@ from nullpose.scenario.units import (
     DecibelsIsotropic,
     ErrorMetres,
     Metres,
+    NullDepthDecibels,
     PlanePoint,
     RadiusMetres,
     Range,
@@ -88,6 +89,7 @@ class Points(Section):
         height_m: altitude.
         antenna: the kind of each antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of each dipole's wire, (3,), of any length.
+        null_depth_db: how far each dipole's gain along its axis is below that across it [dB].
         gain_dbi: each antenna's gain at its peak over an isotropic one [dBi].
         name: the name of one alone; the beginning of the names of several.
     """
@@ -146,6 +148,9 @@ class Points(Section):
     )
     antenna_axis: AxisDirection | None = Field(
         default=None, description="Direction of every dipole's wire.", examples=[[0.0, 0.0, 1.0]]
+    )
+    null_depth_db: NullDepthDecibels | None = Field(
+        default=None, description="How deep the null of every dipole is, in dB.", examples=[20.0]
     )
     gain_dbi: DecibelsIsotropic | None = Field(
         default=None, description="Gain of every antenna where it is largest.", examples=[2.15]
