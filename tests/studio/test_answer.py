@@ -3,7 +3,7 @@
 from nullpose.scenario import Scenario
 from nullpose.solve import Status, solve
 from nullpose.solve.robust import solve_robust
-from nullpose.studio.answer import answer_of, status_words
+from nullpose.studio.answer import answer_of, signed, status_words, with_errors
 from nullpose.studio.case import OPTIMUM, case_named
 
 
@@ -29,3 +29,21 @@ def test_a_robust_answer_is_what_is_guaranteed(paper: Scenario) -> None:
     assert answer.result.objective.value == solution.robust.guaranteed
     assert answer.result.objective.value <= min(link.sinr for link in answer.result.links) * (1.0 + 1e-9)
     assert status_words(answer) == "best so far"
+
+
+def test_the_loss_under_errors_is_that_of_the_result(paper: Scenario) -> None:
+    """With a sentence on the null if it is above 3 dB; a robust answer, which allows for errors, has none."""
+    result = solve(paper, certify=False)
+    assert result.sensitivity is not None
+    far = paper.model_copy(
+        update={"jammers": (paper.jammers[0].model_copy(update={"position_m": (9e3, 9e3, 4.0)}),)}
+    )
+    for found in (result, solve(far, certify=False)):
+        assert found.sensitivity is not None
+        errors = with_errors(answer_of(1, OPTIMUM, found)).errors
+        loss_db = found.sensitivity.loss_db()
+        assert errors[0].startswith(f"loses {signed(loss_db)} dB or more")
+        assert (len(errors) > 1 and "null (towards M)" in errors[1]) == (loss_db > 3.0)
+    unsure = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
+    robust = solve_robust(paper.model_copy(update={"jammers": (unsure,)}), certify=False)
+    assert with_errors(answer_of(1, case_named("Robust pose"), robust)).errors == ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from nullpose.antenna import PatternAntenna
-from nullpose.physics import link_gain
+from nullpose.physics import ErrorSizes, link_gain
 from nullpose.report.document import View, document, rows, table
 from nullpose.report.numbers import number, with_unit
 from nullpose.solve import Result
@@ -56,12 +56,20 @@ def sensitivity_caption(result: Result) -> str:
     found = result.sensitivity
     if found is None:
         return ""
-    point, sizes = result.scenario.objective_record.interferers, found.sizes
-    moved = f", {point} {sizes.jammers_m:g} m" if getattr(result.scenario, point) else ""
     value = with_unit(found.quantity.in_unit(found.all), found.quantity)
-    return (
-        f"{value} or less with attitude {sizes.attitude_deg:g}°, position {sizes.position_m:g} m{moved} off"
-    )
+    return f"{value} or less with {sizes_words(result, found.sizes)} off"
+
+
+def sizes_words(result: Result, sizes: ErrorSizes) -> str:
+    """Return the errors that are tried together, as in "attitude 1°, position 1 m, jammers 10 m".
+
+    Args:
+        result: of a solve, or of one pose that was given.
+        sizes: the largest errors.
+    """
+    point = result.scenario.objective_record.interferers
+    moved = f", {point} {sizes.jammers_m:g} m" if getattr(result.scenario, point) else ""
+    return f"attitude {sizes.attitude_deg:g}°, position {sizes.position_m:g} m{moved}"
 
 
 def sensitivity_words(result: Result) -> str | None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from nullpose.report.numbers import MINUS, fixed, short
 from nullpose.report.results import binding_nodes
+from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solve import Result, Status
 from nullpose.solve.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
@@ -22,6 +23,8 @@ class Answer:
         result: what the solver returned; the value of a robust one is what its pose guarantees.
         worst_nodes: those with the smallest value; of a robust pose the one with the smallest guarantee.
         note: a sentence on it; may be empty.
+        errors: what is lost if attitude, position and jammers are off, a line and perhaps a sentence; empty
+            before it is worked out.
     """
 
     version: int
@@ -29,6 +32,7 @@ class Answer:
     result: Result
     worst_nodes: frozenset[str]
     note: str
+    errors: tuple[str, ...] = ()
 
     @property
     def guarded(self) -> GuardedPose | None:
@@ -83,6 +87,25 @@ def answer_of(version: int, case: Case, result: Result) -> Answer:
     stopped = f"The proof stopped: {result.reason}" if result.reason else ""
     said = ". ".join(filter(None, (note, stopped)))
     return Answer(version=version, case=case, result=result, worst_nodes=worst, note=said)
+
+
+def with_errors(answer: Answer) -> Answer:
+    """Return an answer with what is lost if attitude, position and jammers are off; takes milliseconds.
+
+    A robust answer, whose value allows for the stated errors, is returned as it is.
+
+    Args:
+        answer: whose proof has ended.
+    """
+    result = answer.result
+    found = None if answer.case.robust else result.sensitivity
+    if found is None:
+        return answer
+    quantity = found.quantity
+    loss = signed(quantity.in_unit(found.nominal) - quantity.in_unit(found.all))
+    line = f"loses {loss} {quantity.unit} or more with {sizes_words(result, found.sizes)} off"
+    sentence = (sensitivity_words(result) or "").partition(":")[0]
+    return replace(answer, errors=(line, f"{sentence}.") if sentence else (line,))
 
 
 def status_words(answer: Answer | None) -> str:

@@ -23,7 +23,7 @@ _SOUTH = (0.0, -0.97, 0.64)
 _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
 """Its label and its pattern, from where it is, sizes of the scene."""
 
-CARD_PX = (352.0, 272.0)
+CARD_PX = (352.0, 336.0)
 """What the overlay covers of the canvas's upper left, for one case, pixels."""
 
 _TALL = 0.08  # of a point with its label, sizes of the scene

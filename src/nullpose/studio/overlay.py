@@ -60,10 +60,11 @@ def _numbers(session: Session, answer: Answer, slot: int) -> str:
     value, unit = answer.result.objective.value, answer.result.objective.quantity.unit
     old = "" if session.current(answer.case) is answer else " np-old"
     bound = answer.bound_text and f"{answer.bound_text} {unit}"
+    errors = "".join(f'<div class="np-errors">{escape(words)}</div>' for words in answer.errors)
     return (
         f'<div class="np-numbers{old}"><span class="np-value" data-np="overlay-value-{slot}" '
         f'data-value="{value!r}">{signed(answer.shown_value, 4)} {unit}</span>'
-        f'{escape(answer.value_words)}<div class="np-bound">{bound}</div></div>'
+        f'{escape(answer.value_words)}<div class="np-bound">{bound}</div>{errors}</div>'
     )
 
 

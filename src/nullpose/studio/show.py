@@ -13,7 +13,7 @@ from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, require_scenario
 from nullpose.solve import Result, Scheme, solve
 from nullpose.solve.robust import RobustDetails
-from nullpose.studio.answer import answer_of
+from nullpose.studio.answer import answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.exports import scene_html
 from nullpose.studio.field_map import MAPS, field_map
@@ -72,7 +72,7 @@ def _page(result: Result, *, dark: bool) -> str:
     case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
     session = Session(result.scenario, history=History(View(scenario=result.scenario, case=case)))
     try:
-        answer = answer_of(session.version, case, result)
+        answer = with_errors(answer_of(session.version, case, result))
         session.take(answer)
         session.take(field_map(answer))
         return scene_html(session, MAPS[1], look=DARK if dark else LIGHT).decode()

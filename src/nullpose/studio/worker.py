@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from nullpose.errors import NullposeError
 from nullpose.solve import announce_compiling
-from nullpose.studio.answer import Answer
+from nullpose.studio.answer import Answer, with_errors
 from nullpose.studio.case import Case
 from nullpose.studio.events import Event, Notice, Progress
 from nullpose.studio.field_map import field_map
@@ -104,6 +104,8 @@ class Worker:
         for case in view.cases:
             told = self._progress(version, view, case)
             last = self._tell_all(version, case, proved_answers(version, view, case, told))
+            if last is not None:
+                last = self._tell_all(version, case, map(with_errors, [last]))
             best = best or last
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._tell_all(version, view.case, power_curves(version, view, self._go_on))
