@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,8 @@ from nullpose.errors import SolveError, UsageError
 
 if TYPE_CHECKING:
     from nullpose.report.document import View
+
+_COMPILING = "Compiling kernels for this machine (once for each kind of scene, about 20 s) ..."
 
 
 def tell(
@@ -84,12 +87,12 @@ def show_json(value: object) -> None:
 
 @contextmanager
 def compiling_announced() -> Iterator[None]:
-    """Say so on standard error if the kernels have to be compiled in the block."""
+    """Let Python run kernels until other processes have compiled them; say so where that is waited for."""
+    from nullpose.solve.background_compiler import BackgroundCompiler
     from nullpose.solve.compiling import announce_compiling
 
-    with announce_compiling(
-        lambda: say("Compiling kernels for this machine (once, about 20 s) ...", err=True)
-    ):
+    announce = cache(partial(say, _COMPILING, err=True))
+    with BackgroundCompiler(announce).in_use(), announce_compiling(announce):
         yield
 
 

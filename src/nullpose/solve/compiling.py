@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
+from nullpose.solve.kernels import interpreted
+
 PREPARING = "nullpose:prepare"
 """The event that kernels are made ready, by compiling them or by waiting for another process to do so."""
 
@@ -21,13 +23,11 @@ def announce_compiling(announce: Callable[[], None]) -> Iterator[None]:
     """
     from numba.core import event
 
-    class FirstCompilation(event.Listener):
-        done = False
+    first = cache(announce)
 
+    class FirstCompilation(event.Listener):
         def on_start(self, event: object) -> None:
-            if not self.done:
-                self.done = True
-                announce()
+            first()
 
         def on_end(self, event: object) -> None:
             pass
@@ -48,6 +48,15 @@ def working_clock() -> float:
     """
     compiling = _compiling()
     return time.perf_counter() - (float(compiling.duration) if compiling.done else 0.0)
+
+
+def limit_clock() -> float:
+    """Return the seconds of the clock of time limits, which stands still until all kernels are compiled.
+
+    While other processes compile them and Python runs them here, a proof gets on a hundred times slower.
+    """
+    compiler = interpreted.compiler
+    return working_clock() - (0.0 if compiler is None else compiler.busy_s())
 
 
 @cache

@@ -164,7 +164,7 @@ def _run(
     steps: int = _CLIMB_STEPS,
     pose: tuple[FloatArray, FloatArray] | None = None,
 ) -> Incumbent:
-    from nullpose.solve.kernels.linked import entry_of
+    from nullpose.solve.kernels.jit import entry_of
     from nullpose.solve.kernels.multistart import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))

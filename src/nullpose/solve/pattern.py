@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from functools import partial
@@ -17,6 +16,7 @@ from nullpose.family.records import Reach
 from nullpose.objectives import FloatArray
 from nullpose.physics.rotation import rotation_world_from_body
 from nullpose.scenario import Scenario
+from nullpose.solve.compiling import limit_clock
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import NO_POSITION
 from nullpose.solve.options import SolveOptions
@@ -94,7 +94,7 @@ class PatternRun:
         self.branch = branch_pattern
         self.search.compile()  # before the clock begins
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
-        began = time.perf_counter()
+        began = limit_clock()
         self.thorough = not self.search.run(light=self.options.certify)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
@@ -157,7 +157,7 @@ class PatternRun:
         workers, keep = WorkerPool(self.cells_of(root), threads, orientation=(3, 3)), self.reach.spins
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
-                if time.perf_counter() > until:
+                if limit_clock() > until:
                     return f"the time limit of {self.options.time_limit_s:g} s"
                 if self.cells >= self.options.node_limit:
                     return f"the node limit of {self.options.node_limit}"

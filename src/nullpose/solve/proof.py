@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
@@ -15,6 +14,7 @@ import numpy as np
 
 from nullpose.family import AxisField, Family
 from nullpose.objectives import FloatArray
+from nullpose.solve.compiling import limit_clock
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import climb
 from nullpose.solve.options import SolveOptions
@@ -84,7 +84,7 @@ class _Run:
         search: Callable[[], Incumbent] | None,
     ) -> None:
         from nullpose.solve.kernels import branch, node, root
-        from nullpose.solve.kernels.linked import entry_of
+        from nullpose.solve.kernels.jit import entry_of
 
         ratios = family.arrays
         self.family, self.axis_field = family, axis_field
@@ -127,7 +127,7 @@ class _Run:
         other way round, and nothing cheap was found that tells which beforehand.
         """
         ratios = len(self.family.arrays.numerator_point)
-        now = time.perf_counter()
+        now = limit_clock()
         until = now + _DIRECT_SHARE * (self.deadline - now)
         tries = [(self.kernel.EARLY, _ALONE_NODES, _DIRECT_NODES, 1.0)]
         if self.axis_field.is_free and ratios > 2:  # two have no duality gap, or hardly any within a band
@@ -141,9 +141,9 @@ class _Run:
             workers = WorkerPool(self.root, 1)
             done, reason = self.work_off(workers, self.target, min(alone, most), until)
             hopeless = reason and self._volume(workers.nodes()) > left * self._volume(self.root)
-            if reason and most > alone and not hopeless and time.perf_counter() < until:
+            if reason and most > alone and not hopeless and limit_clock() < until:
                 done, reason = self.work_off(workers, self.target, most - alone, until, self.threads)
-            if not reason or time.perf_counter() > until or self.nodes >= self.node_limit:
+            if not reason or limit_clock() > until or self.nodes >= self.node_limit:
                 break
             if self.axis_field.is_free and self._improved_from(workers):
                 return self.directly()
@@ -188,7 +188,7 @@ class _Run:
                     return done, ""
                 if self.on_progress is not None:
                     self.on_progress(self.proved / self.value - 1.0, self.nodes)
-                if time.perf_counter() > deadline:
+                if limit_clock() > deadline:
                     return none, f"the time limit of {self.limits.time_limit_s:g} s"
                 if self.nodes >= until:
                     return none, f"the node limit of {self.limits.node_limit}"
@@ -266,19 +266,19 @@ def prove(
         incumbent: the incumbent.
         limits: target gap, time, nodes and progress; a KeyboardInterrupt during the run ends it with the
             bound reached.
-        began: when the clock of the limits began, that of ``time.perf_counter``; now, if left out.
+        began: when the clock of the limits began, that of ``limit_clock``; now, if left out.
         nodes: nodes examined before, which count towards the limit.
         bound: known before, of a field that holds all axes of this one; the leaves do not show it.
         search: a thorough search, made once if the proof does not close at once.
     """
-    began = time.perf_counter() if began is None else began
+    began = limit_clock() if began is None else began
     run = _Run(family, axis_field, incumbent, limits, began, nodes, bound, search)
     target, reason = run.target, ""
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result("")
         done, reason = run.directly()
-        if reason and run.nodes < run.node_limit and time.perf_counter() < run.deadline:
+        if reason and run.nodes < run.node_limit and limit_clock() < run.deadline:
             start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap

@@ -177,7 +177,7 @@ def _trees(result: Result) -> list[_Tree]:
 
 def _dipole_tree(family: Family, axis_field: AxisField, proof: Proof) -> _Tree:
     from nullpose.solve.kernels import branch, node
-    from nullpose.solve.kernels.linked import entry_of
+    from nullpose.solve.kernels.jit import entry_of
     from nullpose.solve.kernels.records import Goal
 
     root, weights = np.zeros(node.COLUMNS), proof.incumbent.multipliers.copy()

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 from nullpose.family import AxisField, Family
+from nullpose.solve.compiling import limit_clock
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import multistart, search_settings
 from nullpose.solve.options import SolveOptions
@@ -67,7 +67,7 @@ def solve_and_prove(
     """
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)(family.ground_axes is not None)
-    began = time.perf_counter()
+    began = limit_clock()
     searches: list[Incumbent] = []
 
     def searched(field: AxisField, proof_follows: bool) -> Incumbent:

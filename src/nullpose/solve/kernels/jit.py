@@ -9,11 +9,18 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numba
 from numba import config
 
 from nullpose.family import records
-from nullpose.objectives import ratios
-from nullpose.solve.kernels.linked import LinkedDispatcher, Part
+from nullpose.objectives import Ratios, ratios
+from nullpose.solve.kernels.notices import OTHER_NUMBA, UNCACHED, warn_once
+
+LINKED_FROM, LINKED_BEFORE = (0, 61), (0, 69)
+"""The versions of numba whose inside ``linked.py`` knows, which pyproject.toml asks for."""
+
+IS_LINKED = LINKED_FROM <= tuple(map(int, numba.__version__.split(".")[:2])) < LINKED_BEFORE
+"""Whether this numba is one of them; with another, kernels are compiled as any function is."""
 
 # without the wrapper that C callbacks would use, a tenth less is compiled
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
@@ -35,7 +42,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 def inner_kernel(function: Callable[..., Any]) -> Any:
     """Return a kernel that only kernels can call: without a Python wrapper a tenth less is compiled."""
-    return _compiled(function, _LEAN, Part)
+    return _compiled(function, _LEAN, is_part=True)
 
 
 def heap_kernel(function: Callable[..., Any]) -> Any:
@@ -45,17 +52,27 @@ def heap_kernel(function: Callable[..., Any]) -> Any:
 
 def inner_heap_kernel(function: Callable[..., Any]) -> Any:
     """Return a kernel that makes such arrays and that only kernels can call."""
-    return _compiled(function, _HEAP, Part)
+    return _compiled(function, _HEAP, is_part=True)
 
 
-def _compiled(function: Callable[..., Any], options: dict[str, Any], kind: Any = LinkedDispatcher) -> Any:
+def _compiled(function: Callable[..., Any], options: dict[str, Any], is_part: bool = False) -> Any:
     if getattr(config, "DISABLE_JIT", False):
         return function
-    kernel = kind(function, {"nopython": True, "boundscheck": None, **options})
-    if kind is Part:
-        return kernel
-    with contextlib.suppress(RuntimeError):  # numba's word for "no locator available"
+    if IS_LINKED:
+        from nullpose.solve.kernels.linked import LinkedDispatcher, Part
+
+        kind: Any = Part if is_part else LinkedDispatcher
+        kernel = kind(function, {"nopython": True, "boundscheck": None, **options})
+        if is_part:
+            return kernel
+    else:
+        warn_once(OTHER_NUMBA.format(numba.__version__))
+        kernel = numba.njit(error_model="numpy", nogil=True)(function)
+    try:
         kernel.enable_caching()
+    except RuntimeError:  # numba's word for "no locator available"
+        warn_once(f"No folder can be written that keeps kernels. {UNCACHED}")
+    else:
         _drop_outdated(kernel.stats.cache_path)
     return kernel
 
@@ -72,6 +89,19 @@ def _drop_outdated(cache_path: str) -> None:
     with contextlib.suppress(OSError):
         if stamp.exists() and stamp.read_text() == present:
             return
-        for index in Path(cache_path).glob("*.nbi"):
-            index.unlink(missing_ok=True)
+        for kept in Path(cache_path).glob("*.nb[ci]"):
+            kept.unlink(missing_ok=True)
         stamp.write_text(present)
+
+
+def entry_of(kernel: Any, ratios: Ratios) -> Any:
+    """Return what Python calls where a kernel's arguments but the ratios are always of the same types.
+
+    That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
+    as a short kernel, is left out.
+
+    Args:
+        kernel: any whose first argument are ratios.
+        ratios: those it will be called with.
+    """
+    return getattr(kernel, "entries", {}).get(ratios.ground_axes is not None, kernel)

@@ -8,18 +8,27 @@ whole. Of the compiler's passes only those are run that a kernel can need.
 
 from __future__ import annotations
 
-from functools import cached_property
+import pickle
+from contextlib import suppress
+from functools import cached_property, partial
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, ClassVar
 
 from llvmlite import binding
 from numba.core import types
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, Flags
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
+from numba.core.serialize import dumps
 
 from nullpose.objectives import Ratios
+from nullpose.solve.kernels import interpreted
+from nullpose.solve.kernels.notices import UNCACHED, warn_once
+
+_CHECKSUM = 32  # bytes
 
 
 class _Whole(JITCodeLibrary):
@@ -111,12 +120,13 @@ class Part:
     """A kernel as other kernels link it in; nothing is made of it before the first of them is compiled."""
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
-        self._function, self._options = function, options
+        self.py_func, self._options = function, options
+        self.makes_arrays = options["_nrt"]
 
     @cached_property
     def _dispatcher(self) -> Any:
         options = self._options | {"no_cpython_wrapper": True}
-        return CPUDispatcher(self._function, targetoptions=options, pipeline_class=_PartCompiler)
+        return CPUDispatcher(self.py_func, targetoptions=options, pipeline_class=_PartCompiler)
 
     @property
     def _numba_type_(self) -> Any:
@@ -139,16 +149,57 @@ class _Stored(CompileResultCacheImpl):
         return (name, kind, (code, names.as_bitcode())), described, *rest, used
 
 
+class _Files(IndexDataCacheFile):
+    """A file of its own for each kernel and choice of types, which begins with the checksum of the rest.
+
+    Numba's have none: a byte that the disk has lost or changed would be run.
+    """
+
+    def _path(self, key: Any) -> Path:
+        choice = sha256(repr((self._version, self._source_stamp, key)).encode()).hexdigest()
+        return Path(self._cache_path) / self._index_name.replace(".nbi", f".{choice}.nbc")
+
+    def load(self, key: Any) -> Any:
+        """Return what was saved; None for nothing, and for what is not as it was saved."""
+        with suppress(OSError):
+            content = self._path(key).read_bytes()
+            if sha256(content[_CHECKSUM:]).digest() == content[:_CHECKSUM]:
+                return pickle.loads(content[_CHECKSUM:])
+        return None
+
+    def save(self, key: Any, data: Any) -> None:
+        """Save, in place of what was there."""
+        content = dumps(data)
+        with self._open_for_write(self._path(key)) as file:
+            file.write(sha256(content).digest() + content)
+
+
 class _Cache(FunctionCache):
     """Kernels on disk."""
 
     _impl_class = _Stored
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        numba = self._cache_file
+        self._cache_file = _Files(numba._cache_path, self._impl.filename_base, numba._source_stamp)
+
+    def holds(self, sig: Any, target_context: Any) -> bool:
+        """Return whether there is machine code that can be loaded."""
+        return self._cache_file.load(self._index_key(sig, target_context.codegen())) is not None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return what was compiled before, without loading the compiler, as numba would; None for nothing."""
         rtsys.initialize(target_context)
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Save machine code; where that cannot be, say so once."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            warn_once(f"Kernels cannot be kept in {self.cache_path}: {error.strerror}. {UNCACHED}")
 
 
 class LinkedDispatcher(CPUDispatcher):
@@ -158,6 +209,7 @@ class LinkedDispatcher(CPUDispatcher):
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
         self.entries: dict[bool, Any] = {}
         self._part = Part(function, options)
+        self.makes_arrays = self._part.makes_arrays
 
     @property
     def _numba_type_(self) -> Any:
@@ -167,6 +219,16 @@ class LinkedDispatcher(CPUDispatcher):
         """Keep machine code on disk."""
         self._cache = _Cache(self.py_func)
 
+    def compile(self, sig: Any) -> Any:
+        """Return what runs for arguments of some types: machine code, or Python while that is not there."""
+        compiler, cache = interpreted.compiler, self._cache
+        is_there = tuple(sig) in self.overloads or (
+            isinstance(cache, _Cache) and cache.holds(sig, self.targetctx)
+        )
+        if compiler is None or is_there or not compiler.takes(self, sig):
+            return super().compile(sig)
+        return partial(interpreted.interpret, self, sig)
+
     def add_overload(self, cres: Any) -> None:
         """Keep the machine code for one choice of types."""
         super().add_overload(cres)
@@ -174,16 +236,3 @@ class LinkedDispatcher(CPUDispatcher):
             if isinstance(first, types.NamedTuple) and first.instance_class is Ratios:
                 has_dipoles = first.types[Ratios._fields.index("ground_axes")] is not types.none
                 self.entries[has_dipoles] = cres.entry_point
-
-
-def entry_of(kernel: Any, ratios: Ratios) -> Any:
-    """Return what Python calls where a kernel's arguments but the ratios are always of the same types.
-
-    That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
-    as a short kernel, is left out.
-
-    Args:
-        kernel: any whose first argument are ratios.
-        ratios: those it will be called with.
-    """
-    return getattr(kernel, "entries", {}).get(ratios.ground_axes is not None, kernel)

@@ -11,9 +11,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import config, types
+from numba import config, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from nullpose.solve.kernels.jit import IS_LINKED
 
 _ITEM = 8  # bytes of a float64 and of an int64
 _MOST = 4096  # of them in one array: a thread's stack is small
@@ -33,8 +35,12 @@ def _allocate(context: Any, builder: Any, kind: Any, shape: list[int], fill: boo
     return array_value(builder, data, lengths, strides)
 
 
-def _maker(item: Any, fill: bool) -> Any:
+def _maker(plain: Any, item: Any, fill: bool) -> Any:
     """Return the function that kernels call with the lengths, which are known when they are compiled."""
+    if getattr(config, "DISABLE_JIT", False):  # then kernels run without the compiler
+        return plain
+    if not IS_LINKED:
+        return njit(plain)
 
     @intrinsic(prefer_literal=True)
     def make(_: Any, *lengths: Any) -> Any:
@@ -48,6 +54,7 @@ def _maker(item: Any, fill: bool) -> Any:
 
         return kind(types.StarArgTuple.from_types(lengths)), codegen
 
+    vars(make).update(py_func=plain, makes_arrays=True)  # as kernels have them
     return make
 
 
@@ -63,7 +70,6 @@ def _plain_zeros(*lengths: int) -> Any:
     return np.zeros(lengths)
 
 
-_IS_PYTHON = bool(getattr(config, "DISABLE_JIT", False))  # then kernels run without the compiler
-scratch = _plain if _IS_PYTHON else _maker(types.float64, False)
-scratch_int = _plain_int if _IS_PYTHON else _maker(types.int64, False)
-zeroed = _plain_zeros if _IS_PYTHON else _maker(types.float64, True)
+scratch = _maker(_plain, types.float64, False)
+scratch_int = _maker(_plain_int, types.int64, False)
+zeroed = _maker(_plain_zeros, types.float64, True)

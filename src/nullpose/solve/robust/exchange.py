@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,7 @@ from nullpose.family import AxisField, Family
 from nullpose.family.robust import BindingCase, build_robust_family
 from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
+from nullpose.solve.compiling import limit_clock
 from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import SearchSettings, climb, multistart, search_settings
 from nullpose.solve.options import SolveOptions
@@ -129,7 +129,7 @@ class Exchange:
         A light search leads the way; its end is confirmed by a thorough one.
 
         Args:
-            deadline: when to stop in any case, on the clock of ``time.perf_counter``.
+            deadline: when to stop in any case, on the clock of ``limit_clock``.
         """
         light, thorough = (search_settings(follows, self.axis_field) for follows in (True, False))
         settings = light
@@ -138,7 +138,7 @@ class Exchange:
             self.incumbent, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             close = promised <= self.level(self.best.worst, _SHARE)
-            if time.perf_counter() > deadline or (close and settings is thorough):
+            if limit_clock() > deadline or (close and settings is thorough):
                 return  # the family stays the one that was searched
             if close:
                 settings = thorough
