@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def _by_values(scenario: Scenario, record: SchemeRecord, family: Family, options
         return Outcome(incumbent=found)
     relaxed = solve_and_prove(family, [AxisField.free()], options)
     reason = relaxed.reason or record.unproved  # an interrupt or a limit comes first
-    return Outcome(incumbent=found, upper_bound=relaxed.upper_bound, proofs=relaxed.proofs, reason=reason)
+    return replace(relaxed, incumbent=found, reason=reason)
 
 
 def _measures(

@@ -21,14 +21,13 @@ from nullpose.solve.incumbent import Incumbent
 from nullpose.solve.multistart import NO_POSITION
 from nullpose.solve.options import SolveOptions
 from nullpose.solve.pattern_search import PatternSearch
-from nullpose.solve.proof import INTERRUPT, Proof
+from nullpose.solve.proof import INTERRUPT, MOST_LEAVES, Proof
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.solve_and_prove import Outcome
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
 _AT_ONCE = 60_000  # cells that take about as long as a thorough search
 _CHUNK = 20_000  # cells between two looks at the clock
-_MOST_LEAVES = 250_000  # of a certificate; with more the proof goes on, and has none
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
@@ -162,7 +161,7 @@ class PatternRun:
                 if self.cells >= self.options.node_limit:
                     return f"the node limit of {self.options.node_limit}"
                 self.cells += workers.work(self._excluding(gap, keep), _CHUNK, pool)
-                keep = keep and workers.filled <= _MOST_LEAVES
+                keep = keep and workers.filled <= MOST_LEAVES
                 for position_m, rotation in workers.better():
                     # what does not help, by rounding, must not be met again and again
                     self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0

@@ -35,11 +35,12 @@ _KEPT = 4  # boxes of a limit that are left to the stages, which bound what is f
 _STAGE = 0.1  # each stage's gap, as a share of the one before
 _NEARLY = 2.0  # a stage that ends so near to the target goes all the way
 _CHUNK = 4096  # nodes between two looks at the clock, for few ratios
-_MOST_LEAVES = 250_000
-_MOST_REFINED = 200_000  # which are then held twice, beside those made of them
+_MOST_BYTES = 2e9  # of a tree; beyond, leaves are not kept, and the next stage begins at the root
 _WIDEST_GAP = 1e6
 _INSIDE = 1.0 - 1e-4  # the gap that is aimed at, of the gap asked for: value and bound are rounded
 
+MOST_LEAVES = 250_000
+"""Leaves that a certificate has at most; a proof with more goes on, and has none."""
 INTERRUPT = "an interrupt"
 """The reason of a run that was ended by Ctrl-C."""
 
@@ -52,7 +53,8 @@ class Proof:
         incumbent: the incumbent, perhaps better than the one it began with.
         upper_bound: no pose of the domain has its smallest ratio above this.
         root: (2, 3) lowest and highest corner of a box outside which no pose reaches the incumbent.
-        leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box.
+        leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box. Without
+            rows if they are too many for a certificate.
         reason: why the target gap was not reached; empty if it was.
         nodes: nodes examined.
         is_even: of an antenna that is no dipole: whether opposite directions have the same gain.
@@ -168,9 +170,9 @@ class _Run:
     ) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did.
 
-        The nodes are with the workers already.
+        The nodes are with the workers already. There are no leaves if they take too much memory.
         """
-        none = np.empty((0, self.node.COLUMNS))
+        none, keep = np.empty((0, self.node.COLUMNS)), True
         until = self.nodes + most
         workers.grow(threads)
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
@@ -181,9 +183,13 @@ class _Run:
                     self._improve(position_m, axis)
                 if self.nodes >= _AT_ONCE and not workers.done:
                     self.search_thoroughly()
+                keep = keep and workers.size_bytes + self.leaves.nbytes <= _MOST_BYTES
+                if not keep:
+                    workers.drop_leaves()
                 if workers.done:
                     self.proved, done = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
-                    if done[:, self.node.LEVEL].max() <= self.proved:  # or the bound was better before
+                    # or the bound was better before
+                    if np.all(done[:, self.node.LEVEL] <= self.proved):
                         self.leaves = done
                     return done, ""
                 if self.on_progress is not None:
@@ -192,8 +198,6 @@ class _Run:
                     return none, f"the time limit of {self.limits.time_limit_s:g} s"
                 if self.nodes >= until:
                     return none, f"the node limit of {self.limits.node_limit}"
-                if workers.filled > _MOST_LEAVES:
-                    return none, f"memory limit reached: {_MOST_LEAVES:,} boxes"
 
     def _excluding(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
@@ -237,7 +241,7 @@ class _Run:
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
-            leaves=self.leaves,
+            leaves=self.leaves if len(self.leaves) <= MOST_LEAVES else self.leaves[:0].copy(),
             reason=reason,
             nodes=self.nodes,
             axes_above=self.axes_above,
@@ -282,14 +286,11 @@ def prove(
             start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
-                if len(start) > _MOST_REFINED:
-                    reason = f"memory limit reached: {_MOST_REFINED:,} boxes to refine"
-                    break
                 most, threads = run.node_limit - run.nodes, run.threads
                 done, reason = run.work_off(WorkerPool(start, threads), gap, most, run.deadline, threads)
                 if reason:
                     break
-                start = done
+                start = done if len(done) else run.root
         if reason:
             run.search_thoroughly()
     except KeyboardInterrupt:

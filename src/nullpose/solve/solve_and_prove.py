@@ -23,7 +23,8 @@ class Outcome:
     Args:
         incumbent: the best pose.
         chosen: index of the axis field that it belongs to.
-        proofs: one for each axis field, in order; empty if none was asked for.
+        proofs: one for each axis field, in order; empty if none was asked for, or if one has too many leaves
+            for a certificate.
         upper_bound: no pose under any of the fields exceeds this; None if nothing is proved.
         reason: why the target gap was not reached, or not aimed at; empty if it was.
         cells: what was examined by a proof that leaves no leaves.
@@ -100,10 +101,12 @@ def solve_and_prove(
             sum(found.evaluations for found in searches),
         )
         best = replace(best, starts=starts, evaluations=evaluations)
+    has_leaves = all(len(proof.leaves) for proof in proofs)
     return Outcome(
         incumbent=best,
         chosen=chosen,
-        proofs=tuple(proofs),
+        proofs=tuple(proofs) if has_leaves else (),
+        cells=0 if has_leaves else sum(proof.nodes for proof in proofs),
         upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
         reason=reason,
     )

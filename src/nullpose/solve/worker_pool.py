@@ -106,6 +106,17 @@ class WorkerPool:
         """How many leaves there are."""
         return sum(worker.filled for worker in self._workers)
 
+    @property
+    def size_bytes(self) -> int:
+        """How much memory nodes and leaves take, bytes, those being twice there as they are put together."""
+        return sum(worker.stack.nbytes + 2 * worker.leaves.nbytes for worker in self._workers)
+
+    def drop_leaves(self) -> None:
+        """Give back the memory of all leaves made so far."""
+        for worker in self._workers:
+            worker.filled = 0
+            _make_room(worker.leaves, _FIRST)
+
     def work(self, kernel: Kernel, budget: int, pool: ThreadPoolExecutor | None) -> int:
         """Let every worker with nodes work off a budget; return how many nodes it was in all."""
         for idle in self._workers:
