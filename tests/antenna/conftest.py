@@ -154,28 +154,6 @@ def write_complex_csv() -> str:
     return "\n".join(["theta_deg,phi_deg,re_theta,im_theta,re_phi,im_phi", *lines]) + "\n"
 
 
-def write_emane() -> str:
-    """Returns a profile with 3 dB too much everywhere, which the body takes away; bearings are clockwise."""
-    elevation, bearing = np.meshgrid(np.arange(-90, 91), np.arange(360), indexing="ij")
-    gain_dbi = db(np.sum(np.abs(field_of(90.0 - elevation, -bearing)) ** 2, axis=-1)) + 3.0
-    rings = "".join(
-        f"<elevation min='{row - 90}' max='{row - 90}'>\n"
-        + "".join(
-            f"<bearing min='{at}' max='{at}'><gain value='{value:.4f}'/></bearing>\n"
-            for at, value in enumerate(ring)
-        )
-        + "</elevation>\n"
-        for row, ring in enumerate(gain_dbi)
-    )
-    return (
-        '<?xml version="1.0" encoding="UTF-8"?>\n'
-        '<!DOCTYPE antennaprofile SYSTEM "file:///usr/share/emane/dtd/antennaprofile.dtd">\n'
-        f"<antennaprofile>\n<antennapattern>\n{rings}</antennapattern>\n<blockagepattern>\n"
-        "<elevation min='-90' max='90'><bearing min='0' max='359'><gain value='-3'/></bearing></elevation>\n"
-        "</blockagepattern>\n</antennaprofile>\n"
-    )
-
-
 def write_msi(
     across_db: NDArray[np.float64], down_db: NDArray[np.float64], gain: str = "5.0 dBd", mhz: str = "2400"
 ) -> str:
@@ -196,7 +174,6 @@ WRITERS: dict[str, tuple[str, Callable[[], str]]] = {
     "cst": ("cst", write_cst),
     "csv": ("csv", write_csv),
     "complex-csv": ("csv", write_complex_csv),
-    "emane": ("emane", write_emane),
 }
 
 

@@ -11,7 +11,7 @@ from nullpose.antenna.files import FORMATS, read_pattern, read_profile
 from nullpose.antenna.files.reading import mean_gain, solid_angles
 from nullpose.antenna.table import PatternTable
 
-NAMES = ("nec", "4nec2", "ffd", "ffs", "cst", "csv", "complex-csv", "emane")
+NAMES = ("nec", "4nec2", "ffd", "ffs", "cst", "csv", "complex-csv")
 WITH_FIELD = ("nec", "4nec2", "ffd", "ffs", "cst", "complex-csv")
 Field = Callable[..., np.ndarray]
 
@@ -81,7 +81,6 @@ def test_what_the_file_tells_of_itself_is_kept(written: dict[str, str], tmp_path
     assert known == dict.fromkeys(("nec", "4nec2", "ffd", "ffs"), 2.4e9)
     assert {name for name, table in tables.items() if table.quantity == "directivity"} == {"ffd", "cst"}
     assert "no power" in tables["ffd"].notes[0]
-    assert "clockwise" in tables["emane"].notes[0]
     assert mean_gain(tables["ffd"]) == pytest.approx(1.0, abs=1e-12)
 
 

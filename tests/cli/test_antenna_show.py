@@ -104,7 +104,7 @@ def test_a_figure_never_takes_the_place_of_the_file(run: Run, tmp_path: Path) ->
     file.write_bytes(HALF.read_bytes())
     assert run("antenna", file, "--figure", file).exit_code == 2
     assert file.read_bytes() == HALF.read_bytes()
-    assert "ends in .png, .svg, .pdf or .pgf" in run("antenna", HALF, "--figure", tmp_path / "x.gif").stderr
+    assert "ends in .png, .svg or .pdf" in run("antenna", HALF, "--figure", tmp_path / "x.gif").stderr
 
 
 def test_help_shows_both_ways(run: Run) -> None:

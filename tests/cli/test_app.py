@@ -68,7 +68,6 @@ VERBS = {
     "reproduce": {"--out", "--seed", "--json"},
     "check": {"--set", "--allow-outside", "--json"},
     "schema": set(),
-    "cite": set(),
 }
 
 

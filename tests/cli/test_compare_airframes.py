@@ -57,7 +57,7 @@ def test_a_figure_needs_a_format(run: Run, paper: str, tmp_path: Path) -> None:
     assert f"Wrote {tmp_path / 'a.png'}" in result.stdout
     result = run("compare", paper, "--airframes", "--figure", tmp_path / "a.gif")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert "allowed: a name that ends in .png, .svg, .pdf or .pgf" in result.stderr
+    assert "allowed: a name that ends in .png, .svg or .pdf" in result.stderr
 
 
 def test_solve_draws_its_pose(run: Run, paper: str, tmp_path: Path) -> None:

@@ -75,7 +75,7 @@ def test_a_figure_of_another_kind_is_refused(run: Run, array: str, tmp_path: Pat
     """Before anything is solved."""
     result = run("solve", array, "--figure", tmp_path / "array.gif")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert "ends in .png, .svg, .pdf or .pgf" in result.stderr
+    assert "ends in .png, .svg or .pdf" in result.stderr
 
 
 def test_combining_needs_an_array(run: Run, paper: str) -> None:

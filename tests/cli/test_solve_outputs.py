@@ -147,12 +147,3 @@ def test_every_file_is_told(run: Run, scene: Path, tmp_path: Path) -> None:
     refused = run("solve", scene, "--width", "page")
     assert refused.exit_code == 2
     assert "--width: given without --figure" in refused.stderr
-
-
-def test_a_latex_table_stands_alone(run: Run, paper: str, tmp_path: Path) -> None:
-    """Standard output holds the table, so that it can go to a file; the rest is on standard error."""
-    result = run("compare", paper, "--fast", "--table", "latex", "--figure", tmp_path / "cases.svg")
-    assert result.exit_code == 0
-    assert result.stdout.startswith("\\begin{tabular}")
-    assert result.stdout.endswith("\\end{tabular}\n")
-    assert f"Wrote {tmp_path / 'cases.svg'}" in result.stderr

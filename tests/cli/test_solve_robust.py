@@ -80,7 +80,7 @@ def test_a_figure_of_another_kind_is_refused(run: Run, tmp_path: Path) -> None:
     """Before anything is solved."""
     result = run("solve", ROBUST, "--robust", "--figure", tmp_path / "robust.gif")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert "ends in .png, .svg, .pdf or .pgf" in result.stderr
+    assert "ends in .png, .svg or .pdf" in result.stderr
 
 
 def test_a_scenario_without_errors_is_refused(run: Run, paper: str) -> None:

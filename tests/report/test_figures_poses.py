@@ -82,7 +82,7 @@ def test_names_with_dollars(paper: Scenario, tmp_path: Path) -> None:
 
 def test_a_figure_is_named_by_its_kind(tmp_path: Path) -> None:
     """Other kinds of file are refused before any work; a folder is made."""
-    with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png, \.svg, \.pdf or \.pgf"):
+    with pytest.raises(UsageError, match=r"allowed: a name that ends in \.png, \.svg or \.pdf"):
         prepare_figure_file(tmp_path / "figure.jpg")
     prepare_figure_file(tmp_path / "new" / "figure.SVG")
     assert (tmp_path / "new").is_dir()

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from nullpose import Scenario, compare_airframes, load, solve, solve_array, solve_robust, sweep
-from nullpose.errors import UsageError
 from nullpose.report.comparison import compare_all
 from nullpose.report.figures.airframes import draw_airframes
 from nullpose.report.figures.cases import draw_comparison
 from nullpose.report.figures.poses import draw_pose, draw_result
-from nullpose.report.figures.style import WIDTHS_MM, prepare_figure_file, write_figure_file
+from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.figures.value_map import draw_value_map
 from nullpose.study import value_map
@@ -77,13 +76,6 @@ def test_fonts_are_in_the_pdf(paper: Scenario, tmp_path: Path) -> None:
     assert b"/FontFile2" in content
     assert b"/Type3" not in content
     assert write_figure_file(figure, tmp_path / "again.pdf").read_bytes() == content
-
-
-def test_pgf_needs_tex(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without it the message says what to install, or to write instead."""
-    monkeypatch.setenv("PATH", "")
-    with pytest.raises(UsageError, match=r"needs xelatex, lualatex or pdflatex.*write a \.pdf"):
-        prepare_figure_file(tmp_path / "pose.pgf")
 
 
 def test_few_points_have_a_marker_each(paper: Scenario) -> None:

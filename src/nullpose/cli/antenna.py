@@ -55,7 +55,7 @@ def show(
         typer.Option(
             "--format",
             metavar="NAME",
-            help="nec, ffd, ffs, cst, msi, csv or emane.",
+            help="nec, ffd, ffs, cst, msi or csv.",
             show_default="the file tells it",
         ),
     ] = None,

@@ -10,7 +10,6 @@ import typer
 
 from nullpose.cli.antenna import antenna
 from nullpose.cli.check import check
-from nullpose.cli.cite import cite
 from nullpose.cli.compare import compare
 from nullpose.cli.evaluate import evaluate
 from nullpose.cli.faults import FaultReportingGroup
@@ -60,7 +59,7 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, sweep, evaluate, verify, reproduce, studio, check, schema, cite):
+for _verb in (solve, compare, sweep, evaluate, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 app.command("map")(best_map)
 study.command()(report)

@@ -18,12 +18,9 @@ from nullpose.cli.options import (
     Overrides,
     ScenarioFile,
     Seed,
-    Table,
-    TableKind,
     TimeLimit,
     Width,
     read_scenario,
-    refuse,
     solve_options,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
@@ -46,7 +43,6 @@ def compare(
     ] = False,
     figure: FigureFile = None,
     width: Width = None,
-    table: Table = TableKind.TEXT,
     gap: Gap = None,
     time_limit: TimeLimit = 60.0,
     node_limit: NodeLimit = 10**9,
@@ -59,10 +55,9 @@ def compare(
     prepare_outputs(file, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     if airframes:
-        refuse("with --airframes", table=table is not TableKind.TEXT)
         _compare_airframes(scenario, options, figure, width, json_output)
         return
-    from nullpose.report.comparison import compare_all, comparison_latex, comparison_view
+    from nullpose.report.comparison import compare_all, comparison_view
 
     with compiling_announced(), Ticker("solving") as ticker:
         comparison = compare_all(scenario, on_progress=ticker, **options)
@@ -71,8 +66,7 @@ def compare(
         from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_comparison(comparison, width), figure)
-    view = comparison_latex if table is TableKind.LATEX else comparison_view
-    tell(comparison, view, json_output, files=[] if figure is None else [figure])
+    tell(comparison, comparison_view, json_output, files=[] if figure is None else [figure])
 
 
 def _compare_airframes(

@@ -29,13 +29,6 @@ class FigureWidth(StrEnum):
     PAGE = "page"
 
 
-class TableKind(StrEnum):
-    """The ways to write a table, by name."""
-
-    TEXT = "text"
-    LATEX = "latex"
-
-
 ScenarioFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="Scenario file (TOML).", show_default=False)
 ]
@@ -143,7 +136,7 @@ FigureFile = Annotated[
     typer.Option(
         "--figure",
         metavar="FILE",
-        help="Write a figure to FILE: .png, .svg, .pdf or .pgf.",
+        help="Write a figure to FILE: .png, .svg or .pdf.",
         show_default=False,
     ),
 ]
@@ -158,8 +151,6 @@ Width = Annotated[
 ]
 
 JsonOutput = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
-
-Table = Annotated[TableKind, typer.Option("--table", help="Print the table as text or as LaTeX.")]
 
 OutFolder = Annotated[
     Path,

@@ -108,7 +108,7 @@ def prepare_outputs(
         others: further outputs by the names of their options.
 
     Raises:
-        UsageError: a width without a figure; or the figure's name ends in none of .png, .svg, .pdf and .pgf.
+        UsageError: a width without a figure; or the figure's name ends in none of .png, .svg and .pdf.
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
     from nullpose.files import check_outputs

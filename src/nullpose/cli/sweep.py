@@ -15,8 +15,6 @@ from nullpose.cli.options import (
     OutFolder,
     ScenarioFile,
     Seed,
-    Table,
-    TableKind,
     TimeLimit,
     Width,
     solve_options,
@@ -61,7 +59,6 @@ def sweep(
     fast: Fast = False,
     seed: Seed = 0,
     width: Width = None,
-    table: Table = TableKind.TEXT,
     json_output: JsonOutput = False,
 ) -> None:
     """Solve at many values of one setting.
@@ -88,7 +85,7 @@ def sweep(
         found = plan.run(on_progress=ticker)
     if plan.scenario.array is not None:
         say("The swept cases have one dipole; the file's array is left out.", err=True)
-    from nullpose.report.sweep import sweep_latex, sweep_view, write_sweep
+    from nullpose.report.sweep import sweep_view, write_sweep
 
     files = write_sweep(found, out, log=log, width=width)
-    tell(found, sweep_latex if table is TableKind.LATEX else sweep_view, json_output, files=files)
+    tell(found, sweep_view, json_output, files=files)

@@ -10,7 +10,7 @@ from typing import Any
 from nullpose.notebook import html_table
 from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import View, beside, document, grouped, head, latex_table, table
+from nullpose.report.document import View, beside, document, grouped, head, table
 from nullpose.report.geometry import null_angle_rad, tilt_rad
 from nullpose.report.numbers import bound_text, degrees_text, fixed
 from nullpose.report.results import azimuth_text, binding_nodes, work_words
@@ -90,15 +90,6 @@ def comparison_view(comparison: Comparison) -> View:
         table("", _rows(comparison), bold=[f"smallest {quantity.short} ({quantity.unit})"]),
         "\n".join([*_lines(comparison), f"* worst node: the {quantity.smallest} is here", bounds, others]),
     )
-
-
-def comparison_latex(comparison: Comparison) -> str:
-    """Return several schemes' solutions side by side as a table in LaTeX.
-
-    Args:
-        comparison: what each scheme makes of a scenario.
-    """
-    return latex_table(_rows(comparison))
 
 
 def _rows(comparison: Comparison) -> list[Mapping[str, str]]:

@@ -5,7 +5,6 @@ Every text is shown as it is given: what looks like markup is none.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -16,12 +15,6 @@ if TYPE_CHECKING:
 Row = Mapping[str, str]
 View: TypeAlias = "RenderableType"
 """What rich can print; rich is imported only when something is printed."""
-
-_LATEX = str.maketrans(
-    {letter: f"\\{letter}" for letter in "&%$#_{}"}
-    | {"~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "\\": r"\textbackslash{}"}
-)
-_NEGATIVE = re.compile(r"-\d+(?:\.\d+)?")
 
 _LOOK: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "pad_edge": False}
 
@@ -167,32 +160,6 @@ def markdown_table(rows: Sequence[Row]) -> str:
     rule = ["---", *("---:" for _ in list(rows[0])[1:])]
     lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
-
-
-def latex_table(rows: Sequence[Row]) -> str:
-    """Return rows as a table in LaTeX with the rules of the package booktabs.
-
-    Args:
-        rows: cells by heading, the first of which names the row; an empty one is a rule.
-    """
-    columns = list(rows[0])
-    lines = [
-        f"\\begin{{tabular}}{{l{'r' * (len(columns) - 1)}}}",
-        "\\toprule",
-        _latex_row(columns),
-        "\\midrule",
-    ]
-    lines += [_latex_row(row.values()) if row else "\\midrule" for row in rows]
-    if lines[-1] == "\\midrule":
-        lines.pop()
-    return "\n".join([*lines, "\\bottomrule", "\\end{tabular}"])
-
-
-def _latex_row(cells: Iterable[str]) -> str:
-    """Return cells as a row in LaTeX: what has a meaning there is escaped, and minus signs are signs."""
-    escaped = (" ".join(cell.split()).translate(_LATEX) for cell in cells)
-    numbers = (f"${cell}$" if _NEGATIVE.fullmatch(cell) else cell for cell in escaped)
-    return f"{' & '.join(numbers)} \\\\"
 
 
 def rows(columns: Mapping[str, Sequence[str | None]]) -> list[Row]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from nullpose.report.certainty import certainty_lines, rigour_lines
-from nullpose.report.document import View, document, grouped, latex_table, table
+from nullpose.report.document import View, document, grouped, table
 from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
-from nullpose.report.numbers import axis_label, begun, bound_text
+from nullpose.report.numbers import begun, bound_text
 from nullpose.schemes import Scheme
 from nullpose.solve import Status
 from nullpose.study import SweepRow, SweepTable
@@ -65,15 +65,6 @@ def _shared_lines(sweep: SweepTable) -> list[str]:
         "Solved alone, each of them has a certificate."
     )
     return [words] if shared else []
-
-
-def sweep_latex(sweep: SweepTable) -> str:
-    """Return a sweep as a table in LaTeX of the objective, one column per scheme, every value in a row.
-
-    Args:
-        sweep: what was found.
-    """
-    return latex_table(_rows(sweep, axis_label(sweep.path)))
 
 
 def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:

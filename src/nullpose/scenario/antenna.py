@@ -75,7 +75,7 @@ class Antenna(Section):
     )
     format: str | None = Field(
         default=None,
-        description='The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi", "csv" or "emane". '
+        description='The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi" or "csv". '
         "Left out: the file tells it.",
         examples=["nec"],
     )

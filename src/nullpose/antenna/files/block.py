@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
 
-_FLOOR_DB = -190.0  # gains from here down stand for none: NEC writes -999.99, EMANE -327, CST -200
+_FLOOR_DB = -190.0  # gains from here down stand for none: NEC writes -999.99, CST -200
 _HIGHEST_DB = 100.0
 _LARGEST = 1e100  # number; the square of one beyond overflows
 _FEWEST = 4  # angles

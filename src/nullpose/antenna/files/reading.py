@@ -14,7 +14,6 @@ import numpy as np
 from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse
 from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
-from nullpose.antenna.files.emane import read_emane
 from nullpose.antenna.files.hfss import read_ffd
 from nullpose.antenna.files.msi import read_msi
 from nullpose.antenna.files.nec import read_nec
@@ -33,7 +32,6 @@ FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
     "nec": (r"RADIATION PATTERNS", read_nec),
     "ffs": (r"^//.*Re\(E_Theta\)", read_ffs),
     "cst": (r"\A\s*Theta\s*\[", read_cst),
-    "emane": (r"<antennaprofile\b", read_emane),
     "ffd": (r"\A\s*(?:[-+\d.eE]+\s+){6}Freq", read_ffd),
     "csv": (r"\A[^\n]*theta_deg", read_csv),
     "msi": (r"^\s*(?:HORIZONTAL|VERTICAL)\s+\d+\s*$", read_msi),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,9 +22,8 @@ if TYPE_CHECKING:
 
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
-_FORMATS = (".png", ".svg", ".pdf", ".pgf")
-_TEX = ("xelatex", "lualatex", "pdflatex")
-_NAMED = ".png, .svg, .pdf or .pgf"
+_FORMATS = (".png", ".svg", ".pdf")
+_NAMED = ".png, .svg or .pdf"
 
 
 CURVES: Mapping[str, Curve] = MappingProxyType({scheme.value: scheme.record.curve for scheme in Scheme})
@@ -65,7 +63,6 @@ _RC: dict[Any, Any] = {
     "text.color": INK,
     "svg.hashsalt": "nullpose",  # the same figure gives the same file
     "pdf.fonttype": 42,  # fonts are embedded whole, as TrueType
-    "pgf.rcfonts": False,  # the document's own
 }
 
 _PRINT: dict[Any, Any] = {
@@ -170,34 +167,27 @@ def prepare_figure_file(path: Path) -> None:
     """Make sure that a figure can be written later, its folder made if need be.
 
     Args:
-        path: ends in .png, .svg, .pdf or .pgf.
+        path: ends in .png, .svg or .pdf.
 
     Raises:
-        UsageError: it ends otherwise; or it is a PGF file, and there is no TeX, which measures its letters.
+        UsageError: it ends otherwise.
         OutputError: its folder cannot be made or written.
     """
     if path.suffix.lower() not in _FORMATS:
         raise UsageError(f"figure: given {path}; allowed: a name that ends in {_NAMED}")
-    if path.suffix.lower() == ".pgf" and not any(map(shutil.which, _TEX)):
-        raise UsageError(
-            f"figure: given {path}; .pgf needs {', '.join(_TEX[:-1])} or {_TEX[-1]} on the path, and none is "
-            "there; install TeX, or write a .pdf, in which the fonts are embedded"
-        )
     prepare_folder(path.parent)
 
 
 def write_figure_file(figure: Figure, path: Path) -> Path:
-    """Return the path of a figure after writing it, as PNG, SVG, PDF or PGF by the path's suffix.
+    """Return the path of a figure after writing it, as PNG, SVG or PDF by the path's suffix.
 
     Args:
         figure: what to write.
-        path: ends in .png, .svg, .pdf or .pgf; an existing file is replaced.
+        path: ends in .png, .svg or .pdf; an existing file is replaced.
 
     Raises:
         OutputError: the file cannot be written.
     """
-    import matplotlib
-
     kind = path.suffix.lower()[1:]
     in_print = any(abs(figure.get_figwidth() - mm / 25.4) < 1e-6 for mm in WIDTHS_MM.values())
     options: dict[str, dict[str, Any]] = {
@@ -205,7 +195,6 @@ def write_figure_file(figure: Figure, path: Path) -> Path:
         "svg": {"metadata": {"Date": None}},
         "pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps
     }
-    tex = next(filter(shutil.which, _TEX), _TEX[0])
-    with house_style(), matplotlib.rc_context({"pgf.texsystem": tex}), replacing(path) as temporary:
+    with house_style(), replacing(path) as temporary:
         figure.savefig(temporary, format=kind, facecolor="white", **options.get(kind, {}))
     return path
