@@ -28,11 +28,12 @@ VERBS = {
         "--width",
         "--combining",
         "--robust",
+        "--off",
         "--json",
     }
     | PROOF,
     "compare": {"--set", "--allow-outside", "--airframes", "--figure", "--seed", "--json"}
-    | {"--width", "--table"}
+    | {"--width"}
     | PROOF,
     "evaluate": {
         "--set",
@@ -41,6 +42,7 @@ VERBS = {
         "--pose-lat-lon",
         "--attitude",
         "--poses",
+        "--off",
         "--seed",
         "--json",
     }
@@ -59,7 +61,6 @@ VERBS = {
         "--scheme",
         "--out",
         "--width",
-        "--table",
         "--seed",
         "--json",
     }

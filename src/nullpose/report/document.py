@@ -116,7 +116,7 @@ def _table(
 
     Args:
         title: stands above it.
-        rows: cells by heading; if those of words are blank, none is shown.
+        rows: cells by heading; if all headings are blank, none is shown.
         bold: names of the rows that stand out.
         words: headings of the columns of words.
         excess: characters by which columns of words are narrower than their cells, those of numbers being as
@@ -126,7 +126,7 @@ def _table(
     from rich.table import Table
     from rich.text import Text
 
-    named = any(map(str.strip, words))
+    named = any(map(str.strip, rows[0] if rows else ()))
     rules = box.SIMPLE_HEAD if named else box.SIMPLE if title else None
     view = Table(title=title or None, box=rules, show_header=named, **_LOOK)
     widths = {} if excess is None else _word_widths(rows, words, excess)
