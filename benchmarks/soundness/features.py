@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.soundness.every_antenna import make_gap, put_antennas, put_level_airframe
 from benchmarks.soundness.scenes import Scene
 from nullpose.scenario import Scenario
 
@@ -246,6 +247,18 @@ def _antennas(rng: np.random.Generator) -> Table:
     return table
 
 
+def _level(rng: np.random.Generator) -> Table:
+    """Vehicles that do not tilt, with every antenna."""
+    makers = (_plain, _plain, _margins, _no_fly, _secrecy)
+    return put_level_airframe(rng, put_antennas(rng, makers[int(rng.integers(len(makers)))](rng)))
+
+
+def _gaps(rng: np.random.Generator) -> Table:
+    """Every antenna, on any vehicle: certificates from narrow gaps to wide ones."""
+    makers = (_plain, _plain, _airframe, _together, _secrecy)
+    return put_antennas(rng, makers[int(rng.integers(len(makers)))](rng))
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -265,7 +278,11 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "shared-place": _shared_place,
     "weights": _weights,
     "tilts": _tilts,
+    "level": _level,
+    "gaps": _gaps,
 }
+
+_CELLS = 15_000  # of the proofs at given gaps: what is left then is promised too, and quickly verified
 
 
 def make_feature_scene(feature: str, number: int) -> Scene:
@@ -281,4 +298,6 @@ def make_feature_scene(feature: str, number: int) -> Scene:
         kind=feature,
         scheme="optimum",
         scenario=Scenario.from_dict(FEATURES[feature](rng) | {"name": f"{feature} {number}"}),
+        gap=make_gap(number) if feature == "gaps" else None,
+        cells=_CELLS if feature == "gaps" else None,
     )

@@ -26,12 +26,16 @@ class Scene:
         kind: what is awkward about it.
         scheme: the case to solve.
         scenario: the scene.
+        gap: the gap that is asked for; None for the scenario's own.
+        cells: cells that a proof examines at most; None for as many as it likes.
     """
 
     number: int
     kind: str
     scheme: str
     scenario: Scenario
+    gap: float | None = None
+    cells: int | None = None
 
 
 def _field(rng: np.random.Generator, nodes: int, jammers: int) -> tuple[FloatArray, FloatArray]:

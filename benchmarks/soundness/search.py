@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from nullpose.antenna import PatternAntenna
 from nullpose.physics.objective import objective_value
 from nullpose.scenario import Scenario
 
@@ -31,6 +32,8 @@ def axes_of(
     if scheme == "maximum-gain" and len(scenario.nodes) == 2:
         first, second = scenario.node_positions_m
         return [lambda p, u: np.cross(first - p, second - p)]
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        return [lambda p, u: nearest_in_tilt(scenario, u)]
     band = scenario.axis_band
     return [(lambda p, u: u) if band == (0.0, 1.0) else (lambda p, u: nearest_in_band(u, *band))]
 
@@ -42,6 +45,19 @@ def nearest_in_band(axes: FloatArray, least: float, greatest: float) -> FloatArr
     across = unit[:, :2] / np.maximum(np.linalg.norm(unit[:, :2], axis=1, keepdims=True), 1e-300)
     level = np.sqrt(1.0 - height**2)[:, None] * across
     return np.column_stack([level, np.copysign(height, unit[:, 2])])
+
+
+def nearest_in_tilt(scenario: Scenario, quaternions: FloatArray) -> FloatArray:
+    """Return attitudes of the antenna, (n, 4), turned about a level axis until the airframe reaches them."""
+    airframe = scenario.airframe
+    if airframe is None:
+        return quaternions
+    antenna = Rotation.from_quat(quaternions)
+    up = (antenna * Rotation.from_euler("y", -airframe.mount_rad)).apply([0.0, 0.0, 1.0])
+    across = np.hypot(up[:, 0], up[:, 1])
+    excess = np.maximum(np.arctan2(across, up[:, 2]) - airframe.tilt_max_rad, 0.0)
+    about = np.column_stack([up[:, 1], -up[:, 0], np.zeros(len(up))]) / np.maximum(across, 1e-300)[:, None]
+    return np.asarray((Rotation.from_rotvec(excess[:, None] * about) * antenna).as_quat())
 
 
 def ground_of(scenario: Scenario) -> FloatArray:
