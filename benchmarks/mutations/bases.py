@@ -75,6 +75,8 @@ _TILTED = [
     }
 ]
 
+_UNEVEN = {"kind": "pattern", "harmonics": [[1.0], [0.3, 0.0, 0.0], [-0.3, 0.0, 0.0, 0.0, 0.0]]}
+
 KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
     "free axis": [
         ("optimum", 0.2, _scene(10.0)),
@@ -99,6 +101,21 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("maximum-gain", 0.4, _scene() | _within(**_SQUARE)),
     ],
     "margins": [("optimum", 0.2, _scene(nodes=_WEIGHTED) | _within(**_SQUARE))],
+    "profiles": [
+        ("optimum", 0.3, _scene(antenna={"kind": "half-wave"}) | _within(**_SQUARE)),
+        (
+            "optimum",
+            0.5,
+            _scene(0.1, antenna=_UNEVEN, airframe={"tilt_max_deg": 20.0, "mount_deg": 30.0})
+            | _within(**_SQUARE),
+        ),
+        (
+            "optimum",
+            0.5,
+            _scene(0.1, antenna=_UNEVEN, airframe={"preset": "level", "mount_deg": 0.0}) | _within(**_SQUARE),
+        ),
+        ("optimum", 0.3, _scene(antenna={"kind": "half-wave"}) | _HEARD | _within(**_SQUARE)),
+    ],
     "dipoles": [
         ("optimum", 0.3, _scene(0.1, nodes=_WHIPS, antenna={"null_depth_db": 25.0})),
         ("optimum", 0.5, _scene(jammers=_TILTED)),
@@ -118,12 +135,13 @@ def bases_of(kind: str) -> list[Data]:
 
 
 def optima_of(kind: str) -> list[Data]:
-    """Return certificates of the same claims with poses that are best to a millionth.
+    """Return certificates of the same claims with poses that are best to 1e-6, of profiles to 0.1.
 
     Args:
         kind: one of ``KINDS``.
     """
-    return [_data(scheme, 1e-6, tables) for scheme, _, tables in KINDS[kind]]
+    gap = 0.1 if kind == "profiles" else 1e-6
+    return [_data(scheme, gap, tables) for scheme, _, tables in KINDS[kind]]
 
 
 def _data(scheme: str, gap: float, tables: dict[str, Any]) -> Data:

@@ -96,6 +96,7 @@ CLASSES = (
     "scenario, claim redone",
     "airframe, claim redone",
     "no_fly, claim redone",
+    "antenna, claim redone",
     "leaf dropped",
     "leaf moved",
     "tree dropped",
@@ -129,6 +130,8 @@ def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
         return numbers(data["scenario"], ("scenario",))
     if kind.startswith("airframe"):
         return numbers(data["scenario"].get("airframe", {}), ("scenario", "airframe"))
+    if kind.startswith("antenna"):
+        return numbers(data["scenario"].get("antenna", {}), ("scenario", "antenna"))
     if kind.startswith("no_fly"):
         zones = data["scenario"]["airspace"].get("no_fly", [])
         return numbers(zones, ("scenario", "airspace", "no_fly"))
@@ -182,6 +185,9 @@ MORE = (
     "leaves shuffled",
     "tests exchanged",
     "box halved",
+    "cell halved",
+    "cell moved",
+    "leaves exchanged",
     "root shrunk",
     "root grown",
     "bound lowered",
@@ -252,6 +258,13 @@ def _change_leaves(kind: str, leaves: Data, rng: np.random.Generator) -> None:
         side = 2 * int(rng.integers(3))
         leaves["box"][one][side] += 1
         leaves["box"][one][side + 1] = 2 * leaves["box"][one][side + 1] + int(rng.integers(2))
+    elif kind in ("cell halved", "cell moved") and leaves["cell"][one][0] >= 0:
+        side, cell = 1 + 2 * int(rng.integers(2)), leaves["cell"][one]
+        halved = int(kind == "cell halved")
+        cell[side], cell[side + 1] = cell[side] + halved, (cell[side + 1] << halved) + int(rng.integers(2))
+    elif kind == "leaves exchanged":
+        name = str(rng.choice(["box", "cell", "mix"]))
+        leaves[name][one], leaves[name][other] = leaves[name][other], leaves[name][one]
     elif kind == "levels lowered":
         for row in some:
             leaves["level"][row] *= 1.0 - _size(rng)

@@ -6,6 +6,7 @@ import json
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from benchmarks.soundness.search import best_value
 from nullpose.physics import (
@@ -61,7 +62,7 @@ class Problem:
         axes = [one.antenna_axis or (0.0, 0.0, 1.0) for one in antennas]
         self.axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
         self.is_dipole = np.array([one.antenna == "dipole" for one in antennas])
-        self.leak = scenario.antenna_record.leak
+        self.leak = getattr(scenario.antenna_record, "leak", 0.0)  # forms are of dipoles
         nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
         self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
         self.zones = [
@@ -92,10 +93,11 @@ class Problem:
 
     def value(self, pose: Pose) -> float:
         """Return the smallest ratio at a pose."""
+        orientation = pose.orientation(self.scenario.antenna_record)
         if self.scenario.objective != "secrecy-rate":
-            return float(objective_value(self.scenario, pose.position_m, pose.antenna_axis))
-        wanted = node_snr(self.scenario, pose.position_m, pose.antenna_axis)
-        overheard = eavesdropper_snr(self.scenario, pose.position_m, pose.antenna_axis)
+            return float(objective_value(self.scenario, pose.position_m, orientation))
+        wanted = node_snr(self.scenario, pose.position_m, orientation)
+        overheard = eavesdropper_snr(self.scenario, pose.position_m, orientation)
         return float((1.0 + wanted.min()) / (1.0 + overheard.max()))
 
 
@@ -193,12 +195,15 @@ class Truth:
         key = self._key(data)
         if key not in self._best:
             pose = pose_of(self._optima.get(key, data), scenario)
+            orientation = pose.orientation(scenario.antenna_record)
+            if orientation.ndim == 2:
+                orientation = Rotation.from_matrix(orientation).as_quat()
             found = best_value(
                 scenario,
                 data["scheme"],
                 starts=_STARTS,
                 seed=len(self._best),
-                near=(pose.position_m, pose.antenna_axis),
+                near=(pose.position_m, orientation),
                 null_jammer=data["null_jammer"],
             )
             self._best[key] = 2.0**found if scenario.objective == "secrecy-rate" else found

@@ -105,7 +105,7 @@ class PatternSearch:
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             rotations = self._attitudes(drawn)
-            rotations[1::2] = self._all_reached(self._nulled(positions_m[1::2]))
+            rotations[1::2] = self.reached(self._nulled(positions_m[1::2]))
             values = self.judged(positions_m, rotations)
             if not np.any(np.isfinite(values)):  # a narrow airspace: begin where a dipole would be
                 positions_m[:] = multistart(self.family, AxisField.free(), seed=0).position_m
@@ -189,17 +189,12 @@ class PatternSearch:
         """Return the nearest rotation that the airframe reaches, exact to rounding.
 
         Args:
-            rotation: (3, 3) to the world from the antenna's axes.
+            rotation: (3, 3) to the world from the antenna's axes, or many, (n, 3, 3).
         """
         nearest = np.array(rotation, order="C")
-        self.kernels.bring_within_reach(self.reach, nearest)
+        for each in nearest.reshape(-1, 3, 3):
+            self.kernels.bring_within_reach(self.reach, each)
         return nearest
-
-    def _all_reached(self, rotations: FloatArray) -> FloatArray:
-        """Return :meth:`reached` of many rotations, where that is not all of them."""
-        if self.reach.tilt_max_rad >= math.pi:
-            return rotations
-        return np.array([self.reached(rotation) for rotation in rotations])
 
     def least_tilted(self, rotation: FloatArray) -> FloatArray:
         """Return the rotation of the same gains and the least tilt.
