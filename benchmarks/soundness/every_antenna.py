@@ -69,6 +69,8 @@ def put_antennas(rng: np.random.Generator, table: Table) -> Table:
             point["gain_dbi"] = float(rng.choice([0.0, 1.76, 2.15, -3.0]))
             if point["antenna"] == "dipole" and rng.uniform() < 0.3:
                 point["antenna_axis"] = rng.normal(size=3).tolist()
+            if point["antenna"] == "dipole" and rng.uniform() < 0.4:
+                point["null_depth_db"] = float(rng.choice([0.0, 20.0]))
     antenna = _ON_THE_DRONE[choice](rng)
     return table | ({"antenna": antenna} if antenna else {})
 

@@ -49,6 +49,14 @@ def test_hard_scenes_with_antennas(number: int) -> None:
     assert check_scene(make_feature_scene("antennas", number), starts=5).faults == ()
 
 
+@pytest.mark.parametrize("number", [16, 117])
+def test_hard_scenes_with_patterns(number: int) -> None:
+    """A large lobe below zero, and a root of 260 m where no rate is positive: both are verified."""
+    outcome = check_scene(make_feature_scene("patterns", number), starts=5)
+    assert outcome.faults == ()
+    assert outcome.checked
+
+
 @pytest.mark.parametrize("number", [321, 692])
 def test_a_scheme_keeps_to_its_axes(number: int) -> None:
     """A proof that stops early improves no pose with an axis that its scheme does not allow."""
