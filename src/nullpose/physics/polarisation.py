@@ -87,10 +87,10 @@ def link_gain(
 
 
 def worst_polarised(scenario: Scenario) -> Scenario:
-    """Return a scenario whose jammers and eavesdroppers have no dipoles, itself if nothing is changed.
+    """Return a scenario without dipoles on the ground whose null has a depth, itself if nothing is changed.
 
-    An isotropic antenna is the worst that they could have: no dipole lets more through, at any pose. Nodes
-    keep their dipoles, but nothing of what leaks through a null: its polarisation could leave as little.
+    An isotropic antenna is the worst that a jammer or an eavesdropper could have: no dipole lets more
+    through, at any pose. Nodes keep their dipoles, but nothing of what leaks through a null.
 
     Args:
         scenario: any.
@@ -103,9 +103,9 @@ def worst_polarised(scenario: Scenario) -> Scenario:
 
 
 def _worst(point: GroundPoint) -> GroundPoint:
-    if not isinstance(point, Node):
-        return point.isotropic if point.antenna == "dipole" else point
     if not 0.0 < point.leak < 1.0:
         return point
+    if not isinstance(point, Node):
+        return point.isotropic
     kept_db = 10.0 * math.log10(1.0 - point.leak)
     return point.model_copy(update={"null_depth_db": None, "gain_dbi": point.gain_dbi + kept_db})

@@ -17,7 +17,6 @@ from nullpose.solve.kernels.vectors import (
     along,
     combination,
     components,
-    cross,
     dot,
     minus,
     norm,
@@ -27,7 +26,7 @@ from nullpose.solve.kernels.vectors import (
     store,
     unit,
 )
-from nullpose.solve.kernels.worst_case_links import Sets, root_link, strongest_link
+from nullpose.solve.kernels.worst_case_links import Sets, has_dipole, link_and_slopes, strongest_link
 
 _LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
 _STEPS = 200
@@ -66,38 +65,6 @@ class Errors(NamedTuple):
 
 
 @inner_kernel
-def link_slopes(scale, leak, y, q):
-    """Return the derivatives of a link times ``scale`` by the axis and by an offset of the position."""
-    square, bent = dot(q, q), (1.0 - leak) * dot(y, q)
-    quartic = square * square
-    link = (square - bent * dot(y, q)) / quartic
-    by_axis = over(scaled(2.0 * scale, along(scaled(square, y), -bent, q)), quartic)
-    by_place = over(scaled(2.0, along(q, -bent, y)), quartic)
-    return by_axis, scaled(-scale, along(by_place, -1.0, over(scaled(4.0 * link, q), square)))
-
-
-@inner_kernel
-def has_dipole(ratio):
-    """Return whether the node has a dipole."""
-    return dot(ratio.dipole, ratio.dipole) > 0.0
-
-
-@inner_kernel
-def node_link(ratio, y, q):
-    """Return the node's link, y being of unit length, and its derivatives by axis and offset."""
-    square, v = dot(q, q), ratio.dipole
-    if not has_dipole(ratio):
-        return root_link(y, q, ratio.leak) ** 2, *link_slopes(1.0, ratio.leak, y, q)
-    kept, leak, other = (1.0 - ratio.leak) / square**3, ratio.leak / square**2, cross(v, q)
-    ahead, both, own = dot(v, q), dot(cross(y, q), other), dot(other, other)
-    by_axis = along(scaled(2.0 * leak * own, y), 2.0 * kept * both, along(scaled(square, v), -ahead, q))
-    turned = along(along(scaled(2.0 * dot(y, v), q), -ahead, y), -dot(y, q), v)
-    by_place = scaled(2.0 * kept * both, along(turned, -3.0 * both / square, q))
-    by_place = along(by_place, 2.0 * leak, along(along(q, -ahead, v), -2.0 * own / square, q))
-    return kept * both * both + leak * own, by_axis, scaled(-1.0, by_place)
-
-
-@inner_kernel
 def ratio_at(ratio, y, offset, places):
     """Return the ratio at an axis y (unit) and an offset, the sets at their worst, and its derivatives.
 
@@ -105,21 +72,20 @@ def ratio_at(ratio, y, offset, places):
     """
     below, below_y, below_d = 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for j in range(ratio.shares.shape[0]):
-        root, _, place = strongest_link(
-            ratio.sets, j, y, minus(row(ratio.centres, j), offset), ratio.leak, _LOOSE
-        )
+        share, q = ratio.shares[j], minus(row(ratio.centres, j), offset)
+        root, _, place = strongest_link(ratio.sets, j, y, q, ratio.leak, _LOOSE)
         store(place, places[j])
-        below += ratio.shares[j] * root * root
+        below += share * root * root
         if root < math.inf:
-            by_axis, by_offset = link_slopes(ratio.shares[j], ratio.leak, y, place)
-            below_y, below_d = along(below_y, 1.0, by_axis), along(below_d, 1.0, by_offset)
+            _, by_axis, by_place = link_and_slopes(y, place, row(ratio.sets.dipoles, j), ratio.leak)
+            below_y, below_d = along(below_y, share, by_axis), along(below_d, -share, by_place)
     q = minus(ratio.node, offset)
     square = dot(q, q)
     if not (square > 0.0 and below < math.inf):
         return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    link, by_axis, by_offset = node_link(ratio, y, q)
+    link, by_axis, by_place = link_and_slopes(y, q, ratio.dipole, ratio.leak)
     value = (ratio.isotropic + ratio.weight * link) / below
-    by_axis, by_offset = scaled(ratio.weight, by_axis), scaled(ratio.weight, by_offset)
+    by_axis, by_offset = scaled(ratio.weight, by_axis), scaled(-ratio.weight, by_place)
     return value, over(along(by_axis, -value, below_y), below), over(along(by_offset, -value, below_d), below)
 
 
@@ -205,7 +171,7 @@ def crossed_within_reach(ratio, errors):
 def worst_found(ratio, errors, places):
     """Return the smallest ratio that descents from several errors end at, and the axis and offset there."""
     silent, y, offset = null_within_reach(ratio.node, errors)
-    if has_dipole(ratio) and not silent:
+    if has_dipole(ratio.dipole) and not silent:
         silent, y = crossed_within_reach(ratio, errors)
         offset = _NO_OFFSET
     if ratio.isotropic == ratio.leak == 0.0 and silent:

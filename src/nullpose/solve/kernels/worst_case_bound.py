@@ -16,19 +16,18 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.solve.kernels.jit import heap_kernel, inner_kernel
-from nullpose.solve.kernels.link_vectors import SLOPE
+from nullpose.solve.kernels.link_vectors import BEND, SLOPE
 from nullpose.solve.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
 from nullpose.solve.kernels.worst_case import (
     FloatArray,
     Vector,
     descend,
-    has_dipole,
     into_ball,
     into_cone,
     ratio_at,
     worst_found,
 )
-from nullpose.solve.kernels.worst_case_links import ROUND, clearance, strongest_link
+from nullpose.solve.kernels.worst_case_links import ROUND, clearance, has_dipole, strongest_link
 
 _SLACK = 1e-12  # relative: more than rounding takes from a sum
 _BETTER = 1e-9  # relative: less is no reason to descend anew
@@ -36,6 +35,7 @@ _SIDES = 5  # of a cell: two of the axis, three of the offset
 _CENTRE, _HALF = 1, 1 + _SIDES  # columns of a cell's row, after its face
 _COLUMNS = _HALF + _SIDES
 _DEPTH = 512
+_SHARE = 0.8  # of what is to spare that a jammer's bound may take
 
 
 class Cell(NamedTuple):
@@ -133,7 +133,10 @@ def least_dipole_link(ratio, y, q):
 
 @inner_kernel
 def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
-    """Fill what holds at the corners; return False near a jammer. The node's weight is 0 if left out."""
+    """Fill what holds at the corners; return False near a jammer. The node's weight is 0 if left out.
+
+    With an infinite tolerance F is what is attained, not what it is at least.
+    """
     n_axes, n_offsets = corners.values.shape
     for e in range(n_offsets):
         offset = corner_of(cell.d, cell.d_half, e)
@@ -144,7 +147,7 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
             y, square, length = axis_at(errors, cell.face, x), dot(x, x), norm(x)
             corners.cone[m] = x[ahead(cell.face)] ** 2 - errors.cosine**2 * square
             signal, noise = ratio.isotropic * square, square
-            if weight > 0.0 and has_dipole(ratio):
+            if weight > 0.0 and has_dipole(ratio.dipole):
                 signal += weight * least_dipole_link(ratio, y, node)
             elif weight > 0.0:
                 rounding = ROUND * length * norm(node)
@@ -153,7 +156,10 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
                 signal += weight * (across * across + ratio.leak * leaking * leaking)
             for j in range(ratio.shares.shape[0]):
                 q = minus(row(ratio.centres, j), offset)
-                _, root, _ = strongest_link(ratio.sets, j, scaled(1.0 / length, y), q, ratio.leak, tolerance)
+                found, root, _ = strongest_link(
+                    ratio.sets, j, scaled(1.0 / length, y), q, ratio.leak, tolerance
+                )
+                root = root if tolerance < math.inf else found
                 if not root < math.inf:
                     return False
                 noise += ratio.shares[j] * (length * root) ** 2
@@ -173,17 +179,18 @@ def curvatures(ratio, weight, level, cell, across):
     a = 2.0 * max(0.0, ratio.isotropic - level + weight * square)
     b = 4.0 * weight * length * kappa * square
     c = 6.0 * weight * (length * square) ** 2
-    if has_dipole(ratio):
+    if has_dipole(ratio.dipole):
         b, c = b * SLOPE, c * (1.0 + SLOPE * SLOPE / 3.0)
     for j in range(ratio.shares.shape[0]):
         near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
         if not near > 0.0:
             return math.inf, math.inf, math.inf
-        kappa = 1.0 / near
-        most = across[j] + lean * kappa + swing * length * kappa**2  # no corner is farther off
+        kappa, has = 1.0 / near, has_dipole(row(ratio.sets.dipoles, j))
+        slope, bend = (SLOPE, BEND) if has else (1.0, 2.0)
+        most = across[j] + lean * kappa + slope * swing * length * kappa**2  # no corner is farther off
         part = 2.0 * level * ratio.shares[j] * most * kappa**2
-        b += part
-        c += 2.0 * part * length * kappa
+        b += slope * part
+        c += bend * part * length * kappa
     return a, b, c
 
 
@@ -232,6 +239,17 @@ def least_corner(corners, nu, mu):
 
 
 @inner_kernel
+def margin(errors, cell, corners, nu, mu, rest):
+    """Return how far F is from being negative in a cell, with the best of the multipliers or none."""
+    lean, swing, most = norm(cell.x_half), norm(cell.d_half), -math.inf
+    for trial in range(4):
+        of_cone, of_ball = nu if trial & 1 else 0.0, mu if trial & 2 else 0.0
+        more = rest + of_cone * (errors.cosine * lean) ** 2 + of_ball * swing**2
+        most = max(most, least_corner(corners, of_cone, of_ball) - more * (1.0 + _SLACK))
+    return most
+
+
+@inner_kernel
 def side_to_split(cell, by_axis, by_offset):
     """Return the side whose halving takes most off a remainder of such curvatures."""
     side, most = 0, -1.0
@@ -250,17 +268,21 @@ def holds(ratio, errors, level, cell, tolerance, corners):
     # the signal, which has no bound where the drone may be at the node, is left out there
     weight = ratio.weight if distance > swing else 0.0
     a = math.inf
-    if evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
+    if evaluate_corners(ratio, weight, errors, level, cell, math.inf, corners):
         a, b, c = curvatures(ratio, weight, level, cell, corners.across)
     if not a < math.inf:
         return False, side_to_split(cell, distance**2, 1.0)
     nu, mu = multipliers(errors, cell, corners.values)
     rest = 0.5 * (a * lean**2 + 2.0 * b * lean * swing + c * swing**2)
-    for trial in range(4):
-        of_cone, of_ball = nu if trial & 1 else 0.0, mu if trial & 2 else 0.0
-        more = rest + of_cone * (errors.cosine * lean) ** 2 + of_ball * swing**2
-        if least_corner(corners, of_cone, of_ball) - more * (1.0 + _SLACK) >= 0.0:
-            return True, 0
+    spare = margin(errors, cell, corners, nu, mu, rest)
+    size = corners.sizes[0, 0]
+    if spare > tolerance * size:  # bounds need be no closer than what is to spare
+        tolerance = _SHARE * spare / size
+        if evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
+            a, b, c = curvatures(ratio, weight, level, cell, corners.across)
+            rest = 0.5 * (a * lean**2 + 2.0 * b * lean * swing + c * swing**2)
+            if margin(errors, cell, corners, nu, mu, rest) >= 0.0:
+                return True, 0
     by_axis = a + 2.0 * nu + (b * swing / lean if lean > 0.0 else 0.0)
     return False, side_to_split(cell, by_axis, c + 2.0 * mu + (b * lean / swing if swing > 0.0 else 0.0))
 
@@ -299,7 +321,7 @@ def worst_case(ratio, errors, accuracy, most, y, offset, places):
         ratio: the ratio.
         errors: what may be wrong.
         accuracy: the bound aimed at is ``least found (1 - accuracy)``; 1 or more asks for no bound.
-        most: cells after which the level is halved, so that it ends.
+        most: cells after which the level is lowered, every time by twice as much, so that it ends.
         y: output, (3,): the actual axis of the least ratio found, of unit length.
         offset: output, (3,): its offset of the position.
         places: output, (n, 3): the jammers' places from the actual position.
@@ -310,7 +332,7 @@ def worst_case(ratio, errors, accuracy, most, y, offset, places):
     across = np.empty(ratio.shares.shape[0])
     corners = Corners(table[0], table[1], np.empty(n_axes), np.empty(n_offsets), across)
     cells = np.empty((_DEPTH, _COLUMNS))
-    level, scale, short, examined = worst * max(0.0, 1.0 - accuracy), 1.0, accuracy, 0
+    level, short, examined = worst * max(0.0, 1.0 - accuracy), accuracy, 0
     top = first_cells(errors, cells)
     while top > 0 and level > 0.0:
         top -= 1
@@ -318,24 +340,18 @@ def worst_case(ratio, errors, accuracy, most, y, offset, places):
         if empty_of_errors(errors, cell):
             continue
         examined += 1
-        proved, side = holds(ratio, errors, level, cell, 0.2 * accuracy, corners)
+        proved, side = holds(ratio, errors, level, cell, 0.2 * short, corners)
         if proved:
             continue
         centre = into_cone(errors, axis_at(errors, cell.face, cell.x)), into_ball(errors.reach, cell.d)
         if ratio_at(ratio, centre[0], centre[1], places)[0] < worst * (1.0 - _BETTER):
             worst, at_y, at_offset = descend(ratio, errors, centre[0], centre[1], places)
-            level = min(level, scale * worst * (1.0 - accuracy))
-        if not cells[top, _HALF + side] > 0.0:  # nothing left to split: what is missing is precision
-            level -= short * level
+            level = min(level, worst * (1.0 - accuracy))
+        if examined % most == 0 or top + 2 > _DEPTH or not cells[top, _HALF + side] > 0.0:
+            level -= min(1.0, short) * level  # which all cells before it are above, and soon the next
             short *= 2.0
             top += 1
             continue
-        if examined % most == 0:
-            scale *= 0.5
-            level *= 0.5
-        if top + 2 > _DEPTH:
-            level = 0.0
-            break
         split(cells, top, side)
         top += 2
     store(at_y, y)

@@ -76,8 +76,7 @@ def guarantee(
     in its set. Branch and bound over axis and position, with closed forms for the rest; see docs/robust.md.
 
     Args:
-        scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted. Who has a dipole
-            among jammers and eavesdroppers counts as isotropic.
+        scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted.
         position_m: (3,) the commanded position, metres.
         axis: (3,) the commanded antenna axis, of any length but zero.
         accuracy: relative distance of each bound from the worst case found, 1e-6 to 0.5. A bound that would

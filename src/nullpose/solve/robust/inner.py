@@ -17,7 +17,8 @@ from nullpose.scenario import Scenario
 _ROUND_SET = 1e-12  # semi-axes this close make a ball
 _FLATTEST = 1e-9  # semi-axes are at least this share of the largest
 _EXACT = 1e-9  # accuracy where nothing has to be split
-_MOST_CELLS = 200_000
+_MOST_CELLS = 100_000
+_MOST_OF_ELLIPSOIDS, _MOST_OF_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,7 +65,11 @@ class Inner:
         self.reach_m = float(scenario.receiver.position_error_m)
         self.none = ErrorCase.none(scenario)
         self.moved = interferer_field(scenario, "offsets")
+        axes = self.family.ground_axes
+        self.dipoles = np.zeros_like(self.family.points_m) if axes is None else axes
         self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
+        is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
+        self.radii[~is_closed & (self.radii > 0.0)] = -1.0
 
     def worst(
         self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0
@@ -97,7 +102,7 @@ class Inner:
         group = family.denominator_of[ratio]
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
-        noise, axes = float(family.denominator_isotropic[group]), family.ground_axes
+        noise, shaped = float(family.denominator_isotropic[group]), bool(np.any(self.radii < 0.0))
         node_m = family.points_m[family.numerator_point[ratio]] - p
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
@@ -105,17 +110,22 @@ class Inner:
             node=tuple(node_m.tolist()),
             shares=family.denominator_weight[entries] / noise,
             centres=family.points_m[points] - p,
-            sets=Sets(self.radii[points], self.axes[points], self.semi[points])
-            if np.any(self.radii < 0.0)
-            else Sets(self.radii[points], None, None),
+            sets=Sets(
+                self.radii[points],
+                self.axes[points] if shaped else None,
+                self.semi[points] if shaped else None,
+                self.dipoles[points],
+            ),
             leak=family.leak,
-            dipole=(0.0, 0.0, 0.0) if axes is None else tuple(axes[family.numerator_point[ratio]].tolist()),
+            dipole=tuple(self.dipoles[family.numerator_point[ratio]].tolist()),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
-        lower, worst, cells = worst_case(numbers, errors, accuracy, _MOST_CELLS, y, offset, places)
+        most = _MOST_OF_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _MOST_CELLS
+        most = _MOST_OF_DIPOLES if np.any(numbers.sets.dipoles) else most
+        lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers.centres - offset))
         node, eavesdropper = divmod(ratio, nominal.shape[1])
         listeners = self.scenario.eavesdropper_names

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Unpack
 
+import numpy as np
+
 from nullpose.family import AxisField
 from nullpose.physics import Pose, evaluate
 from nullpose.physics.polarisation import worst_polarised
@@ -27,10 +29,11 @@ ROBUST_GAP = 1e-2
 """The relative gap asked for unless another is."""
 
 POLARISATION = (
-    "jammers and eavesdroppers with a dipole count as isotropic, and what leaks through a node's null counts "
-    "as lost: the worst that they could be"
+    "jammers and eavesdroppers whose dipole has a null depth count as isotropic, and what leaks through a "
+    "node's null counts as lost: the worst that they could be"
 )
 """The note of a solution whose scenario states such."""
+_MOST_CELLS_REACHED = "limit of the proof of what the pose guarantees: most cells of errors"
 
 
 def solve_robust(
@@ -44,8 +47,7 @@ def solve_robust(
     Maximises the smallest margin or secrecy rate over all errors together: an actual axis within
     ``attitude_error_deg`` and an actual position within ``position_error_m`` of the commanded ones, every
     jammer or eavesdropper anywhere in its set. What the pose guarantees is proved; that no pose guarantees
-    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned. Nothing is
-    made to rest on how a jammer or an eavesdropper is polarised: with a dipole it counts as isotropic.
+    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned.
 
     Args:
         scenario: with errors or without, which makes the guaranteed value the nominal one.
@@ -76,18 +78,20 @@ def solve_robust(
     if limits.certify:
         precompile(inner.family.ground_axes is not None)  # compiling must not count against the time limit
     clock = limit_clock()
+    robust = None
     try:
         again = True
         while again:
             exchange.search(clock + limits.time_limit_s)
-            level = exchange.level(_best(exchange).guarantee.lower)
-            again = limits.certify and exchange.prove(level, clock)
+            robust = _best(exchange, robust)
+            again = limits.certify and exchange.prove(exchange.level(robust.guarantee.lower), clock)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
-    robust = _best(exchange)
+    robust = _best(exchange, robust)
     objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
-    unsettled = "error cases that the search did not settle" if limits.certify else ""
-    status, reason = status_of(objective, limits.target, exchange.reason or unsettled)
+    is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
+    unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
+    status, reason = status_of(objective, limits.target, exchange.reason or unsettled * limits.certify)
     return Result(
         scenario=stated,
         scheme="robust",
@@ -109,8 +113,13 @@ def solve_robust(
     )
 
 
-def _best(exchange: Exchange) -> GuardedPose:
-    pose = Pose.of_airframe(exchange.inner.scenario, exchange.best.position_m, exchange.best.axis)
+def _best(exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
+    """Return the best pose so far with its proof, the one from before if it is still the best."""
+    best = exchange.best
+    same = (best.position_m, best.axis)
+    if before is not None and np.allclose((before.guarantee.position_m, before.guarantee.axis), same, 1e-12):
+        return before
+    pose = Pose.of_airframe(exchange.inner.scenario, best.position_m, best.axis)
     return _guarded(exchange, pose)
 
 
