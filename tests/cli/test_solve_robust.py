@@ -83,13 +83,6 @@ def test_a_figure_of_another_kind_is_refused(run: Run, tmp_path: Path) -> None:
     assert "ends in .png, .svg or .pdf" in result.stderr
 
 
-def test_a_scenario_without_errors_is_refused(run: Run, paper: str) -> None:
-    """The message says where errors are stated."""
-    result = run("solve", paper, "--robust")
-    assert result.exit_code == 2
-    assert "receiver.attitude_error_deg" in result.stderr
-
-
 def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     """With an origin both poses are told on the Earth and in NED, in tables, in JSON and as GeoJSON."""
     earthly = tmp_path / "scene.toml"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, pose_frames
+from nullpose.physics import Pose, evaluate, pose_frames
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solve.robust.guarantee import Guarantee
@@ -33,7 +33,7 @@ class GuardedPose:
     @property
     def nominal(self) -> float:
         """The objective without errors: a power ratio, or bits/s/Hz."""
-        return Quantity.of(self.scenario).of_ratio(self.guarantee.nominal)
+        return Quantity.of(self.scenario).least(evaluate(self.scenario, self.pose))
 
     @property
     def guaranteed(self) -> float:

@@ -72,7 +72,7 @@ def solve_robust(
     stated, scenario = scenario, worst_polarised(require_dipole(scenario))
     inner = Inner(scenario)
     began = working_clock()
-    nominal = solve(scenario, certify=False, seed=limits.seed).pose
+    nominal = solve(stated, certify=False, seed=limits.seed).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
@@ -83,11 +83,11 @@ def solve_robust(
         again = True
         while again:
             exchange.search(clock + limits.time_limit_s)
-            robust = _best(exchange, robust)
+            robust = _best(stated, exchange, robust)
             again = limits.certify and exchange.prove(exchange.level(robust.guarantee.lower), clock)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
-    robust = _best(exchange, robust)
+    robust = _best(stated, exchange, robust)
     objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
     is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
     unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
@@ -109,20 +109,22 @@ def solve_robust(
         ),
         provenance=provenance(limits.seed) | {"gap": limits.target},
         note="" if scenario is stated else POLARISATION,
-        details=RobustDetails(robust=robust, nominal=_guarded(exchange, nominal), cases=len(exchange.cases)),
+        details=RobustDetails(
+            robust=robust, nominal=_guarded(stated, exchange, nominal), cases=len(exchange.cases)
+        ),
     )
 
 
-def _best(exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
+def _best(stated: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
     """Return the best pose so far with its proof, the one from before if it is still the best."""
     best = exchange.best
     same = (best.position_m, best.axis)
     if before is not None and np.allclose((before.guarantee.position_m, before.guarantee.axis), same, 1e-12):
         return before
     pose = Pose.of_airframe(exchange.inner.scenario, best.position_m, best.axis)
-    return _guarded(exchange, pose)
+    return _guarded(stated, exchange, pose)
 
 
-def _guarded(exchange: Exchange, pose: Pose) -> GuardedPose:
+def _guarded(stated: Scenario, exchange: Exchange, pose: Pose) -> GuardedPose:
     proved = guarantee_of(exchange.inner, pose.position_m, pose.antenna_axis, exchange.accuracy())
-    return GuardedPose(scenario=exchange.inner.scenario, pose=pose, guarantee=proved)
+    return GuardedPose(scenario=stated, pose=pose, guarantee=proved)
