@@ -14,13 +14,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style
+from nullpose.report.figures.style import INK, VEHICLES, Curve, house_style
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"
 DIPOLES = ("level-vertical", "level-horizontal", "tilt-10", "tilt-30", "omnidirectional")
 LEAST_LOSS_DB = -12.0
-COMBININGS = {"digital": "-", "analogue": (0, (4, 2))}  # and their lines
 FIELD_SIZES, SIZE_SHADES = (2, 4, 8), ("#00204d", "#7c7b78", "#d8a800")
 MINUS = "\N{MINUS SIGN}"
 
@@ -135,9 +134,7 @@ def draw_arrays() -> None:
     figure = Figure(figsize=(7.6, 3.9), layout="constrained")
     axes, *panels = figure.subplots(1, 3, width_ratios=[1.1, 1.0, 1.0])
     shown = table["jamming_ratio"] == 100.0
-    for (combining, style), marker in zip(COMBININGS.items(), ("o", "x"), strict=True):
-        values = table[combining][shown]
-        axes.plot(table["elements"][shown], values, color=GREY, marker=marker, linestyle=style, linewidth=1.5)
+    axes.plot(table["elements"][shown], table["digital"][shown], color=INK, marker="o", linewidth=1.5)
     whole = VEHICLES["omnidirectional"].colour
     axes.axhline(table["omnidirectional"][shown][0], color=whole, linewidth=1.5)
     axes.set_xscale("log", base=2)
@@ -151,14 +148,10 @@ def draw_arrays() -> None:
     axes.set_ylabel("smallest SINR  (power ratio)")
     axes.set_title("paper's scene, $P_M/P$ = 100", fontsize=9.0)
     draw_array_shares(panels)
-    handles = [Line2D([], [], color=whole, linewidth=1.5, label="omnidirectional dipole")]
-    for (combining, style), marker in zip(COMBININGS.items(), ("o", "x"), strict=True):
-        handles.append(Line2D([], [], color=GREY, linestyle=style, marker=marker, label=f"{combining} array"))
-    handles += [
-        Line2D([], [], color=shade, linewidth=1.8, label=f"{size} elements")
-        for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True)
-    ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, handlelength=3.0)
+    looks = {"omnidirectional dipole": whole}
+    looks |= {f"{size} elements": shade for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True)}
+    handles = [Line2D([], [], color=shade, linewidth=1.8, label=label) for label, shade in looks.items()]
+    figure.legend(handles=handles, loc="outside upper center", ncols=4, frameon=False, handlelength=3.0)
     write(figure, "arrays")
 
 
@@ -174,12 +167,8 @@ def draw_array_shares(panels: list[Axes]) -> None:
     for axes, jammers in zip(panels, (1, 3), strict=True):
         chosen = arrays["jammers"] == jammers
         for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True):
-            for combining, style in COMBININGS.items():
-                reached = arrays[f"array-{size}-{combining}"]
-                if combining == "digital":  # what one beam reaches it reaches too, whatever its search found
-                    reached = np.maximum(reached, arrays[f"array-{size}-analogue"])
-                gain_db = 10.0 * np.log10(reached[chosen] / dipole[chosen])
-                steps(axes, gain_db, color=shade, linestyle=style, linewidth=1.5)
+            gain_db = 10.0 * np.log10(arrays[f"array-{size}"][chosen] / dipole[chosen])
+            steps(axes, gain_db, color=shade, linewidth=1.5)
         axes.axvline(0.0, color=VEHICLES["omnidirectional"].colour, linewidth=1.5)
         axes.set_xlabel("gain over the\nomnidirectional dipole  (dB)")
         axes.set_title(f"{chosen.sum()} fields, {jammers} jammer{'s' * (jammers > 1)}", fontsize=9.0)

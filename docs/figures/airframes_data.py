@@ -75,19 +75,16 @@ def paper_rows() -> Iterator[Row]:
         yield [level, *(certified(case, at(level)).objective.value for case in AIRFRAME_CASES)]
 
 
-def array_value(scenario: nullpose.Scenario, elements: int, combining: str, *, certify: bool = True) -> float:
+def array_value(scenario: nullpose.Scenario, elements: int, *, certify: bool = True) -> float:
     """Return what an array on a level vehicle reaches: a line of upright dipoles, half a wavelength apart.
 
     Args:
         scenario: what to solve.
         elements: how many dipoles.
-        combining: digital or analogue.
         certify: whether to prove what can be.
     """
-    found = solve_array(
-        scenario, combining, elements=elements, layout="linear", spacing_wavelengths=0.5, certify=certify
-    )
-    return found.objective.value
+    array = {"elements": elements, "layout": "linear", "spacing_wavelengths": 0.5}
+    return solve_array(scenario, **array, certify=certify).objective.value
 
 
 def tilt_rows() -> Iterator[Row]:
@@ -103,12 +100,11 @@ def tilt_rows() -> Iterator[Row]:
 
 def array_rows() -> Iterator[Row]:
     """Yield what arrays of several sizes reach, and the omnidirectional dipole beside them."""
-    yield ["jamming_ratio", "elements", "digital", "analogue", "omnidirectional"]
+    yield ["jamming_ratio", "elements", "digital", "omnidirectional"]
     for level in TILT_LEVELS:
         whole = certified(OMNIDIRECTIONAL, at(level)).objective.value
         for elements in SIZES:
-            values = [array_value(at(level), elements, combining) for combining in ("digital", "analogue")]
-            yield [level, elements, *values, whole]
+            yield [level, elements, array_value(at(level), elements), whole]
 
 
 def error_rows() -> Iterator[Row]:
@@ -203,10 +199,9 @@ def field_array_rows(done: int) -> Iterator[Row]:
     Args:
         done: how many fields to leave out.
     """
-    kinds = [(size, combining) for combining in ("digital", "analogue") for size in FIELD_SIZES]
-    yield ["nodes", "jammers", "index", *(f"array-{size}-{combining}" for size, combining in kinds)]
+    yield ["nodes", "jammers", "index", *(f"array-{size}" for size in FIELD_SIZES)]
     for head, scenario in itertools.islice(fields(done), ARRAY_FIELDS - done):
-        yield [*head, *(array_value(scenario, size, combining, certify=False) for size, combining in kinds)]
+        yield [*head, *(array_value(scenario, size, certify=False) for size in FIELD_SIZES)]
 
 
 TABLES: dict[str, Callable[[], Iterator[Row]]] = {

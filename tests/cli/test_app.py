@@ -26,7 +26,6 @@ VERBS = {
         "--geojson",
         "--figure",
         "--width",
-        "--combining",
         "--robust",
         "--off",
         "--json",
@@ -128,7 +127,7 @@ def test_help_keeps_words_whole(run: Run, width: str, monkeypatch: pytest.Monkey
     lines = run("solve", "--help").stdout.splitlines()
     for name in Scheme:
         assert any(line.split()[:1] == [name.value] for line in lines)
-    assert "For an [array]" in " ".join(" ".join(lines).split())
+    assert "what [origin] states" in " ".join(run("evaluate", "--help").stdout.split())
 
 
 def test_the_shell_completes(process: Process) -> None:

@@ -15,7 +15,7 @@ def test_table_and_answer(run: Run, paper: str) -> None:
     """Every vehicle has a row, and the answer says which suffices."""
     result = run("compare", paper, "--airframes", "--set", "jammers.M.power_w=100")
     assert result.exit_code == 0
-    for words in ("level, vertical", "tilt 10, horizontal", "omnidirectional", "array of 8, analogue"):
+    for words in ("level, vertical", "tilt 10, horizontal", "omnidirectional", "array of 8, digital"):
         assert words in result.stdout
     answer = "A 10 degree tilt with a horizontal dipole reaches 0.03 dB less than the omnidirectional"
     assert any(line.startswith(answer) for line in result.stdout.splitlines())
@@ -27,7 +27,7 @@ def test_json(run: Run, paper: str) -> None:
     assert result.exit_code == 0
     data = json.loads(result.stdout)
     assert list(data) == ["scenario", "cases", "tolerance", "least_sufficient", "provenance", "answer"]
-    assert len(data["cases"]) == 11
+    assert len(data["cases"]) == 8
     assert data["least_sufficient"] == "tilt-10"
     assert "10 degree tilt" in data["answer"][0]
 

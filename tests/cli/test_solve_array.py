@@ -17,7 +17,7 @@ def array(paper: str) -> str:
 
 
 def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
-    """Digital unless told otherwise; value, proof, pose and array are shown."""
+    """Value, proof, pose and array are shown."""
     result = run("solve", array)
     assert result.exit_code == 0
     for words in (
@@ -30,20 +30,11 @@ def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
     assert "antenna axis" not in result.stdout
 
 
-def test_one_beam_has_phases(run: Run, array: str) -> None:
-    """An analogue beam is shown by the phase of each element."""
-    result = run("solve", array, "--combining", "analogue", "--fast")
-    assert result.exit_code == 0
-    assert "Array of 4, analogue: smallest SINR 7.09" in result.stdout
-    assert "Phase shifters" in result.stdout
-    assert "searches ended at this value" in result.stdout
-
-
 def test_json(run: Run, array: str) -> None:
     """The JSON object is the array's."""
     data = json.loads(run("solve", array, "--fast", "--json").stdout)
     assert data["scheme"] == "array-digital"
-    assert data["array"]["elements"] == 4
+    assert (data["array"]["elements"], data["array"]["combining"]) == (4, "digital")
     assert data["status"] == "best-found"
 
 
@@ -61,13 +52,12 @@ def test_what_arrays_have_not_is_refused(
     assert f"{name}: given for a scenario with an [array]" in result.stderr
 
 
-@pytest.mark.parametrize("combining", ["digital", "analogue"])
-def test_a_figure_of_the_array(run: Run, array: str, combining: str, tmp_path: Path) -> None:
-    """It is drawn with either combining, beside what is printed."""
+def test_a_figure_of_the_array(run: Run, array: str, tmp_path: Path) -> None:
+    """It is drawn beside what is printed."""
     path = tmp_path / "new" / "array.png"
-    result = run("solve", array, "--fast", "--combining", combining, "--figure", path)
+    result = run("solve", array, "--fast", "--figure", path)
     assert result.exit_code == 0
-    assert f"Array of 4, {combining}" in result.stdout
+    assert "Array of 4, digital" in result.stdout
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
@@ -76,13 +66,6 @@ def test_a_figure_of_another_kind_is_refused(run: Run, array: str, tmp_path: Pat
     result = run("solve", array, "--figure", tmp_path / "array.gif")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "ends in .png, .svg or .pdf" in result.stderr
-
-
-def test_combining_needs_an_array(run: Run, paper: str) -> None:
-    """One dipole has nothing to combine."""
-    result = run("solve", paper, "--combining", "digital")
-    assert result.exit_code == 2
-    assert "--combining: given for a scenario without an [array]" in result.stderr
 
 
 def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: Path) -> None:

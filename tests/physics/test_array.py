@@ -1,4 +1,4 @@
-"""Arrays of vertical dipoles: steering, digital combining, one shared beam."""
+"""Arrays of vertical dipoles: steering, digital combining."""
 
 import math
 from collections.abc import Callable
@@ -12,8 +12,6 @@ from scipy.linalg import eigh
 
 from nullpose.physics import sinr
 from nullpose.physics.array import (
-    analogue_sinr,
-    analogue_weights,
     array_channels,
     beam_sinr,
     digital_sinr,
@@ -124,14 +122,12 @@ def test_phases_are_those_of_the_distances(seed: int, layout: str) -> None:
 def test_one_element_is_the_vertical_case(
     seed: int, nodes: int, jammers: int, layout: str, random_scene: Callable
 ) -> None:
-    """One dipole, combined in either way, gives eq. 2.1 with the axis vertical."""
+    """One dipole gives eq. 2.1 with the axis vertical."""
     rng = np.random.default_rng(seed)
     scene, position = random_scene(rng, nodes, jammers), _place(rng)
     alone = element_positions(1, layout, rng.uniform(0.1, 2.0), rng.uniform(0.0, 6.0))
     expected = sinr(scene, position, VERTICAL)
     np.testing.assert_allclose(digital_sinr(scene, position, alone), expected, rtol=1e-12)
-    phases = rng.uniform(0.0, 6.0, 1)
-    np.testing.assert_allclose(analogue_sinr(scene, position, alone, phases), expected, rtol=1e-12)
 
 
 @given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=ELEMENTS, layout=LAYOUTS)
@@ -197,27 +193,6 @@ def test_no_weights_beat_the_best(
     near = weights + 0.01 * others
     for tried in (others, near):
         assert np.all(beam_sinr(scene, position, places, tried) <= best * (1.0 + 1e-9))
-
-
-@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=ELEMENTS)
-def test_a_shared_beam_is_one_choice_of_weights(
-    seed: int, nodes: int, jammers: int, elements: int, random_scene: Callable
-) -> None:
-    """Phase shifters have weights of modulus 1/sqrt(K), and never beat weights of each node's own."""
-    rng = np.random.default_rng(seed)
-    scene, position = random_scene(rng, nodes, jammers), _place(rng)
-    places = element_positions(elements, "linear", 0.5, rng.uniform(0.0, 6.0))
-    phases = rng.uniform(-9.0, 9.0, elements)
-    weights = analogue_weights(phases)
-    np.testing.assert_allclose(np.abs(weights), 1.0 / math.sqrt(elements), rtol=1e-12)
-    heard, jamming = _channels(scene, position, places)
-    signal_w = np.array([abs(weights.conj() @ h) ** 2 for h in heard])
-    jammed_w = sum(abs(weights.conj() @ h) ** 2 for h in jamming)
-    expected = signal_w / (scene.receiver.noise_power_w + jammed_w)
-    values = analogue_sinr(scene, position, places, phases)
-    np.testing.assert_allclose(values, expected, rtol=1e-10)
-    np.testing.assert_allclose(analogue_sinr(scene, position, places, phases + 1.7), values, rtol=1e-9)
-    assert np.all(values <= digital_sinr(scene, position, places) * (1.0 + 1e-9))
 
 
 @given(seed=SEEDS, nodes=NODES, elements=ELEMENTS, layout=LAYOUTS)
@@ -286,37 +261,26 @@ def test_turning_the_scene_and_the_vehicle_changes_nothing(
         before.jammer_positions_m @ rotation.T,
         before.jammer_powers_w,
     )
-    phases = rng.uniform(0.0, 6.0, 4)
     old = element_positions(4, layout, 0.5, yaw)
     new = element_positions(4, layout, 0.5, yaw + turn)
     np.testing.assert_allclose(
         digital_sinr(after, rotation @ position, new), digital_sinr(before, position, old), rtol=1e-9
     )
-    np.testing.assert_allclose(
-        analogue_sinr(after, rotation @ position, new, phases),
-        analogue_sinr(before, position, old, phases),
-        rtol=1e-7,
-    )
 
 
 @given(seed=SEEDS, jammers=JAMMERS)
 def test_many_poses_at_once(seed: int, jammers: int, random_scene: Callable) -> None:
-    """Positions, yaws and phases of any leading shape give what each gives alone."""
+    """Positions and yaws of any leading shape give what each gives alone."""
     rng = np.random.default_rng(seed)
     scene = random_scene(rng, 3, jammers)
     positions = rng.uniform([0.0, 0.0, 10.0], [90.0, 90.0, 40.0], (2, 5, 3))
     places = element_positions(4, "circular", 0.5, rng.uniform(0.0, 6.0, (2, 5)))
-    phases = rng.uniform(0.0, 6.0, (2, 5, 4))
-    digital, analogue = (
-        digital_sinr(scene, positions, places),
-        analogue_sinr(scene, positions, places, phases),
-    )
+    digital = digital_sinr(scene, positions, places)
     weights = digital_weights(scene, positions, places)
-    assert (digital.shape, analogue.shape, weights.shape) == ((2, 5, 3), (2, 5, 3), (2, 5, 3, 4))
+    assert (digital.shape, weights.shape) == ((2, 5, 3), (2, 5, 3, 4))
     for at in np.ndindex(2, 5):
         one = (scene, positions[at], places[at])
         np.testing.assert_allclose(digital[at], digital_sinr(*one), rtol=1e-12)
-        np.testing.assert_allclose(analogue[at], analogue_sinr(*one, phases[at]), rtol=1e-12)
         np.testing.assert_allclose(weights[at], digital_weights(*one), rtol=1e-9, atol=1e-12)
 
 

@@ -15,10 +15,10 @@ from nullpose.solve import ArraySolution, solve_array
 EXAMPLE = Path(__file__).parents[2] / "examples" / "array.toml"
 
 
-@pytest.fixture(scope="module", params=["digital", "analogue"])
-def solution(request: pytest.FixtureRequest) -> ArraySolution:
-    """The example with either combining."""
-    return solve_array(load(EXAMPLE), request.param, certify=False)
+@pytest.fixture(scope="module")
+def solution() -> ArraySolution:
+    """The example."""
+    return solve_array(load(EXAMPLE), certify=False)
 
 
 def _elements(solution: ArraySolution) -> np.ndarray:
@@ -45,26 +45,26 @@ def test_elements_stand_as_they_are_laid_out(solution: ArraySolution) -> None:
 
 def test_a_circle_is_drawn_as_one() -> None:
     """Elements of a circular array are as far from the vehicle as each other."""
-    found = solve_array(load(EXAMPLE), "digital", elements=5, layout="circular", certify=False)
+    found = solve_array(load(EXAMPLE), elements=5, layout="circular", certify=False)
     distances = np.linalg.norm(_drawn_elements(found), axis=1)
     assert distances == pytest.approx([distances[0]] * 5)
 
 
 def test_one_element_stands_at_the_vehicle() -> None:
     """An array of one has no size to enlarge."""
-    found = solve_array(load(EXAMPLE), "digital", elements=1, certify=False)
+    found = solve_array(load(EXAMPLE), elements=1, certify=False)
     assert _drawn_elements(found) == pytest.approx(np.zeros((1, 3)), abs=1e-9)
 
 
 def test_title_and_legend_tell_the_array(solution: ArraySolution, tmp_path: Path) -> None:
-    """Combining, value and yaw; digital, whose beam it is; the file is not blank."""
+    """Combining, value and yaw; whose beam it is; the file is not blank."""
     figure = draw_array(solution)
     title = figure.get_suptitle().replace("\N{MINUS SIGN}", "-")
-    assert f"array of 4, {solution.combining}: smallest SINR {solution.objective.value_db:.2f} dB" in title
+    assert f"array of 4, digital: smallest SINR {solution.objective.value_db:.2f} dB" in title
     assert f"yaw {np.degrees(solution.yaw_rad):.1f}" in title
     legend = " ".join(text.get_text() for text in figure.legends[0].get_texts())
     assert "heading (yaw)" in legend
-    assert (f"beam for {solution.binding_node}" in legend) == (solution.combining == "digital")
+    assert f"beam for {solution.binding_node}" in legend
     assert write_figure_file(figure, tmp_path / "array.png").stat().st_size > 10_000
 
 
@@ -72,8 +72,9 @@ def test_the_beam_has_its_null_on_the_jammer(solution: ArraySolution) -> None:
     """Towards the jammer the surface drawn comes close to the vehicle, towards the node it does not."""
     scenario, position = solution.scenario, solution.position_m
     node = [link.node for link in solution.links].index(solution.binding_node)
-    weights = solution.weights if solution.combining == "analogue" else solution.weights[node]
-    surface = beam_surface_m(position, _elements(solution), weights, 1.0).reshape(3, -1).T - position
+    surface = (
+        beam_surface_m(position, _elements(solution), solution.weights[node], 1.0).reshape(3, -1).T - position
+    )
     reach = np.linalg.norm(surface, axis=1)
     assert reach.max() == pytest.approx(1.0)
 

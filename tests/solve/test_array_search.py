@@ -14,11 +14,9 @@ from nullpose.solve.multistart import landmarks
 LIGHT = ArraySettings(first=40, patience=100, most=400)
 
 
-def _search(
-    scenario: Scenario, seed: int, *, shared: bool, settings: ArraySettings = LIGHT
-) -> tuple[ArrayTask, ArraySearch]:
+def _search(scenario: Scenario, seed: int, settings: ArraySettings = LIGHT) -> tuple[ArrayTask, ArraySearch]:
     array = Array(elements=4, layout="linear", spacing_wavelengths=0.5)
-    task = ArrayTask.of(scenario, array, shared=shared)
+    task = ArrayTask.of(scenario, array)
     return task, ArraySearch(task, np.random.default_rng(seed), landmarks(task.family), settings)
 
 
@@ -33,11 +31,10 @@ def test_a_pool_keeps_the_best_of_each_value() -> None:
     assert pool.best == 3.0
 
 
-@pytest.mark.parametrize("shared", [False, True])
-def test_a_seed_repeats(shared: bool, random_scene: Callable) -> None:
+def test_a_seed_repeats(random_scene: Callable) -> None:
     """The same seed gives the same states to the last bit, the best first."""
     scenario = random_scene(np.random.default_rng(2), 3, 2, 10.0)
-    (task, first), (_, again) = (_search(scenario, 7, shared=shared) for _ in range(2))
+    (task, first), (_, again) = (_search(scenario, 7) for _ in range(2))
     np.testing.assert_array_equal(first.states, again.states)
     assert (first.climbs, first.evaluations) == (again.climbs, again.evaluations)
     values = [finished(task, state)[0] for state in first.states]
@@ -47,7 +44,7 @@ def test_a_seed_repeats(shared: bool, random_scene: Callable) -> None:
 def test_settings_bound_the_work(paper: Callable) -> None:
     """Landmarks, fresh starts and hops are all the climbs there are, and elites are as many as asked."""
     settings = ArraySettings(first=10, coarse=2, elites=3, patience=1000, most=20)
-    task, found = _search(paper(1.0), 0, shared=True, settings=settings)
+    task, found = _search(paper(1.0), 0, settings=settings)
     assert found.climbs <= len(landmarks(task.family)) + 30
     assert len(found.states) <= 3
 
@@ -57,7 +54,7 @@ def test_independent_searches_agree(random_scene: Callable) -> None:
     scenario = random_scene(np.random.default_rng(8), 4, 2, 10.0)
     ends = []
     for seed in range(3):
-        task, found = _search(scenario, seed, shared=False)
+        task, found = _search(scenario, seed)
         ends.append(max(finished(task, state)[0] for state in found.states))
     np.testing.assert_allclose(ends, ends[0], atol=1e-6)
 
@@ -65,4 +62,4 @@ def test_independent_searches_agree(random_scene: Callable) -> None:
 def test_nothing_is_found_where_nothing_is(scene: Callable) -> None:
     """Where the only position has the node in every dipole's null, no state is kept."""
     point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
-    assert _search(point, 0, shared=False)[1].states == []
+    assert _search(point, 0)[1].states == []

@@ -12,25 +12,16 @@ from nullpose.scenario import Array, Scenario
 from nullpose.solve.array_task import ArrayTask, silent
 
 
-def _task(scenario: Scenario, elements: int = 4, shared: bool = False) -> ArrayTask:
-    return ArrayTask.of(
-        scenario, Array(elements=elements, layout="linear", spacing_wavelengths=0.5), shared=shared
-    )
+def _task(scenario: Scenario) -> ArrayTask:
+    return ArrayTask.of(scenario, Array(elements=4, layout="linear", spacing_wavelengths=0.5))
 
 
-def test_a_state_has_a_phase_for_each_element_of_a_shared_beam(paper: Callable) -> None:
-    """Three coordinates and a yaw; with a shared beam the phases as well."""
-    assert _task(paper(1.0)).size == 4
-    assert _task(paper(1.0), elements=6, shared=True).size == 10
-
-
-@pytest.mark.parametrize("shared", [False, True])
-def test_turning_by_the_symmetry_changes_nothing(shared: bool, random_scene: Callable) -> None:
-    """A row turned by half a turn, a circle by one of its elements: the digital ratios are the same."""
+def test_turning_by_the_symmetry_changes_nothing(random_scene: Callable) -> None:
+    """A row turned by half a turn, a circle by one of its elements: the ratios are the same."""
     rng = np.random.default_rng(9)
     for layout, elements in (("linear", 4), ("circular", 5), ("circular", 2), ("circular", 1)):
         array = Array(elements=elements, layout=layout, spacing_wavelengths=0.5)
-        task = ArrayTask.of(random_scene(rng, 3, 2, 10.0), array, shared=shared).digital()
+        task = ArrayTask.of(random_scene(rng, 3, 2, 10.0), array)
         state = np.append(rng.uniform([0, 0, 9], [99, 99, 29]), rng.uniform(-3.0, 3.0))
         turned = state + np.array([0.0, 0.0, 0.0, 2.0 * math.pi / task.symmetry])
         assert task.value(turned) == pytest.approx(task.value(state), abs=1e-9)
@@ -50,16 +41,13 @@ def test_calmer_and_silent(paper: Callable) -> None:
     np.testing.assert_array_equal(quiet.keep_out_points_m, task.family.keep_out_points_m)
 
 
-@pytest.mark.parametrize("shared", [False, True])
-def test_nothing_out_of_reach_is_as_good(shared: bool, random_scene: Callable) -> None:
+def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
     """Every state with a value has its position in the box that is said to hold all such positions."""
     rng = np.random.default_rng(1)
     for _ in range(10):
-        task = _task(random_scene(rng, 3, 1, jamming_w=1e-3), shared=shared)
+        task = _task(random_scene(rng, 3, 1, jamming_w=1e-3))
         for _ in range(30):
-            state = np.concatenate(
-                [rng.uniform([-200, -200, 8], [300, 300, 30]), rng.uniform(0, 6, task.size - 3)]
-            )
+            state = rng.uniform([-200, -200, 8, 0], [300, 300, 30, 6])
             low_m, high_m = task.reach(task.value(state))
             assert np.all((low_m <= state[:3]) & (state[:3] <= high_m))
 

@@ -17,12 +17,11 @@ def names(scenario: Scenario) -> list[str]:
 
 
 def test_dipoles_come_by_the_tilt_that_they_take(paper: Scenario) -> None:
-    """From level to omnidirectional, then arrays of 2, 4 and 8, digital and analogue."""
+    """From level to omnidirectional, then arrays of 2, 4 and 8."""
     assert [case.name for case in AIRFRAME_CASES] == DIPOLES
     tilts = [case.airframe.tilt_max_rad for case in AIRFRAME_CASES]
     assert tilts == sorted(tilts)
-    arrays = [f"array-{size}-{combining}" for combining in ("digital", "analogue") for size in (2, 4, 8)]
-    assert names(paper) == DIPOLES + arrays
+    assert names(paper) == [*DIPOLES, "array-2-digital", "array-4-digital", "array-8-digital"]
 
 
 def test_bands_of_axes_widen(paper: Scenario) -> None:

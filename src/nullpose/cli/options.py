@@ -15,13 +15,6 @@ if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
 
-class CombiningName(StrEnum):
-    """The ways to combine an array's elements, by name."""
-
-    DIGITAL = "digital"
-    ANALOGUE = "analogue"
-
-
 class FigureWidth(StrEnum):
     """The widths of figures in print, by name."""
 
@@ -119,15 +112,6 @@ GeoJsonFile = Annotated[
         metavar="FILE",
         help="Write pose, nodes and airspace to FILE as GeoJSON. The scenario needs an origin.",
         show_default=False,
-    ),
-]
-
-Combining = Annotated[
-    CombiningName | None,
-    typer.Option(
-        "--combining",
-        help="For an [array]: weights for each node (digital), or one beam for all (analogue).",
-        show_default="digital",
     ),
 ]
 

@@ -11,8 +11,6 @@ import typer
 from nullpose.cli.options import (
     AllowOutside,
     CertificateFile,
-    Combining,
-    CombiningName,
     Fast,
     FigureFile,
     FigureWidth,
@@ -64,7 +62,6 @@ def solve(
     certificate: CertificateFile = None,
     verify: Verified = False,
     geojson: GeoJsonFile = None,
-    combining: Combining = None,
     figure: FigureFile = None,
     width: Width = None,
     json_output: JsonOutput = False,
@@ -99,13 +96,15 @@ def solve(
 
         require_origin(scenario)
     if robust:
-        refuse("with --robust", combining=combining, **of_one_dipole)
+        refuse("with --robust", **of_one_dipole)
         found = _solve_robustly(scenario, sizes, options)
     elif scenario.array is not None:
         refuse("for a scenario with an [array]", geojson=geojson, **of_one_dipole)
-        found = _solve_array(scenario, combining or CombiningName.DIGITAL, options)
+        from nullpose.solve import solve_array
+
+        with compiling_announced():
+            found = solve_array(scenario, **{name: options[name] for name in ("gap", "certify", "seed")})
     else:
-        refuse("for a scenario without an [array]", combining=combining)
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
         found = _solve_dipole(scenario, scheme, null_jammer, options, checked)
     found = replace(found, error_sizes=sizes)
@@ -135,16 +134,6 @@ def _solve_robustly(scenario: Scenario, sizes: ErrorSizes, options: dict[str, An
     with compiling_announced(), GapBar(target) as bar:
         found = solve_robust(scenario, on_progress=bar, **options)
     return replace(found, note=" ".join(filter(None, (note, found.note))))
-
-
-def _solve_array(scenario: Scenario, combining: CombiningName, options: dict[str, Any]) -> Result:
-    """Return where a scenario's array reaches most."""
-    from nullpose.solve import solve_array
-
-    with compiling_announced():
-        return solve_array(
-            scenario, combining.value, gap=options["gap"], certify=options["certify"], seed=options["seed"]
-        )
 
 
 def _solve_dipole(

@@ -76,4 +76,3 @@ class ArrayProblem(NamedTuple):
     strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires
     nodes: int
     base: FloatArray  # (k, 2) elements in body axes, wavelengths
-    shared: bool  # whether one beam serves all nodes; otherwise each has its own weights

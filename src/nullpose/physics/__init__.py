@@ -4,8 +4,6 @@ Every number that nullpose reports is evaluated here from the reported pose.
 """
 
 from nullpose.physics.array import (
-    analogue_sinr,
-    analogue_weights,
     array_channels,
     beam_sinr,
     digital_sinr,
@@ -62,8 +60,6 @@ __all__ = [
     "PoseFrames",
     "Poses",
     "Sensitivity",
-    "analogue_sinr",
-    "analogue_weights",
     "antenna_axis",
     "antenna_gain",
     "array_channels",

@@ -1,4 +1,4 @@
-"""What an array of vertical dipoles receives: steering, digital combining and one shared analogue beam.
+"""What an array of vertical dipoles receives: steering and digital combining.
 
 The vehicle hovers level, so the dipoles stand upright and only the yaw is free; an error can tilt it. The
 model is the narrow-band far field: plane waves, and every dipole with the gain of eq. 1.2, whatever stands
@@ -180,36 +180,6 @@ def digital_weights(
     return np.asarray(weights / np.where(length > 0.0, length, 1.0))
 
 
-def analogue_weights(phases_rad: ArrayLike) -> ComplexArray:
-    """Return the weights of phase shifters: ``w_n = exp(j phi_n) / sqrt(K)``.
-
-    Args:
-        phases_rad: shape ``(..., K)``, radians.
-    """
-    phases = np.asarray(phases_rad, dtype=float)
-    return np.asarray(np.exp(1j * phases) / np.sqrt(phases.shape[-1]))
-
-
-def analogue_sinr(
-    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, phases_rad: ArrayLike
-) -> FloatArray:
-    """Return every node's SINR with one beam of phase shifters for all of them.
-
-    :func:`beam_sinr` with the weights of :func:`analogue_weights`, the same for every node.
-
-    Args:
-        scenario: nodes, jammers and receiver.
-        position_m: the array's centre, shape ``(..., 3)``, metres.
-        elements_wavelengths: shape ``(..., K, 3)``.
-        phases_rad: shape ``(..., K)``, radians.
-
-    Returns:
-        Array of shape ``(..., n_nodes)``, power ratios.
-    """
-    weights = analogue_weights(phases_rad)
-    return beam_sinr(scenario, position_m, elements_wavelengths, weights[..., None, :])
-
-
 def beam_sinr(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, weights: ArrayLike
 ) -> FloatArray:
@@ -223,7 +193,7 @@ def beam_sinr(
         scenario: nodes, jammers and receiver.
         position_m: the array's centre, shape ``(..., 3)``, metres.
         elements_wavelengths: shape ``(..., K, 3)``.
-        weights: shape ``(..., n_nodes, K)``, or ``(..., 1, K)`` for one beam, of any length but zero.
+        weights: shape ``(..., n_nodes, K)``, of any length but zero.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.

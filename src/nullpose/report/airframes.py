@@ -147,9 +147,8 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
     if own is not None and own is not least:
         verdict = "suffices too" if comparison.suffices(own) else "does not suffice"
         lines.append(f"{begun(own.case.phrase)} {verdict}: it reaches {_difference(comparison, own)}.")
-    for combining in dict.fromkeys(result.case.combining for result in arrays):
-        alike = [result for result in arrays if result.case.combining == combining]
-        lines.append(_least_line(comparison, alike))
+    if arrays:
+        lines.append(_least_line(comparison, arrays))
     if comparison.scenario.is_uncertain:
         lines.append(_errors_line(comparison))
     return lines
@@ -163,14 +162,8 @@ def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult
         best, verdict = least, f"is the simplest {_near(comparison)} of that"
     return (
         f"{begun(best.case.phrase)} reaches {_difference(comparison, best)} in this scene. Of the vehicles "
-        f"compared with {_kind(best)}, it {verdict}."
+        f"compared with {'an array' if best.case.array else 'one dipole'}, it {verdict}."
     )
-
-
-def _kind(result: AirframeResult) -> str:
-    """Return what the vehicles that one is compared with carry."""
-    combining = result.case.combining
-    return f"an array and {combining} combining" if combining else "one dipole"
 
 
 def _difference(comparison: AirframeComparison, result: AirframeResult) -> str:

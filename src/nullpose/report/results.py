@@ -140,24 +140,18 @@ def result_view(result: Result) -> View:
 
 
 def array_view(solution: Result) -> View:
-    """Return where an array hovers, its attitude, what nodes get, and the phases of a shared beam.
+    """Return where an array hovers, its attitude, and what nodes get.
 
     Args:
         solution: what was found.
     """
-    stats, phases_rad = solution.stats, solution.phases_rad
+    stats = solution.stats
     searches = count_of(stats.searches or 0, "local search", "local searches")
     agreeing = f"{stats.agreeing} of {searches} ended at this value" if (stats.searches or 0) > 1 else ""
-    turned_rad = phases_rad - phases_rad[0] if phases_rad.ndim == 1 else phases_rad[:0, 0]
-    phases = {
-        "element": [str(i) for i, _ in enumerate(turned_rad, start=1)],
-        "phase (deg)": [degrees_text(float(phase_rad), 1) for phase_rad in turned_rad],
-    }
     return document(
         _head(solution, begun(solution.label), requirement_words(solution), agreeing),
         pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(solution.details))])),
         _links_table(solution, {}),
-        table("Phase shifters", rows(phases)),
         sensitivity_view(solution),
     )
 

@@ -12,13 +12,7 @@ from numpy.typing import NDArray
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import ErrorCase, Pose
-from nullpose.physics.array import (
-    analogue_sinr,
-    analogue_weights,
-    digital_sinr,
-    digital_weights,
-    element_positions,
-)
+from nullpose.physics.array import digital_sinr, digital_weights, element_positions
 from nullpose.physics.evaluate import links_of
 from nullpose.scenario import Array, Scenario, require_scenario
 from nullpose.solve.array_bound import ArrayBound, array_bound
@@ -29,30 +23,19 @@ from nullpose.solve.options import SolveKeywords, SolveOptions
 from nullpose.solve.provenance import provenance
 from nullpose.solve.result import Result, Stats, objective_of, status_of
 
-COMBININGS = "digital", "analogue"
-"""The ways to combine the elements: each node with its own weights, or one beam of phase shifters for all."""
-
-_SHORT = {
-    "digital": "box limit reached",
-    "analogue": "the bound is the one for digital combining, which analogue combining cannot exceed",
-}  # why a gap was not reached
-_WATCHED = 0.25  # effort of the proof where it is about digital combining and another value is asked for
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ArrayDetails:
-    """How an array's elements are placed and combined.
+    """How an array's elements are placed, and the weights of its digital combining.
 
     Args:
-        combining: ``"digital"`` (each node has its own weights) or ``"analogue"`` (one beam for all).
         elements: number of dipoles.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
-        weights: what each element is multiplied by (its conjugate), of unit length: (n_nodes, K) digital,
-            (K,) analogue; complex, read-only.
+        weights: what each element is multiplied by for each node (its conjugate), of unit length:
+            (n_nodes, K), complex, read-only.
     """
 
-    combining: str
     elements: int
     layout: str
     spacing_wavelengths: float
@@ -66,12 +49,7 @@ class ArrayDetails:
     @property
     def label(self) -> str:
         """The name of the case for tables, as in "array of 4, digital"."""
-        return f"array of {self.elements}, {self.combining}"
-
-    @property
-    def phases_rad(self) -> NDArray[np.float64]:
-        """The phases of the weights, shape as ``weights``, radians."""
-        return np.asarray(np.angle(self.weights))
+        return f"array of {self.elements}, digital"
 
     def ratios_under(self, scenario: Scenario, pose: Pose, case: ErrorCase) -> FloatArray:
         """Return every node's margin when error cases come true and digital combining follows them.
@@ -91,14 +69,13 @@ class ArrayDetails:
             objective: not needed here.
         """
         weights = np.stack([self.weights.real, self.weights.imag], axis=-1).tolist()
-        names = ("elements", "layout", "spacing_wavelengths", "combining")
-        stated = {name: getattr(self, name) for name in names}
-        return {"array": stated | {"weights": weights}}
+        names = ("elements", "layout", "spacing_wavelengths")
+        placed = {name: getattr(self, name) for name in names}
+        return {"array": placed | {"combining": "digital", "weights": weights}}
 
 
 def solve_array(
     scenario: Scenario,
-    combining: str = "digital",
     *,
     elements: int | None = None,
     layout: str | None = None,
@@ -107,17 +84,13 @@ def solve_array(
 ) -> Result:
     """Return the best position, yaw and combining of an array of upright dipoles on a level vehicle.
 
-    Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Digital:
-    every node has weights of its own, which follow from position and yaw
-    (:func:`nullpose.physics.digital_sinr`). Analogue: one beam of phase shifters serves all nodes
-    (:func:`nullpose.physics.analogue_sinr`), and its phases are searched too. The value is
-    re-evaluated by the physics from what is reported. The bound comes from a branch and bound over positions
-    and yaws with digital combining, which a shared beam cannot exceed and mostly does not come near; an
-    analogue value is the best of several independent searches.
+    Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Every
+    node has weights of its own, which follow from position and yaw (:func:`nullpose.physics.digital_sinr`).
+    The value is re-evaluated by the physics from what is reported. The bound comes from a branch and bound
+    over positions and yaws.
 
     Args:
         scenario: nodes, jammers, receiver and airspace; its airframe and its uncertainty are not consulted.
-        combining: ``"digital"`` or ``"analogue"``.
         elements: number of dipoles; the scenario's if left out, as the next two.
         layout: ``"linear"`` or ``"circular"``.
         spacing_wavelengths: distance between neighbours, in wavelengths.
@@ -125,7 +98,7 @@ def solve_array(
 
     Raises:
         WrongTypeError: no scenario was given, but the path of one, say.
-        UsageError: unknown combining, a bad gap or seed, no array given, or another objective than min-sinr.
+        UsageError: a bad gap or seed, no array given, or another objective than min-sinr.
         ScenarioError: elements, layout or spacing that no array has.
         SolveError: no position reaches every node.
 
@@ -139,8 +112,6 @@ def solve_array(
         (4.1, (2, 2))
     """
     require_scenario(scenario)
-    if combining not in COMBININGS:
-        raise UsageError(f"combining: given {combining!r}; allowed: {', '.join(COMBININGS)}")
     array = _array(scenario, elements, layout, spacing_wavelengths)
     if scenario.objective_record.transmits:
         raise UsageError(
@@ -149,18 +120,18 @@ def solve_array(
         )
     asked = SolveOptions(**options).of(scenario)
     began = working_clock()
-    task = ArrayTask.of(scenario, array, shared=combining == "analogue")
+    task = ArrayTask.of(scenario, array)
     hunt, bound = _solved(task, asked)
     pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
-    weights, ratios = _evaluated(scenario, array, combining, pose, hunt.state[4:])
-    links = links_of(scenario, ratios)
+    places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
+    links = links_of(scenario, digital_sinr(scenario, pose.position_m, places))
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
     reached = bound is None or hunt.reaches(bound.value, asked.target)
-    status, reason = status_of(objective, asked.target, "" if reached else _SHORT[combining])
+    status, reason = status_of(objective, asked.target, "" if reached else "box limit reached")
     return Result(
         scenario=scenario,
-        scheme=f"array-{combining}",
+        scheme="array-digital",
         status=status,
         objective=objective,
         pose=pose,
@@ -175,7 +146,7 @@ def solve_array(
         ),
         provenance=provenance(asked.seed) | asked.settings,
         reason=reason,
-        details=ArrayDetails(combining=combining, weights=weights, **array.to_dict()),
+        details=ArrayDetails(weights=digital_weights(scenario, pose.position_m, places), **array.to_dict()),
     )
 
 
@@ -196,43 +167,23 @@ def _array(
 
 
 def _solved(task: ArrayTask, asked: SolveOptions) -> tuple[ArrayHunt, ArrayBound | None]:
-    """Return the searches, and what is proved if that is asked for.
+    """Search, and prove what is found if that is asked for.
 
-    Digital: one search and a proof, then more searches, and another proof, where that does not get there;
-    what turns up in the first proof is taken up. Analogue: the bound of digital combining, then searches.
+    One search and a proof, then more searches, and another proof, where that does not get there; what turns
+    up in the first proof is taken up.
     """
+    hunt = ArrayHunt(task, asked.seed)
     if not asked.certify:
-        return _searched(ArrayHunt(task, asked.seed)), None
-    hunt = ArrayHunt(task.digital(), asked.seed)
+        hunt.search_on()
+        return hunt, None
     hunt.search()
-    effort = _WATCHED if task.problem.shared else 1.0
-    bound = array_bound(hunt.task, hunt.best, gap=asked.target, effort=effort)
-    if task.problem.shared:
-        return _searched(ArrayHunt(task, asked.seed, hunt.state[:3]), bound.value, asked.target), bound
+    bound, before = array_bound(task, hunt.best, gap=asked.target), hunt.best
     if hunt.reaches(bound.value, asked.target):
         return hunt, bound
-    before = hunt.best
     if bound.state is not None:
         hunt.look(bound.state)
-    if _searched(hunt).best <= before + asked.target:
+    hunt.search_on()
+    if hunt.best <= before + asked.target:
         return hunt, bound
     again = array_bound(task, hunt.best, gap=asked.target)
     return hunt, replace(again, value=min(bound.value, again.value), boxes=bound.boxes + again.boxes)
-
-
-def _searched(hunt: ArrayHunt, bound: float = math.inf, gap: float = 0.0) -> ArrayHunt:
-    """Search until another search is not likely to change anything, or a bound is reached."""
-    while hunt.is_open and not hunt.reaches(bound, gap):
-        hunt.search()
-    return hunt
-
-
-def _evaluated(
-    scenario: Scenario, array: Array, combining: str, pose: Pose, phases_rad: FloatArray
-) -> tuple[NDArray[np.complex128], FloatArray]:
-    """Return the weights and every node's SINR, by the physics."""
-    places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
-    if combining == "digital":
-        weights = digital_weights(scenario, pose.position_m, places)
-        return weights, digital_sinr(scenario, pose.position_m, places)
-    return analogue_weights(phases_rad), analogue_sinr(scenario, pose.position_m, places, phases_rad)

@@ -36,8 +36,8 @@ class ArrayBound:
     state: FloatArray | None = None
 
 
-def array_bound(task: ArrayTask, log_value: float, *, gap: float, effort: float = 1.0) -> ArrayBound:
-    """Return a bound for digital combining, and so for a shared beam, which is one choice of the weights.
+def array_bound(task: ArrayTask, log_value: float, *, gap: float) -> ArrayBound:
+    """Return a bound on what any position, yaw and weights of each node's own reach.
 
     A branch and bound over positions and yaws, the best first
     (:mod:`nullpose.solve.kernels.array_enclosure` has the bound over a box): it stops at the gap asked for or
@@ -47,9 +47,8 @@ def array_bound(task: ArrayTask, log_value: float, *, gap: float, effort: float 
 
     Args:
         task: the array and its scene.
-        log_value: log ratio of a state with digital combining.
+        log_value: log ratio of a state.
         gap: relative gap to that at which it is done.
-        effort: share of the usual number of boxes.
     """
     value = math.exp(log_value)
     one = _vertical_bound(task, gap)
@@ -58,13 +57,13 @@ def array_bound(task: ArrayTask, log_value: float, *, gap: float, effort: float 
     from nullpose.solve.kernels.array_branch import branch_array
 
     nodes, jammers = task.problem.nodes, len(task.problem.points_m) - task.problem.nodes
-    most = effort * _WORK / (nodes * (1 + jammers) * task.elements)
+    most = _WORK / (nodes * (1 + jammers) * task.elements)
     low_m, high_m = task.reach(log_value - _ROUNDING)
     half_m = 0.5 * (high_m - low_m) * (1.0 + _ROUNDING)
     root = np.array([[*(0.5 * (low_m + high_m)), 0.0], [*half_m, math.pi / task.symmetry]])
     state = np.full(4, math.nan)
     bound, boxes = branch_array(
-        task.digital().problem,
+        task.problem,
         task.family.domain,
         root,
         value * (1.0 + _INSIDE * gap),

@@ -25,7 +25,9 @@ _STEPS = 60
 _SAME = 1e-4
 _BETTER = 1e-6
 _BATCH = 50  # starts between two looks at how far an optimum can be
-_HOP_SHAPE = np.array([1.0, 1.0, 0.3])  # hops are shorter upwards: the optimum is often on the floor
+_HOPS = np.array(  # east, north and up (m), shorter as the optimum is often on the floor, and yaw (rad)
+    [[10.0, 10.0, 3.0, 0.0], [0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 0.0, 20.0], [10.0, 10.0, 3.0, 0.5]]
+)
 _MOST = 6  # searches
 _ENOUGH = 3  # searches with the same end
 _HARSH = 1e4  # jamming above which every other search begins with less of it
@@ -122,8 +124,8 @@ class ArraySearch:
         return bool(push_out(position_m, self.task.family.domain))
 
     def _begin(self, positions_m: FloatArray) -> None:
-        """Climb from the best of several yaws and phases, each at one of the positions."""
-        angles = self.rng.uniform(-math.pi, math.pi, (len(positions_m), self.task.size - 3))
+        """Climb from the best of several yaws, each at one of the positions."""
+        angles = self.rng.uniform(-math.pi, math.pi, (len(positions_m), 1))
         states = np.hstack([positions_m, angles])
         kept = states[[self._placed(state[:3]) for state in states]]
         if len(kept):
@@ -142,17 +144,8 @@ class ArraySearch:
         """Perturb one of the best states, climb again, and keep what is better."""
         place = int(self.rng.integers(len(self.pool.entries)))
         value, state = self.pool.entries[place]
-        state = state.copy()
-        size = 10.0 ** self.rng.uniform(-1.0, 0.3)
-        what = self.rng.integers(4)  # the position, the yaw, the phases, or all of them
-        if what in (0, 3):
-            state[:3] += 10.0 * size * self.rng.normal(size=3) * _HOP_SHAPE
-        if what in (1, 3):
-            state[3] += 0.5 * size * self.rng.normal()
-        if what in (2, 3):
-            state[4:] += size * self.rng.normal(size=len(state) - 4)
-        if what == 2 and not self.task.problem.shared:
-            state[3] = self.rng.uniform(-math.pi, math.pi)
+        spread = 10.0 ** self.rng.uniform(-1.0, 0.3) * self.rng.choice(_HOPS)
+        state = state + spread * self.rng.normal(size=4)
         if self._placed(state[:3]):
             reached = self._climbed(state[None], _HOP_BETAS)
             if reached[0] > value + _BETTER:
@@ -165,10 +158,9 @@ class ArrayHunt:
     Args:
         task: what is searched.
         seed: seed of the searches.
-        places_m: (..., 3) positions worth a start of their own, beside those that every array has.
     """
 
-    def __init__(self, task: ArrayTask, seed: int, *places_m: FloatArray) -> None:
+    def __init__(self, task: ArrayTask, seed: int) -> None:
         self.task, self.seed = task, seed
         self.ends: list[float] = []
         self.best, self.state = -math.inf, np.empty(0)
@@ -177,21 +169,21 @@ class ArrayHunt:
         self.starts = sum(found.starts for found in vertical)
         self.evaluations = sum(found.evaluations for found in vertical)
         heard_m = [found.position_m for found in vertical]
-        self.places_m = np.vstack([*places_m, *heard_m, landmarks(task.family)])
+        self.places_m = np.vstack([*heard_m, landmarks(task.family)])
 
     @property
     def agreeing(self) -> int:
         """How many searches ended at the best value."""
         return sum(end > self.best - _SAME for end in self.ends)
 
-    @property
-    def is_open(self) -> bool:
-        """Whether another search may change anything."""
-        return len(self.ends) < _MOST and self.agreeing < _ENOUGH
-
     def reaches(self, bound: float, gap: float) -> bool:
         """Return whether the best value is within a relative gap of a bound."""
         return bound <= math.exp(self.best) * (1.0 + gap)
+
+    def search_on(self) -> None:
+        """Search until enough searches agree, or until there have been too many."""
+        while len(self.ends) < _MOST and self.agreeing < _ENOUGH:
+            self.search()
 
     def search(self) -> None:
         """Make one more search.

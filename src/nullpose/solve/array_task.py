@@ -19,7 +19,7 @@ _REPAIRS = 50
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ArrayTask:
-    """Maximise the smallest log ratio over states: east, north, up, yaw and, for a shared beam, the phases.
+    """Maximise the smallest log ratio over states: east, north, up and yaw.
 
     Args:
         family: one dipole's ratios in the same scene, and the domain.
@@ -32,13 +32,12 @@ class ArrayTask:
     symmetry: int
 
     @classmethod
-    def of(cls, scenario: Scenario, array: Array, *, shared: bool) -> ArrayTask:
+    def of(cls, scenario: Scenario, array: Array) -> ArrayTask:
         """Return the task of an array in a scenario.
 
         Args:
             scenario: nodes, jammers, receiver and airspace; the drone receives.
             array: elements, layout and spacing.
-            shared: whether one beam serves all nodes.
         """
         family = build_family(scenario)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
@@ -46,13 +45,9 @@ class ArrayTask:
         base = np.ascontiguousarray(places[:, :2])
         return cls(
             family=family,
-            problem=ArrayProblem(family.points_m, strengths_m2, len(scenario.nodes), base, shared),
+            problem=ArrayProblem(family.points_m, strengths_m2, len(scenario.nodes), base),
             symmetry=max(2, array.elements) if array.layout == "circular" else 2,
         )
-
-    def digital(self) -> ArrayTask:
-        """Return the same task with weights of each node's own."""
-        return replace(self, problem=self.problem._replace(shared=False))
 
     def calmed(self, most: float) -> ArrayTask:
         """Return the task with every jammer at most so many times as strong as the strongest node.
@@ -75,11 +70,6 @@ class ArrayTask:
         """The number of elements."""
         return len(self.problem.base)
 
-    @property
-    def size(self) -> int:
-        """The number of variables of a state."""
-        return 4 + (self.elements if self.problem.shared else 0)
-
     def value(self, state: FloatArray) -> float:
         """Return the smallest log ratio at a state, wherever it is; minus infinity if a node is not heard."""
         from nullpose.solve.kernels.array_response import respond
@@ -95,13 +85,12 @@ class ArrayTask:
         Args:
             level: a log ratio; minus infinity if none is known.
         """
-        points_m, nodes = self.problem.points_m, self.problem.nodes
-        low_m, high_m = self.family.low_m, self.family.high_m
-        if level > -math.inf:
-            reach_m = np.sqrt(self.elements * self.problem.strengths_m2[:nodes] * math.exp(-level))[:, None]
-            low_m = np.maximum(low_m, np.max(points_m[:nodes] - reach_m, axis=0))
-            high_m = np.minimum(high_m, np.min(points_m[:nodes] + reach_m, axis=0))
-        around_m = self.family.high_m[2] - self.family.low_m[2] + 10.0 * self.family.keep_out_m
+        from nullpose.solve.kernels.search import cut_box
+
+        family, points_m, low_m, high_m = self.family, self.family.points_m, np.empty(3), np.empty(3)
+        one_dipole = level - math.log(self.elements)
+        cut_box(family.arrays, family.low_m, family.high_m, one_dipole, low_m, high_m)
+        around_m = family.high_m[2] - family.low_m[2] + 10.0 * family.keep_out_m
         low_m = np.where(np.isfinite(low_m), low_m, np.min(points_m, axis=0) - around_m)
         high_m = np.where(np.isfinite(high_m), high_m, np.max(points_m, axis=0) + around_m)
         return low_m, np.maximum(low_m, high_m)

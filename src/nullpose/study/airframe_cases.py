@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import product
 
 from nullpose.scenario import Airframe, Array, Scenario
 
@@ -22,7 +21,6 @@ class AirframeCase:
         phrase: in a sentence, as in "a 10 degree tilt with a horizontal dipole".
         airframe: how far it tilts and how its dipole is mounted.
         array: several upright dipoles in place of the one, or None.
-        combining: of the array: ``"digital"`` or ``"analogue"``; empty without one.
     """
 
     name: str
@@ -30,7 +28,6 @@ class AirframeCase:
     phrase: str
     airframe: Airframe
     array: Array | None = None
-    combining: str = ""
 
     def on(self, scenario: Scenario) -> Scenario:
         """Return the scenario with this vehicle in place of its own.
@@ -55,11 +52,9 @@ AIRFRAME_CASES: tuple[AirframeCase, ...] = tuple(
     )
 )
 
-ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries, each digital and analogue
+ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
 
-_LEVEL = AIRFRAME_CASES[0].airframe
 _ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
-_COMBINING = {"digital": "with digital combining", "analogue": "with one analogue beam"}
 
 
 def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
@@ -76,11 +71,19 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     if own is not None and all(own.axis_band != case.airframe.axis_band for case in vehicles):
         tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
         vehicles = tuple(tilting)
-    sizes = sorted({*ARRAY_SIZES, array.elements})
+    if scenario.objective_record.transmits or scenario.states_antennas:
+        return vehicles
     arrays = (
-        () if scenario.objective_record.transmits or scenario.states_antennas else product(_COMBINING, sizes)
+        AirframeCase(
+            name=f"array-{size}-digital",
+            label=f"array of {size}, digital",
+            phrase=array_phrase(size),
+            airframe=AIRFRAME_CASES[0].airframe,
+            array=array.model_copy(update={"elements": size}),
+        )
+        for size in sorted({*ARRAY_SIZES, array.elements})
     )
-    return (*vehicles, *(_array_case(array, size, combining) for combining, size in arrays))
+    return (*vehicles, *arrays)
 
 
 def mounted_phrase(airframe: Airframe) -> str:
@@ -94,14 +97,13 @@ def mounted_phrase(airframe: Airframe) -> str:
     return f"{vehicle} with the dipole mounted at {mount} degrees"
 
 
-def array_phrase(elements: int, combining: str) -> str:
+def array_phrase(elements: int) -> str:
     """Return a vehicle with an array in a sentence.
 
     Args:
         elements: of the array.
-        combining: ``"digital"`` or ``"analogue"``.
     """
-    return f"a level vehicle with an array of {elements} {_COMBINING[combining]}"
+    return f"a level vehicle with an array of {elements} with digital combining"
 
 
 def _degrees(angle_rad: float) -> str:
@@ -112,14 +114,3 @@ def _stated(own: Airframe) -> AirframeCase:
     label = f"file: tilt {_degrees(own.tilt_max_rad)}, mount {_degrees(own.mount_rad)}"
     phrase = f"the file's vehicle ({mounted_phrase(own)})"
     return AirframeCase(name=STATED, label=label, phrase=phrase, airframe=own)
-
-
-def _array_case(array: Array, elements: int, combining: str) -> AirframeCase:
-    return AirframeCase(
-        name=f"array-{elements}-{combining}",
-        label=f"array of {elements}, {combining}",
-        phrase=array_phrase(elements, combining),
-        airframe=_LEVEL,
-        array=array.model_copy(update={"elements": elements}),
-        combining=combining,
-    )

@@ -75,7 +75,7 @@ class AirframeResult:
             "name": self.case.name,
             "label": self.case.label,
             "airframe": self.case.airframe.to_dict(),
-            "array": None if array is None else array.to_dict() | {"combining": self.case.combining},
+            "array": None if array is None else array.to_dict() | {"combining": "digital"},
             "status": None if found is None else found.status.value,
             "reason": self.reason,
             "rigour": None if found is None else found.rigour.value,
@@ -260,7 +260,7 @@ def compare_airframes(
     def solved(own: Scenario, case: AirframeCase) -> AirframeResult:
         now = options | {"certify": asked.certify and not any(interrupted)}
         try:
-            result = solved_case(case.on(own), combining=case.combining, **now)
+            result = solved_case(case.on(own), **now)
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise

@@ -38,7 +38,6 @@ def solved_case(
     scenario: Scenario,
     scheme: Scheme = Scheme.OPTIMUM,
     *,
-    combining: str = "",
     robust: bool = False,
     **options: Unpack[SolveKeywords],
 ) -> Result:
@@ -47,12 +46,11 @@ def solved_case(
     Args:
         scenario: with the case's vehicle.
         scheme: how the pose of one dipole is chosen.
-        combining: of the scenario's array: ``"digital"`` or ``"analogue"``; empty for one dipole.
         robust: whether the pose is asked for that guarantees most under the scenario's errors.
         options: as for :func:`nullpose.solve`.
     """
     if robust:
         return solve_robust(scenario, **options)
-    if combining:
-        return solve_array(scenario, combining, **options)
+    if scenario.array is not None:
+        return solve_array(scenario, **options)
     return solve(scenario, scheme, **options)

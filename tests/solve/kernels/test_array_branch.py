@@ -21,7 +21,7 @@ def _branch(task: ArrayTask, target: float, most: int = 200_000) -> tuple[float,
 
 
 def _task(scenario: Scenario) -> ArrayTask:
-    return ArrayTask.of(scenario, Array(elements=3, layout="linear", spacing_wavelengths=0.5), shared=False)
+    return ArrayTask.of(scenario, Array(elements=3, layout="linear", spacing_wavelengths=0.5))
 
 
 def _sampled(task: ArrayTask, rng: np.random.Generator) -> float:

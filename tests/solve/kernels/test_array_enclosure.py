@@ -17,7 +17,7 @@ CORNERS = np.array(list(product((-1.0, 1.0), repeat=4)))
 
 def _task(scenario: Scenario, elements: int, layout: str = "linear") -> ArrayTask:
     array = Array(elements=elements, layout=layout, spacing_wavelengths=0.6)
-    return ArrayTask.of(scenario, array, shared=False)
+    return ArrayTask.of(scenario, array)
 
 
 def _largest(task: ArrayTask, centre: np.ndarray, half: np.ndarray, rng: np.random.Generator) -> float:

@@ -12,7 +12,7 @@ import pytest
 from nullpose import ScenarioError
 from nullpose.scenario.toml_text import toml_text
 from nullpose.study import AIRFRAME_CASES
-from nullpose.study.monte_carlo import StudySpec, draw_scene, load_spec
+from nullpose.study.monte_carlo import StudyCase, StudySpec, draw_scene, load_spec
 
 Tables = Callable[..., dict[str, Any]]
 
@@ -101,6 +101,15 @@ def test_every_fault_at_once(tmp_path: Path) -> None:
     assert 'did you mean "tilt-10"' in faults["cases[1].airframe"] or "tilt-30" in faults["cases[1].airframe"]
     assert 'did you mean "gap"' in faults["gapp"]
     assert "centre_m and radius_m nor x_m and y_m" in faults["jammers"]
+
+
+def test_analogue_combining_is_refused() -> None:
+    """A case of before that asks for it is told what arrays have; digital combining may be stated."""
+    case = {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5, "combining": "digital"}}
+    assert StudyCase.from_dict(case).array.elements == 2
+    case["array"]["combining"] = "analogue"
+    with pytest.raises(ScenarioError, match=r"array\.combining.*analogue combining is not there any more"):
+        StudyCase.from_dict(case)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

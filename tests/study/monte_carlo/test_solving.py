@@ -32,10 +32,10 @@ def test_a_robust_case_is_worth_what_it_guarantees(spec: Spec) -> None:
 
 
 def test_an_array_takes_the_place_of_the_dipole(spec: Spec) -> None:
-    """Elements, layout and combining of the case count."""
+    """Elements and layout of the case count, and digital combining may be stated."""
     array = {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5, "combining": "digital"}
     row, scene = _row(spec(cases=[{"array": array}]))
-    found = solve_array(scene, "digital", elements=2, layout="linear", spacing_wavelengths=0.5, gap=1e-2)
+    found = solve_array(scene, elements=2, layout="linear", spacing_wavelengths=0.5, gap=1e-2)
     assert row["value"] == found.objective.value
     assert (row["roll_rad"], row["pitch_rad"]) == (0.0, 0.0)
 

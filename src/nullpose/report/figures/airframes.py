@@ -80,9 +80,7 @@ def _draw_rows(axes: Axes, comparison: AirframeComparison, quantity: Quantity, p
     lengths = np.nan_to_num(np.maximum(numbers, low) - low)
     cases = [result.case for result in comparison.results]
     colours = [VEHICLES["array" if case.array else case.name].colour for case in cases]
-    hatches = ["////" if case.combining == "analogue" else "" for case in cases]
-    bars: dict[str, Any] = {"color": colours, "hatch": hatches, "edgecolor": "white", "linewidth": 0.0}
-    axes.barh(places, lengths[0], left=low, height=0.62, zorder=2.0, **bars)
+    axes.barh(places, lengths[0], left=low, height=0.62, zorder=2.0, color=colours)
     axes.hlines(places, low + lengths[0], bounds, color=INK, linewidth=1.0, zorder=3.0)
     axes.plot(bounds, places, "|", color=INK, markersize=7.0, zorder=3.0, label="upper bound")
     if comparison.scenario.is_uncertain:

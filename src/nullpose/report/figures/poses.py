@@ -157,10 +157,7 @@ def draw_array(solution: Result, width: str | None = None) -> Figure:
     """
     array, quantity, yaw_rad = solution.details, solution.objective.quantity, solution.pose.yaw_rad
     elements = element_positions(array.elements, array.layout, array.spacing_wavelengths, yaw_rad)
-    weights, whose = array.weights, ""
-    if weights.ndim == 2:
-        weights = weights[[link.node for link in solution.links].index(solution.binding_node)]
-        whose = f" for {solution.binding_node}"
+    weights = array.weights[[link.node for link in solution.links].index(solution.binding_node)]
     azimuth_deg = ALONE.azimuth_deg
     if array.layout == "linear":  # seen more from the side
         places = (azimuth_deg, _ELSEWHERE_DEG)
@@ -171,7 +168,7 @@ def draw_array(solution: Result, width: str | None = None) -> Figure:
     return draw_panels(
         Stage(scenario=solution.scenario, poses=(solution.pose,), view=view),
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
-        surface=f"gain of the beam{whose}, horizontal cut as a line",
+        surface=f"gain of the beam for {solution.binding_node}, horizontal cut as a line",
         head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}\n"
         f"{sensitivity_caption(solution)}".rstrip(),
         plan=True,

@@ -109,7 +109,7 @@ def _described(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
     if case.pose is not None:
         return replace(plain, phrase=f"the given pose {case.name}")
     if case.array is not None:
-        return replace(plain, phrase=array_phrase(case.array.elements, case.array.combining))
+        return replace(plain, phrase=array_phrase(case.array.elements))
     if case.scheme is Scheme.VERTICAL:
         return replace(plain, phrase=LEVEL.phrase, role=LEVEL.name, tilt_deg=0.0)
     if case.scheme not in (None, Scheme.OPTIMUM):

@@ -1,7 +1,7 @@
 """What every node gets from an array in a state: the logarithms of the ratios, and their slopes.
 
 Channels are divided by the noise's amplitude, so that noise has the power 1. The variables of a state ``x``
-are east, north, up, yaw and, for a shared beam, one phase for each element.
+are east, north, up and yaw.
 """
 
 from __future__ import annotations
@@ -141,72 +141,31 @@ def node_power(channels, nulls, q, slope, parts):
     return value
 
 
-@inner_heap_kernel
-def digital(problem, x, logs, slopes):
-    """Fill every node's log of ``h^H R^-1 h``, and its slopes, (nodes, 4), unless they have no rows."""
+@heap_kernel
+def respond(problem, x, logs, slopes):
+    """Fill every node's log of ``h^H R^-1 h`` and, unless they have no rows, its slopes; return the smallest.
+
+    Args:
+        problem: the array and its scene.
+        x: (4,).
+        logs: output, (nodes,).
+        slopes: output, (nodes, 4) or (0, 4).
+    """
     channels = channels_at(problem, x)
     nulls = nulls_towards(channels.values, np.arange(problem.nodes, len(problem.points_m)))
     parts, none = np.empty(len(nulls.jammers), np.complex128), np.empty(0)
+    worst = math.inf
     for q in range(problem.nodes):
         slope = slopes[q] if len(slopes) > 0 else none
         value = node_power(channels, nulls, q, slope, parts)
         logs[q] = math.log(value) if value > 0.0 else -math.inf
+        worst = min(worst, logs[q])
         for a in range(len(slope)):
             slope[a] /= max(value, _TINY)
-
-
-@inner_kernel
-def beam_power(w, channels, i, slope):
-    """Return ``|w^H h_i|^2`` and add its slopes in the variables of a shared beam, unless there are none."""
-    part, change = beam_response(w, channels, i)
-    for a in range(min(4, len(slope))):
-        slope[a] += 2.0 * (part.conjugate() * change[a]).real
-    for n in range(len(slope) - 4):
-        slope[4 + n] += 2.0 * (part.conjugate() * w[n].conjugate() * channels.values[i, n]).imag
-    return part.real**2 + part.imag**2
-
-
-@inner_heap_kernel
-def shared_beam(problem, x, logs, slopes):
-    """Fill the log SINR of every node with one beam of phase shifters, and its slopes (nodes, 4 + k)."""
-    channels, k = channels_at(problem, x), len(problem.base)
-    w = np.empty(k, np.complex128)
-    for n in range(k):
-        w[n] = complex(math.cos(x[4 + n]), math.sin(x[4 + n])) / math.sqrt(k)
-    size = 4 + k if len(slopes) > 0 else 0
-    of_jamming = np.zeros(size)
-    below = 1.0
-    for j in range(problem.nodes, len(problem.points_m)):
-        below += beam_power(w, channels, j, of_jamming)
-    for q in range(problem.nodes):
-        of_signal = np.zeros(size)
-        value = beam_power(w, channels, q, of_signal)
-        logs[q] = math.log(value / below) if value > 0.0 else -math.inf
-        for a in range(size):
-            slopes[q, a] = of_signal[a] / max(value, _TINY) - of_jamming[a] / below
-
-
-@heap_kernel
-def respond(problem, x, logs, slopes):
-    """Fill every node's log ratio at a state and, unless they have no rows, its slopes; return the smallest.
-
-    Args:
-        problem: the array and its scene.
-        x: (4,) or, with a shared beam, (4 + k,).
-        logs: output, (nodes,).
-        slopes: output, (nodes, size of x) or (0, size of x).
-    """
-    if problem.shared:
-        shared_beam(problem, x, logs, slopes)
-    else:
-        digital(problem, x, logs, slopes)
-    worst = math.inf
-    for q in range(problem.nodes):
-        worst = min(worst, logs[q])
     return worst
 
 
 @heap_kernel
 def array_value(problem, x):
     """Return the smallest log ratio at a state, as :func:`respond`."""
-    return respond(problem, x, np.empty(problem.nodes), np.empty((0, x.shape[0])))
+    return respond(problem, x, np.empty(problem.nodes), np.empty((0, 4)))

@@ -30,9 +30,8 @@ Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
 _SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
-_Combining = Annotated[
-    Literal["digital", "analogue"], Choice("a way to combine elements", ("digital", "analogue"))
-]
+_DIGITAL = "digital combining, which is what arrays have (analogue combining is not there any more)"
+_Combining = Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))]
 
 _BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_CASES} | {
     preset: Airframe.from_dict({"preset": preset})
@@ -73,17 +72,17 @@ _Bool = Annotated[bool, _Truth()]
 
 
 class CaseArray(Array):
-    """Several dipoles on a level vehicle, and how they are combined.
+    """Several dipoles on a level vehicle.
 
     Args:
-        combining: digital or analogue.
+        combining: digital, which need not be stated.
     """
 
     header: ClassVar[str] = "a table such as { elements = 4, layout = ..., spacing_wavelengths = 0.5 }"
 
     combining: _Combining = Field(
         default="digital",
-        description="How the elements are combined: digital or analogue.",
+        description="How the elements are combined: digital, which need not be stated.",
         examples=["digital"],
     )
 
@@ -189,7 +188,7 @@ class StudyCase(Section):
     )
     array: CaseArray | None = Field(
         default=None,
-        description="An array on a level vehicle: elements, layout, spacing_wavelengths and combining.",
+        description="An array on a level vehicle: elements, layout and spacing_wavelengths.",
         examples=[{"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}],
     )
     robust: _Bool | None = Field(

@@ -131,7 +131,6 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
     result = solved_case(
         scene,
         case.scheme or Scheme.OPTIMUM,
-        combining="" if case.array is None else case.array.combining,
         robust=bool(case.robust),
         **options,
     )
