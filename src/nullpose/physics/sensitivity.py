@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
@@ -28,7 +28,7 @@ _RINGS = np.outer([0.0, 0.3, 0.6, 1.0, 2.0, 4.0], np.exp(1j * np.arange(12) * np
 _SPIRAL = np.sqrt((np.arange(40) + 0.5) / 40.0) * np.exp(2.4j * np.arange(40))
 """Places over a disc of radius 1, one after the other by the golden angle."""
 _STARTS = 5  # descents of the worst ratios of each kind, and as many of the worst samples
-_ROUNDS = 20
+_ROUNDS = 12
 _JAMMED = 4  # errors of the drone for which jammers are moved anew, and ways to move them
 _STEP = 1e-6  # of a difference quotient, in radii
 _STEPS = np.array([1e9, 0.3, 0.03])  # against the slope in each ball, in radii; the first is to the border
@@ -162,48 +162,56 @@ class _Search:
         """Search the smallest ratio without errors, then of each kind of error, (5,)."""
         samples, none = self._samples(), np.zeros((1, len(self.ball)))
         jammed, nominal = self._with_worst_jammers(none), float(np.min(self._ratios(none)))
-        ends = [self._descend(np.concatenate([samples * free, jammed * free]), free) for free in self.free]
+        sets = [np.concatenate([samples * free, jammed * free]) for free in self.free]
+        alone, (attitude, position, jammers) = self._descend(sets, self.free)
         # all together: from samples, from the worst places of jammers, and from places found for other poses
-        drone = np.concatenate([samples * ~self.free[2], ends[0][1][:1] + ends[1][1][:1]])
-        elsewhere = (ends[2][1][:_JAMMED, None] + drone).reshape(-1, len(self.ball))
+        drone = np.concatenate([samples * ~self.free[2], attitude[:1] + position[:1]])
+        elsewhere = (jammers[:_JAMMED, None] + drone).reshape(-1, len(self.ball))
         worst = np.argsort(np.min(self._ratios(drone + jammed), axis=1))[:_JAMMED]
-        moved = self._with_worst_jammers(drone[worst])
-        ends += [self._descend(points, self.ball >= 0) for points in (samples, elsewhere, moved)]
-        lowest = np.minimum(nominal, [end[0] for end in ends])
-        return np.array([nominal, *lowest[:3], np.min(lowest)])
+        sets = [samples, elsewhere, self._with_worst_jammers(drone[worst])]
+        together, _ = self._descend(sets, np.ones((3, len(self.ball)), bool))
+        lowest = np.minimum(nominal, [*alone, min(*alone, *together)])
+        return np.array([nominal, *lowest])
 
-    def _descend(self, points: FloatArray, free: Any) -> tuple[float, FloatArray]:
-        """Descend along the slope of the logarithm of a ratio; return the lowest ratio and the ends, (n, d).
+    def _descend(self, sets: Sequence[FloatArray], free: Any) -> tuple[FloatArray, list[FloatArray]]:
+        """Descend along the slope of the logarithm of a ratio, from the worst points of each set.
 
-        Half of the descents end every second round, those with the largest ratios.
+        Half of a set's descents end every second round, those with the largest ratios.
 
         Args:
-            points: the descents start from the worst of them.
-            free: (d,) the coordinates that change.
+            sets: points, (n, d) each.
+            free: (sets, d) the coordinates that change.
+
+        Returns:
+            The lowest ratio of each set, and the ends of its descents, (n, d), the lowest first.
         """
-        ratios = self._ratios(points)
-        lowest = float(np.min(ratios))
-        if not np.any(free):
-            return lowest, points[:1]
-        row, ratio = _starts(ratios)
-        points, values = points[row], np.log(np.maximum(_LEAST, ratios[row, ratio]))
-        before, last, going = points.copy(), points.copy(), np.arange(len(row))
+        ratios = [self._ratios(points) for points in sets]
+        lowest = np.array([np.min(each) for each in ratios])
+        starts = [_starts(each) for each in ratios]
+        points = np.concatenate([each[row] for each, (row, _) in zip(sets, starts, strict=True)])
+        values = np.concatenate([each[tuple(start)] for each, start in zip(ratios, starts, strict=True)])
+        values = np.log(np.maximum(_LEAST, values))
+        ratio = np.concatenate([ratio for _, ratio in starts])
+        of_set = np.repeat(np.arange(len(sets)), [len(row) for row, _ in starts])
+        before, last = points.copy(), points.copy()
+        going = np.flatnonzero(np.any(free, axis=1)[of_set])
         for done in range(_ROUNDS):
-            going = going[np.argsort(values[going])[: max(2, 2 * _STARTS >> done // 2)]]
-            slope = self._slope(points[going], ratio[going], values[going], free)
+            if not len(going):
+                break
+            going = _lowest_of_each(going, values, of_set, max(2, 2 * _STARTS >> done // 2))
+            slope = self._slope(points[going], ratio[going], values[going], free[of_set[going]])
             tried = self._steps(points[going], slope, before[going])
-            ratios = self._ratios(tried.reshape(-1, len(free))).reshape(*tried.shape[:2], -1)
-            lowest = min(lowest, float(np.min(ratios)))
-            of_ratio = np.take_along_axis(ratios, ratio[going, None, None], axis=2)[..., 0]
+            found = self._ratios(tried.reshape(-1, len(self.ball))).reshape(*tried.shape[:2], -1)
+            np.minimum.at(lowest, of_set[going], np.min(found, axis=(1, 2)))
+            of_ratio = np.take_along_axis(found, ratio[going, None, None], axis=2)[..., 0]
             best = np.argmin(of_ratio, axis=1)
             reached = np.log(np.maximum(_LEAST, _of(of_ratio, best)))
             better = reached < values[going] - _SETTLED
             before[going], last[going] = last[going], points[going]
             points[going[better]], values[going[better]] = _of(tried, best)[better], reached[better]
             going = going[better]
-            if not len(going):
-                break
-        return lowest, points[np.argsort(values)]
+        order = np.argsort(values)
+        return lowest, [points[order[of_set[order] == each]] for each in range(len(sets))]
 
     def _steps(self, points: FloatArray, slope: FloatArray, before: FloatArray) -> FloatArray:
         """Return where each point goes by several steps, (n, steps, d).
@@ -220,7 +228,7 @@ class _Search:
     def _slope(self, points: FloatArray, ratio: Any, values: FloatArray, free: Any) -> FloatArray:
         """Return the slope of a ratio's logarithm at each point, zero where nothing is free, (n, d)."""
         slope = np.zeros(points.shape)
-        row, column = np.nonzero(np.tile(free, (len(points), 1)))
+        row, column = np.nonzero(free)
         shifted = points[row]
         shifted[np.arange(len(row)), column] += _STEP
         logs = np.log(np.maximum(_LEAST, _of(self._ratios(shifted), ratio[row])))
@@ -287,6 +295,12 @@ def _starts(ratios: FloatArray) -> Any:
     worst = np.argsort(np.min(ratios, axis=0))[:_STARTS].tolist()
     pairs |= {(int(np.argmin(ratios[:, ratio])), ratio) for ratio in worst}
     return np.array(sorted(pairs)).T
+
+
+def _lowest_of_each(going: Any, values: FloatArray, of_set: Any, most: int) -> Any:
+    """Return so many of each set's descents that go on, those with the lowest values."""
+    going = going[np.argsort(values[going])]
+    return np.concatenate([going[of_set[going] == each][:most] for each in np.unique(of_set[going])])
 
 
 def _of(values: FloatArray, column: Any) -> FloatArray:
