@@ -67,7 +67,8 @@ class ErrorSizes:
 class Sensitivity:
     """The smallest value found when attitude, position, jammers or all of them are off: an estimate.
 
-    A search found these values, so that the true worst may be lower; :func:`nullpose.guarantee` proves one.
+    A search found these values, so that the true worst may be lower;
+    :func:`nullpose.solve.robust.guarantee` proves a lower bound.
 
     Args:
         quantity: the quantity of the values.

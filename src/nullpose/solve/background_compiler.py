@@ -24,6 +24,8 @@ _LONGEST_S = 300.0  # then they are no longer waited for, and this process compi
 _LONGEST_WITHOUT_S = 5.0  # likewise where no folder keeps kernels, so that no process can help
 _ROOM = 2_000_000  # bytes that a folder must have room for
 _MOST = 2  # processes once this one has nothing to do: search and proof are the two long parts
+_STARTED: list[subprocess.Popen[bytes]] = []
+"""All processes: one that is still running may not be forgotten."""
 _PROGRAM = "from nullpose.solve.background_compiler import compile_requested as c; c()"
 
 
@@ -126,7 +128,7 @@ class BackgroundCompiler:
             return
         requests, self._sent = self._requests[self._sent :], len(self._requests)
         with suppress(OSError):
-            self._processes.append(
+            _STARTED.append(
                 subprocess.Popen(
                     [sys.executable, "-P", "-c", _PROGRAM, pickle.dumps(requests).hex()],
                     stdin=subprocess.DEVNULL,
@@ -136,6 +138,7 @@ class BackgroundCompiler:
                     pass_fds=(self._lock,) if os.name == "posix" else (),
                 )
             )
+            self._processes.append(_STARTED[-1])
 
     def _has_lock(self) -> bool:
         """Return whether there is a folder with room for kernels that no other command fills."""

@@ -41,7 +41,7 @@ class ManySolutions:
             states a weight or a requirement, evaluated at the pose: a power ratio. Not a number where there
             is no pose.
         upper_bound: no pose exceeds this; infinity where nothing is proved.
-        status: how each ended, a :class:`nullpose.Status`; None where there is no pose.
+        status: how each ended, a :class:`nullpose.solve.Status`; None where there is no pose.
         reason: what kept it from being certified; empty where it was.
         position_m: (s, a, 3) metres.
         roll_rad: radians, as yaw and pitch.
