@@ -57,11 +57,11 @@ def sensitivity_caption(result: Result) -> str:
     if found is None:
         return ""
     value = with_unit(found.quantity.in_unit(found.all), found.quantity)
-    return f"{value} or less with {sizes_words(result, found.sizes)} off"
+    return f"{value} or less if off by {sizes_words(result, found.sizes)}"
 
 
 def sizes_words(result: Result, sizes: ErrorSizes) -> str:
-    """Return the errors that are tried together, as in "attitude 1°, position 1 m, jammers 10 m".
+    """Return the errors that are tried together, as in "1°, 1 m, jammers 10 m".
 
     Args:
         result: of a solve, or of one pose that was given.
@@ -69,7 +69,7 @@ def sizes_words(result: Result, sizes: ErrorSizes) -> str:
     """
     point = result.scenario.objective_record.interferers
     moved = f", {point} {sizes.jammers_m:g} m" if getattr(result.scenario, point) else ""
-    return f"attitude {sizes.attitude_deg:g}°, position {sizes.position_m:g} m{moved}"
+    return f"{sizes.attitude_deg:g}°, {sizes.position_m:g} m{moved}"
 
 
 def sensitivity_words(result: Result) -> str | None:

@@ -83,8 +83,10 @@ def draw_pose(solution: Result, width: str | None = None) -> Figure:
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     scenario, pose = solution.scenario, solution.pose
-    words = textwrap.fill(_words(scenario, solution.objective, pose), _LETTERS)
-    words = "\n".join(filter(None, (words, sensitivity_caption(solution))))
+    words = "; ".join(
+        filter(None, (_words(scenario, solution.objective, pose), sensitivity_caption(solution)))
+    )
+    words = textwrap.fill(words, _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
     is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
     look: dict[str, Any] = {"surface": _WHOLE if is_pattern else _SURFACE, "plan": True, "width": width}
@@ -169,8 +171,8 @@ def draw_array(solution: Result, width: str | None = None) -> Figure:
         Stage(scenario=solution.scenario, poses=(solution.pose,), view=view),
         lambda axes, stage, pose: _draw_array(axes, stage, pose, elements, weights),
         surface=f"gain of the beam for {solution.binding_node}, horizontal cut as a line",
-        head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}\n"
-        f"{sensitivity_caption(solution)}".rstrip(),
+        head=f"{solution.scenario.name}\n{solution.label}: {quantity.smallest} {value}, {yaw}; "
+        f"{sensitivity_caption(solution)}",
         plan=True,
         width=width,
     )
