@@ -23,7 +23,7 @@ _QUIET_S = 3.0  # nobody is told of what takes no longer
 _LONGEST_S = 300.0  # then they are no longer waited for, and this process compiles
 _LONGEST_WITHOUT_S = 5.0  # likewise where no folder keeps kernels, so that no process can help
 _ROOM = 2_000_000  # bytes that a folder must have room for
-_MOST = 2  # processes once this one has nothing to do: search and proof are the two long parts
+_MOST = 2  # processes once this one has little to do: search and proof are the two long parts
 _STARTED: list[subprocess.Popen[bytes]] = []
 """All processes: one that is still running may not be forgotten."""
 _PROGRAM = "from nullpose.solve.background_compiler import compile_requested as c; c()"
@@ -90,6 +90,7 @@ class BackgroundCompiler:
                 self._busy_s, self._looked = self._busy_until(now), now
                 self._start()
                 if self._is_busy() and now > self._began + _QUIET_S:
+                    self._most = _MOST  # a large scene: what Python does meanwhile counts for little
                     self._announce()
             return self._is_busy()
 
@@ -147,17 +148,15 @@ class BackgroundCompiler:
         path = Path(self._folder) / "compiling.lock"
         try:
             self._lock = os.open(path, os.O_RDWR | os.O_CREAT)
-            with suppress(ImportError):  # without such locks several commands may compile the same
-                import fcntl
-
-                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            path.write_bytes(bytes(_ROOM))
-            path.write_bytes(b"")
+            if _is_locked_elsewhere(self._lock):
+                self._unlock()
+            else:
+                path.write_bytes(bytes(_ROOM))
+                path.write_bytes(b"")
         except OSError as error:
             self._unlock()
-            if not isinstance(error, BlockingIOError):
-                warn_once(f"Kernels cannot be kept in {self._folder}: {error.strerror}. {UNCACHED}")
-                self._folder = None
+            warn_once(f"Kernels cannot be kept in {self._folder}: {error.strerror}. {UNCACHED}")
+            self._folder = None
         return self._lock >= 0
 
     def _unlock(self) -> None:
@@ -165,6 +164,20 @@ class BackgroundCompiler:
         if self._lock >= 0:
             os.close(self._lock)
         self._lock = -1
+
+
+def _is_locked_elsewhere(file: int) -> bool:
+    """Return whether another process has locked a file; lock it here if not.
+
+    Where the system or the folder has no such locks, several commands may compile the same kernels.
+    """
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (ImportError, OSError) as error:
+        return isinstance(error, BlockingIOError)
+    return False
 
 
 def compile_requested() -> None:

@@ -103,6 +103,29 @@ def test_a_folder_that_cannot_be_written_is_said_once(tmp_path: Path) -> None:
     assert "NUMBA_CACHE_DIR" in done.stderr
 
 
+NO_LOCKS = """
+import errno
+import fcntl
+from nullpose.solve.background_compiler import BackgroundCompiler
+from tiny import twice
+
+def refuse(*_):
+    raise OSError(errno.ENOLCK, "No locks available")
+
+fcntl.flock = refuse
+compiler = BackgroundCompiler()
+with compiler.in_use():
+    print(twice(1.0), compiler.wait())
+"""
+
+
+def test_a_folder_without_locks_keeps_kernels(tmp_path: Path) -> None:
+    """Some network folders have no locks: kernels are compiled and kept there, and nothing is said."""
+    done = run(NO_LOCKS, tmp_path)
+    assert (done.stdout, done.stderr) == ("2.0 True\n", "")
+    assert list((tmp_path / "kernels").rglob("tiny.twice*.nbc"))
+
+
 SLOW = """
 from nullpose.solve.kernels.jit import heap_kernel, inner_heap_kernel
 import numpy as np

@@ -87,5 +87,6 @@ def _namespace(function: FunctionType) -> dict[str, Any]:
             for name, value in function.__globals__.items():
                 if hasattr(value, "py_func"):
                     plain = python_of(value.py_func)
-                    names[name] = yielding(plain) if value.makes_arrays else plain
+                    is_long = value.makes_arrays or callable(value)  # a part is not, and too short to look
+                    names[name] = yielding(plain) if is_long else plain
         return _namespaces[module]

@@ -13,13 +13,13 @@ from contextlib import suppress
 from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from llvmlite import binding
 from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, Flags
+from numba.core.compiler import CompilerBase
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
@@ -60,48 +60,8 @@ class _Part(_Whole):
         """Do nothing: an environment belongs to machine code."""
 
 
-class _Flags(Flags):
-    """Options of the compiler, which it compares half a million times: here by what was stated of them."""
-
-    __slots__ = ()
-
-    def __hash__(self) -> int:
-        return hash(frozenset(self._values))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Flags) and self._values == other._values
-
-
-class _Typing:
-    """Numba's context of types, which looks up again what is called with the same types: here it is kept."""
-
-    _found: ClassVar[dict[Any, Any]] = {}
-
-    def __init__(self, context: Any, heap: bool) -> None:
-        self._context, self._heap = context, heap
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Return the signature of a call."""
-        if kws or isinstance(func, types.Dispatcher):  # a kernel may call itself
-            return self._context.resolve_function_type(func, args, kws)
-        key = self._heap, func, tuple(args)
-        if key not in self._found:
-            self._found[key] = self._context.resolve_function_type(func, args, kws)
-        return self._found[key]
-
-
 class _Compiler(CompilerBase):
     library: Any = _Whole
-
-    def __init__(
-        self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Flags, variables: Any
-    ) -> None:
-        super().__init__(
-            _Typing(typing, bool(flags.nrt)), target, library, args, result, _Flags(flags), variables
-        )
 
     def define_pipelines(self) -> list[Any]:
         from nullpose.solve.kernels.passes import passes  # a part of the compiler
@@ -221,13 +181,14 @@ class LinkedDispatcher(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Return what runs for arguments of some types: machine code, or Python while that is not there."""
-        compiler, cache = interpreted.compiler, self._cache
-        is_there = tuple(sig) in self.overloads or (
-            isinstance(cache, _Cache) and cache.holds(sig, self.targetctx)
-        )
-        if compiler is None or is_there or not compiler.takes(self, sig):
+        compiler = interpreted.compiler
+        if compiler is None or self._has_code(sig) or not compiler.takes(self, sig):
             return super().compile(sig)
         return partial(interpreted.interpret, self, sig)
+
+    def _has_code(self, sig: Any) -> bool:
+        is_kept = isinstance(self._cache, _Cache) and self._cache.holds(sig, self.targetctx)
+        return is_kept or tuple(sig) in self.overloads
 
     def add_overload(self, cres: Any) -> None:
         """Keep the machine code for one choice of types."""
