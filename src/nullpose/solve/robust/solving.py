@@ -115,16 +115,16 @@ def solve_robust(
     )
 
 
-def _best(stated: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
+def _best(scenario: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
     """Return the best pose so far with its proof, the one from before if it is still the best."""
     best = exchange.best
     same = (best.position_m, best.axis)
     if before is not None and np.allclose((before.guarantee.position_m, before.guarantee.axis), same, 1e-12):
         return before
     pose = Pose.of_airframe(exchange.inner.scenario, best.position_m, best.axis)
-    return _guarded(stated, exchange, pose)
+    return _guarded(scenario, exchange, pose)
 
 
-def _guarded(stated: Scenario, exchange: Exchange, pose: Pose) -> GuardedPose:
+def _guarded(scenario: Scenario, exchange: Exchange, pose: Pose) -> GuardedPose:
     proved = guarantee_of(exchange.inner, pose.position_m, pose.antenna_axis, exchange.accuracy())
-    return GuardedPose(scenario=stated, pose=pose, guarantee=proved)
+    return GuardedPose(scenario=scenario, pose=pose, guarantee=proved)
