@@ -76,7 +76,7 @@ Off = Annotated[
         "--off",
         metavar="ERRORS",
         help="The largest errors of the table If things are off, as in attitude_deg=2,position_m=3,"
-        "jammers_m=200.",
+        "jammers_m=200, and of a robust solve if the scenario states none.",
         show_default="attitude_deg=1,position_m=1,jammers_m=10",
     ),
 ]

@@ -166,11 +166,11 @@ def robust_view(solution: Result) -> View:
     objective, quantity = solution.objective, solution.objective.quantity
     cells = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
-    unbounded = "no upper bound on the guaranteed value" if solution.upper_bound is None else ""
     combinations = f"upper bound from {count_of(solution.cases, 'combination')} of errors"
-    errors = f"errors: {error_words(solution.scenario)}; {combinations}"
+    bound = "no upper bound on the guaranteed value" if solution.upper_bound is None else combinations
+    errors = f"errors: {error_words(solution.scenario)}; {bound}"
     return document(
-        _head(solution, "Robust, guaranteed", unbounded, errors, solution.note),
+        _head(solution, "Robust, guaranteed", errors, solution.note),
         table(
             "",
             beside({name: _guarded_cells(objective, one) for name, one in cells.items()}),

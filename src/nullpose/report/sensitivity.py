@@ -29,9 +29,9 @@ def sensitivity_view(result: Result) -> View | None:
     quantity, sizes = found.quantity, found.sizes
     point = result.scenario.objective_record.interferers.removesuffix("s")
     kinds = {
-        "attitude": f"attitude by {sizes.attitude_deg:g} deg",
-        "position": f"position by {sizes.position_m:g} m",
-        "jammers": f"each {point} by {sizes.jammers_m:g} m",
+        "attitude": f"attitude by up to {sizes.attitude_deg:g} deg",
+        "position": f"position by up to {sizes.position_m:g} m",
+        "jammers": f"each {point} by up to {sizes.jammers_m:g} m",
         "all": "all together",
     }
     if not getattr(result.scenario, f"{point}s"):
@@ -44,7 +44,10 @@ def sensitivity_view(result: Result) -> View | None:
             number(value - quantity.in_unit(found.nominal), quantity) for value in values
         ],
     }
-    return document(table("If things are off", rows(columns)), sensitivity_words(result))
+    return document(
+        table("If things are off (by a search; the true lowest value can be lower)", rows(columns)),
+        sensitivity_words(result),
+    )
 
 
 def sensitivity_caption(result: Result) -> str:
@@ -57,7 +60,7 @@ def sensitivity_caption(result: Result) -> str:
     if found is None:
         return ""
     value = with_unit(found.quantity.in_unit(found.all), found.quantity)
-    return f"{value} or less if off by {sizes_words(result, found.sizes)}"
+    return f"as low as {value} with errors up to {sizes_words(result, found.sizes)}"
 
 
 def sizes_words(result: Result, sizes: ErrorSizes) -> str:
@@ -82,12 +85,12 @@ def sensitivity_words(result: Result) -> str | None:
     if found is None or not found.loss_db() > NULL_LOSS_DB:
         return None
     names = ", ".join(nulled_names(result))
-    pose = f"The pose stands on a null (towards {names})" if names else "The pose depends on these values"
+    pose = f"The pose stands on a null (towards {names})" if names else "The value depends on these errors"
     quantity = found.quantity
     loss = quantity.in_unit(found.nominal) - quantity.in_unit(found.all)
     words = with_unit(loss, quantity) if math.isfinite(loss) else "all of its value"
-    robust = "--robust finds the best pose for such errors." if _has_robust_pose(result) else ""
-    return f"{pose}: under these errors it loses {words} or more. {robust}".rstrip()
+    robust = f"--robust finds the best pose for {_robust_errors(result)}." if _has_robust_pose(result) else ""
+    return f"{pose}: under these errors it can lose {words} or more. {robust}".rstrip()
 
 
 def nulled_names(result: Result) -> list[str]:
@@ -105,6 +108,13 @@ def nulled_names(result: Result) -> list[str]:
     gains = link_gain(*at, getattr(scenario, f"{point}_antennas"))
     peak = antenna.peak if isinstance(antenna, PatternAntenna) else 1.0
     return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN * peak]
+
+
+def _robust_errors(result: Result) -> str:
+    """Return the errors that a robust solve takes."""
+    if result.scenario.is_uncertain:
+        return "the errors that the scenario states"
+    return "such errors" if result.error_sizes == ErrorSizes() else "such errors, with the same --off"
 
 
 def _has_robust_pose(result: Result) -> bool:

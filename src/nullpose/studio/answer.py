@@ -103,7 +103,7 @@ def with_errors(answer: Answer) -> Answer:
         return answer
     quantity = found.quantity
     loss = signed(quantity.in_unit(found.nominal) - quantity.in_unit(found.all))
-    line = f"loses {loss} {quantity.unit} or more if off by {sizes_words(result, found.sizes)}"
+    line = f"can lose {loss} {quantity.unit} or more with errors up to {sizes_words(result, found.sizes)}"
     sentence = (sensitivity_words(result) or "").partition(":")[0]
     return replace(answer, errors=(line, f"{sentence}.") if sentence else (line,))
 
