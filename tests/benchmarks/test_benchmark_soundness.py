@@ -57,6 +57,13 @@ def test_hard_scenes_with_patterns(number: int) -> None:
     assert outcome.checked
 
 
+def test_equal_gains_all_round_are_verified() -> None:
+    """A profile that is the same in every direction: some thousand leaves, each with a whole turn."""
+    outcome = check_scene(make_feature_scene("gaps", 169), starts=5, time_limit_s=60.0)
+    assert outcome.faults == ()
+    assert outcome.checked
+
+
 @pytest.mark.parametrize("number", [321, 692])
 def test_a_scheme_keeps_to_its_axes(number: int) -> None:
     """A proof that stops early improves no pose with an axis that its scheme does not allow."""

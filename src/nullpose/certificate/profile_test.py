@@ -153,18 +153,19 @@ def _negative(
             missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))
         return missed, side
     wide = way + Interval(-half[:3], half[:3]), [_about(t, h) for t, h in zip(turns, half[3:], strict=True)]
-    bound = _largest(
-        family, field.profile, leaves, (_links(apart, anchor, way, turns), _links(apart, anchor, *wide)), half
-    )
+    links = _links(apart, anchor, way, turns), _links(apart, anchor, *wide)
+    bound, shares = _largest(family, field.profile, leaves, links, half)
+    # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(way.middle(), axis=0)
-    side = np.argmax(half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))]), axis=0)
+    sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
+    side = np.argmax(np.where(np.all(np.isfinite(shares), axis=0), shares, sizes), axis=0)
     return bound < 0.0, np.where(side < 3, order[np.minimum(side, 2)], side)
 
 
 def _largest(
     family: Family, profile: Profile, leaves: Leaves, links: tuple[list[Link], list[Link]], half: FloatArray
-) -> FloatArray:
-    """Return upper bounds of the sums over cells, (b,).
+) -> tuple[FloatArray, FloatArray]:
+    """Return upper bounds of the sums over cells, (b,), and about what each coordinate adds to them, (5, b).
 
     Args:
         family: the ratios.
@@ -187,7 +188,10 @@ def _largest(
         link = wide.of(*ranges) * near_wide
         over = over + link.value * weight
         bends = bends + link.bends * weight
-    return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high))
+    shares, bent = slopes.magnitude() * half, bends.magnitude()
+    for pair, (i, j) in enumerate(PAIRS):
+        shares[[i, j]] += bent[pair] * half[i] * half[j]
+    return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high)), shares
 
 
 def _out_of_reach(
