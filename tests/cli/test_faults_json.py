@@ -13,7 +13,6 @@ Run = Callable[..., Result]
     ("arguments", "path", "words"),
     [
         (("--set", "jammers.M.power_w=-1"), "jammers[0].power_w", "must be a power in W"),
-        (("--robust",), "", "the scenario states no errors"),
         (("--scheme", "optimun"), "", "did you mean 'optimum'?"),
         (("--sceme", "optimum"), "", "--sceme"),
     ],
