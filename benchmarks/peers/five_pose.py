@@ -54,6 +54,7 @@ def unpack(reals, counts):
         np.zeros((0, 3, 3)),
         0.0,
         None,
+        None,
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

@@ -21,6 +21,7 @@ from nullpose.solve.options import SolveOptions
 from nullpose.solve.rigour import bound_above
 from nullpose.solve.worker_pool import Kernel, WorkerPool, processors
 
+_SMALLEST = 2.0**-60  # side of a leaf in a certificate, of the root's
 _AT_ONCE = 5_000  # nodes that take as long as a thorough search
 _DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
 _ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
@@ -231,8 +232,14 @@ class _Run:
     def search_thoroughly(self) -> None:
         """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
         search, self.search = self.search, None
-        if search is not None:
-            self._take(search())
+        if search is not None and (found := search()).log_value > self.incumbent.log_value:
+            # a climb from there has multipliers that exclude the boxes around it
+            self._improve(found.position_m, found.axis / np.linalg.norm(found.axis))
+
+    def _has_certificate(self, side_m: FloatArray) -> bool:
+        """Return whether a certificate can hold the leaves: so many, and halved so often."""
+        halves_m = self.leaves[:, self.node.HALF : self.node.LEVEL]
+        return len(self.leaves) <= MOST_LEAVES and bool(np.all(halves_m >= _SMALLEST * side_m))
 
     def result(self, reason: str) -> Proof:
         """Return what the run has come to."""
@@ -241,7 +248,7 @@ class _Run:
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
             root=np.array([middle - side, middle + side]),
-            leaves=self.leaves if len(self.leaves) <= MOST_LEAVES else self.leaves[:0].copy(),
+            leaves=self.leaves if self._has_certificate(side) else self.leaves[:0].copy(),
             reason=reason,
             nodes=self.nodes,
             axes_above=self.axes_above,
