@@ -27,7 +27,6 @@ if TYPE_CHECKING:
         WrongTypeError,
     )
     from nullpose.physics import (
-        ErrorSizes,
         Link,
         Pose,
         Poses,
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
         min_secrecy_rate,
         min_sinr,
         pose_frames,
-        sensitivity,
     )
     from nullpose.scenario import (
         Airframe,
@@ -57,11 +55,13 @@ if TYPE_CHECKING:
     )
     from nullpose.solve import (
         ArraySolution,
+        ErrorSizes,
         ManySolutions,
         Scheme,
         Solution,
         Status,
         compare,
+        sensitivity,
         solve,
         solve_array,
         solve_many,
@@ -145,7 +145,6 @@ _ROOMS = {
         "WrongTypeError",
     ),
     "nullpose.physics": (
-        "ErrorSizes",
         "Link",
         "Pose",
         "Poses",
@@ -154,7 +153,6 @@ _ROOMS = {
         "min_secrecy_rate",
         "min_sinr",
         "pose_frames",
-        "sensitivity",
     ),
     "nullpose.scenario": (
         "Airframe",
@@ -175,11 +173,13 @@ _ROOMS = {
     ),
     "nullpose.solve": (
         "ArraySolution",
+        "ErrorSizes",
         "ManySolutions",
         "Scheme",
         "Solution",
         "Status",
         "compare",
+        "sensitivity",
         "solve",
         "solve_array",
         "solve_many",

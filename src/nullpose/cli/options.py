@@ -11,8 +11,8 @@ import typer
 from nullpose.cli.printing import say
 
 if TYPE_CHECKING:
-    from nullpose.physics import ErrorSizes
     from nullpose.scenario import Scenario
+    from nullpose.solve import ErrorSizes
 
 
 class FigureWidth(StrEnum):
@@ -177,11 +177,11 @@ def error_sizes(text: str | None) -> ErrorSizes:
     from dataclasses import fields
 
     from nullpose.errors import UsageError
-    from nullpose.physics import ErrorSizes
+    from nullpose.solve.sensitivity import ErrorSizes
 
     names = [field.name for field in fields(ErrorSizes)]
     sizes: dict[str, float] = {}
-    for part in (text or "").split(",") if text is not None else ():
+    for part in [] if text is None else text.split(","):
         name, _, number = part.partition("=")
         name = name.strip().replace("eavesdroppers_m", "jammers_m")
         try:

@@ -37,9 +37,8 @@ from nullpose.cli.progress import GapBar, Ticker
 from nullpose.schemes import Scheme
 
 if TYPE_CHECKING:
-    from nullpose.physics import ErrorSizes
     from nullpose.scenario import Scenario
-    from nullpose.solve import Result
+    from nullpose.solve import ErrorSizes, Result
 
 _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
 

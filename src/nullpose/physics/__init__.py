@@ -36,7 +36,7 @@ from nullpose.physics.maximum_gain import (
     maximum_gain_sinr_as_printed,
 )
 from nullpose.physics.objective import margin, objective_value
-from nullpose.physics.polarisation import dipole_gain, link_gain
+from nullpose.physics.polarisation import dipole_gain, interferer_gains, link_gain
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
 from nullpose.physics.rotation import (
@@ -46,20 +46,17 @@ from nullpose.physics.rotation import (
     rotation_world_from_body,
 )
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
-from nullpose.physics.sensitivity import ErrorSizes, Sensitivity, sensitivity
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
 __all__ = [
     "ErrorCase",
-    "ErrorSizes",
     "FramePose",
     "Geodetic",
     "Link",
     "Pose",
     "PoseFrames",
     "Poses",
-    "Sensitivity",
     "antenna_axis",
     "antenna_gain",
     "array_channels",
@@ -76,6 +73,7 @@ __all__ = [
     "flu_from_frd",
     "frd_from_flu",
     "from_db",
+    "interferer_gains",
     "link_gain",
     "margin",
     "margins_of_many",
@@ -94,7 +92,6 @@ __all__ = [
     "rotation_between",
     "rotation_world_from_body",
     "secrecy_rate",
-    "sensitivity",
     "sinr",
     "sinr_under",
     "steering_vectors",

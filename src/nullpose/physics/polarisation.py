@@ -86,6 +86,24 @@ def link_gain(
     return np.asarray(ground.shares * ((1.0 - ground.leaks) * of_dipoles + ground.leaks * gain))
 
 
+def interferer_gains(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the gain of the link with each jammer, or eavesdropper, over the largest gains of both antennas.
+
+    Args:
+        scenario: its objective says whether jammers or eavesdroppers interfere.
+        position_m: the drone's position, shape ``(3,)``, metres.
+        axis: unit antenna axis, shape ``(3,)``; the attitude of an antenna with a pattern.
+
+    Returns:
+        Array of shape ``(m,)``, between 0 and 1.
+    """
+    point, antenna = scenario.objective_record.interferers.removesuffix("s"), scenario.antenna_record
+    points_m, ground = getattr(scenario, f"{point}_positions_m"), getattr(scenario, f"{point}_antennas")
+    gains = link_gain(position_m, axis, points_m.reshape(-1, 3), antenna, ground)
+    peak = antenna.peak if isinstance(antenna, PatternAntenna) else 1.0
+    return np.asarray(gains / (peak if ground is None else peak * ground.shares))
+
+
 def worst_polarised(scenario: Scenario) -> Scenario:
     """Return a scenario without dipoles on the ground whose null has a depth, itself if nothing is changed.
 

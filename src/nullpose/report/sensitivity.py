@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 
 from nullpose.antenna import PatternAntenna
-from nullpose.physics import ErrorSizes, link_gain
+from nullpose.physics import interferer_gains
 from nullpose.report.document import View, document, rows, table
 from nullpose.report.numbers import number, with_unit
-from nullpose.solve import Result
+from nullpose.solve import ErrorSizes, Result
 from nullpose.solve.robust import RobustDetails
 
 NULL_LOSS_DB = 3.0
 """A pose that loses more than this is said to depend on the errors."""
 
-_NULL_GAIN = 0.1  # of a link, relative to the strongest: below it an interferer counts as in a null
+_NULL_GAIN = 0.1  # of the largest gain of a link: below it an interferer counts as in a null
 
 
 def sensitivity_view(result: Result) -> View | None:
@@ -99,15 +99,10 @@ def nulled_names(result: Result) -> list[str]:
     Args:
         result: with its pose.
     """
-    scenario, antenna = result.scenario, result.scenario.antenna_record
-    point = scenario.objective_record.interferers.removesuffix("s")
-    points_m, names = getattr(scenario, f"{point}_positions_m"), getattr(scenario, f"{point}_names")
-    if not names:
-        return []
-    at = result.pose.position_m, result.pose.orientation(antenna), points_m, antenna
-    gains = link_gain(*at, getattr(scenario, f"{point}_antennas"))
-    peak = antenna.peak if isinstance(antenna, PatternAntenna) else 1.0
-    return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN * peak]
+    scenario, pose = result.scenario, result.pose
+    names = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_names")
+    gains = interferer_gains(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
+    return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN]
 
 
 def _robust_errors(result: Result) -> str:

@@ -15,6 +15,7 @@ from nullpose.solve.options import (
 )
 from nullpose.solve.result import Objective, Result, Results, Stats, Status
 from nullpose.solve.rigour import Rigour
+from nullpose.solve.sensitivity import ErrorSizes, Sensitivity, sensitivity
 
 Solution = Result
 """An older name of what a solve returns."""
@@ -28,12 +29,14 @@ __all__ = [
     "TIME_LIMIT_S",
     "ArrayDetails",
     "ArraySolution",
+    "ErrorSizes",
     "ManySolutions",
     "Objective",
     "Result",
     "Results",
     "Rigour",
     "Scheme",
+    "Sensitivity",
     "Solution",
     "SolveKeywords",
     "SolveOptions",
@@ -45,6 +48,7 @@ __all__ = [
     "compare",
     "default_gap",
     "default_gap_of",
+    "sensitivity",
     "solve",
     "solve_array",
     "solve_many",

@@ -232,9 +232,8 @@ class _Run:
     def search_thoroughly(self) -> None:
         """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
         search, self.search = self.search, None
-        if search is not None and (found := search()).log_value > self.incumbent.log_value:
-            # a climb from there has multipliers that exclude the boxes around it
-            self._improve(found.position_m, found.axis / np.linalg.norm(found.axis))
+        if search is not None:
+            self._take(search())
 
     def _has_certificate(self, side_m: FloatArray) -> bool:
         """Return whether a certificate can hold the leaves: so many, and halved so often."""

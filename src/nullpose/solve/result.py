@@ -13,11 +13,12 @@ from typing import Any
 from nullpose.errors import SolveError
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
-from nullpose.physics import ErrorSizes, Link, Pose, Sensitivity, pose_frames, sensitivity
+from nullpose.physics import Link, Pose, pose_frames
 from nullpose.scenario import Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve.proof import INTERRUPT, Proof
 from nullpose.solve.rigour import Rigour, bound_above
+from nullpose.solve.sensitivity import ErrorSizes, Sensitivity, sensitivity
 
 
 class Status(StrEnum):
@@ -49,7 +50,7 @@ class Stats:
     """What the solve cost.
 
     Args:
-        wall_s: wall-clock time, seconds, without that in which kernels were compiled.
+        wall_s: wall-clock time, seconds, without that in which this process waited for compiled kernels.
         starts: local searches run.
         evaluations: poses evaluated.
         boxes: boxes of positions examined by the proof; 0 without one.

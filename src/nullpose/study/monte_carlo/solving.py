@@ -12,7 +12,7 @@ import numpy as np
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate, link_gain
+from nullpose.physics import Pose, evaluate, interferer_gains
 from nullpose.scenario import Airframe, Scenario
 from nullpose.schemes import Scheme
 from nullpose.solve import (
@@ -84,17 +84,11 @@ def _options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
 
 
 def _null_gain(scene: Scenario, pose: Pose) -> float | None:
-    """Return the smallest gain towards a jammer (an eavesdropper, if the drone transmits), over its largest.
-
-    As in :func:`nullpose.physics.link_gain`, without the largest gain of the antenna on the ground; None
-    of an array, or if there is no such point.
-    """
-    kind, antenna = ("eavesdropper" if scene.objective_record.transmits else "jammer"), scene.antenna_record
-    points_m, ground = getattr(scene, f"{kind}_positions_m"), getattr(scene, f"{kind}_antennas")
-    if scene.array is not None or not len(points_m):
+    """Return the smallest of the gains towards interferers; None of an array, or without interferers."""
+    if scene.array is not None:
         return None
-    gains = link_gain(pose.position_m, pose.orientation(antenna), points_m, antenna, ground)
-    return float(np.min(gains / (1.0 if ground is None else ground.shares)))
+    gains = interferer_gains(scene, pose.position_m, pose.orientation(scene.antenna_record))
+    return float(np.min(gains)) if len(gains) else None
 
 
 def _found(

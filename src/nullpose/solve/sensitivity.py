@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from nullpose.errors import UsageError
-from nullpose.objectives import Quantity
+from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics.error_case import ErrorCase, ratios_under
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import rotation_about
-from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
 Ratios = Callable[[ErrorCase], FloatArray]

@@ -7,9 +7,10 @@ import pytest
 
 import nullpose
 from nullpose.errors import UsageError
-from nullpose.physics import ErrorCase, ErrorSizes, Pose, ratios_under, sensitivity
+from nullpose.physics import ErrorCase, Pose, ratios_under
 from nullpose.physics.rotation import rotation_about
 from nullpose.scenario import Scenario
+from nullpose.solve import ErrorSizes, sensitivity
 
 KINDS = ("attitude", "position", "jammers", "all")
 
@@ -102,9 +103,10 @@ def test_more_errors_never_give_a_larger_value(seed):
 
 def test_without_errors_nothing_is_lost(paper):
     """Errors of size zero leave the value of the objective."""
-    result = nullpose.solve(paper)
+    scenario = paper()
+    result = nullpose.solve(scenario)
     none = ErrorSizes(attitude_deg=0.0, position_m=0.0, jammers_m=0.0)
-    found = sensitivity(paper, result.pose, none)
+    found = sensitivity(scenario, result.pose, none)
     assert found.all == pytest.approx(result.objective.value, rel=1e-12)
     assert found.loss_db() == pytest.approx(0.0, abs=1e-9)
 
