@@ -125,7 +125,8 @@ def sensitivity(
         scenario: nodes, jammers or eavesdroppers, receiver; its airspace and stated errors are not consulted.
         pose: the pose.
         sizes: the largest errors; 1 degree, 1 m and 10 m if left out.
-        ratios: from error cases to ratios, for an antenna that is an array; :func:`ratios_under` otherwise.
+        ratios: from error cases to ratios, for an antenna that is an array;
+            :func:`nullpose.physics.ratios_under` otherwise.
 
     Example:
         >>> import nullpose
