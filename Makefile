@@ -19,9 +19,9 @@ demo: .venv/.with-core ## the paper's problem solved, its Figure 2 and its claim
 test: .venv/.with-test ## the tests, on two processes
 	$(BIN)/pytest -n 2
 
-test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who is let in
+test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who is let in, on two processes
 	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }
-	$(BIN)/pytest tests/studio/browser/studio_*.py
+	$(BIN)/pytest -n 2 --dist loadfile tests/studio/browser/studio_*.py
 
 check: .venv/.with-lint ## lint, format, types and the import contract
 	$(BIN)/ruff check .
