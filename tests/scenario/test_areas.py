@@ -160,8 +160,8 @@ def test_an_altitude_is_never_guessed(tmp_path: Path) -> None:
     (tmp_path / "nodes.kml").write_text(kml(kml_point("14.5012,50.0006,0")), encoding="utf-8")
     path = scene(tmp_path, "altitude_m = [20, 80]", top='nodes_from = "nodes.kml"', nodes="")
     (fault,) = faults_of(path)
-    assert fault.path == "nodes.kml: features[0].geometry.coordinates"
-    assert "alt_m, alt_msl_m (sea) or alt_agl_m (above the ground)" in fault.message
+    assert fault.path == 'nodes.kml: Placemark "gauge".geometry.coordinates'
+    assert "alt_m (ellipsoid), alt_msl_m (sea) or alt_agl_m (above the ground)" in fault.message
 
 
 def test_the_sea_is_below_the_ellipsoid_by_what_the_origin_says(tmp_path: Path) -> None:
@@ -199,11 +199,11 @@ def test_metres_take_the_place_of_degrees(tmp_path: Path) -> None:
     [
         ("{}", "type", 'must be "FeatureCollection"'),
         (geojson(), "features", "must be a list of one feature or more"),
-        (geojson(polygon(FENCE), polygon(ZONE)), "", "must be one Polygon, the fence"),
-        (geojson({"type": "Feature", "geometry": None}), "features[0].geometry", 'of type "Polygon"'),
-        (geojson(polygon([c[::-1] for c in FENCE])), "coordinates", "are latitude and longitude exchanged?"),
-        (geojson(polygon([[lat, 191.0] for lat, _ in FENCE])), "coordinates[0][1]", "must be a longitude"),
-        (geojson(polygon([FENCE[0], FENCE[2], FENCE[1], FENCE[3]])), "coordinates", "crosses or touches"),
+        (geojson(polygon(FENCE), polygon(ZONE)), "", "it has 2 areas, must be one polygon, the fence"),
+        (geojson({"type": "Feature", "geometry": None}), "", "it has 0 areas"),
+        (geojson(polygon([c[::-1] for c in FENCE])), "features[0]", "are latitude and longitude exchanged?"),
+        (geojson(polygon([[lat, 91.0] for lat, _ in FENCE])), "", "it has 0 areas"),
+        (geojson(polygon([FENCE[0], FENCE[2], FENCE[1], FENCE[3]])), "features[0]", "crosses itself"),
     ],
 )
 def test_faults_of_a_fence_name_its_file(content: str, path: str, words: str, tmp_path: Path) -> None:
@@ -225,7 +225,12 @@ def test_latitudes_beyond_90_are_told_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["<kml", "<!DOCTYPE kml [<!ENTITY a 'b'>]><kml>&a;</kml>", "\ud800".encode("utf-8", "ignore").decode()],
+    [
+        "<kml",
+        "<gpx/>",
+        "<!DOCTYPE kml [<!ENTITY a 'b'>]><kml>&a;</kml>",
+        "\ud800".encode("utf-8", "ignore").decode(),
+    ],
 )
 def test_what_is_no_kml(text: str, tmp_path: Path) -> None:
     """Broken XML, and XML that declares entities, is refused."""

@@ -207,9 +207,14 @@ def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) 
     Raises:
         ScenarioError: with every fault of the file or of the changes.
     """
-    from nullpose.scenario import apply_overrides, doubts, load
+    from nullpose.scenario import doubts, load
 
-    scenario = apply_overrides(load(file, allow_outside=allow_outside), overrides or [])
+    scenario = load(
+        file,
+        allow_outside=allow_outside,
+        overrides=overrides or [],
+        on_note=lambda note: say(note, err=True),
+    )
     for doubt in doubts(scenario):
         say(f"warning: {doubt}", err=True)
     return scenario

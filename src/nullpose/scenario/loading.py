@@ -2,39 +2,53 @@
 
 from __future__ import annotations
 
+import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path, PurePath
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.antenna import with_harmonics
-from nullpose.scenario.areas import areas_from_features
+from nullpose.scenario.area_files import with_fence, with_zones
 from nullpose.scenario.faults import refusal
-from nullpose.scenario.features import ENDINGS
+from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, features_of
 from nullpose.scenario.listed_nodes import ListedNode, retold
 from nullpose.scenario.nodes_csv import nodes_from_csv
-from nullpose.scenario.nodes_geojson import nodes_from_features
+from nullpose.scenario.nodes_of_features import nodes_of_features
+from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.toml_file import FileKind, file_text, tables_of
+from nullpose.scenario.toml_file import FileKind, file_content, file_text, tables_of
 from nullpose.scenario.wording import described
 
 _KEY = "nodes_from"
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
-_FENCES = {"geofence_m", "geofence_lat_lon_deg"}
-_AREA_KEYS = {"geofence_from", "no_fly_from"}
+_FENCES = ("geofence_m", "geofence_lat_lon_deg")
+_FENCE_KEY, _ZONES_KEY = "geofence_from", "no_fly_from"
+_LOG = logging.getLogger("nullpose")
+
+_Note = Callable[[str], object]
 
 
-def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
-    """Returns the scenario that a TOML file describes, with the nodes of the file that it may name.
+def load(
+    path: str | os.PathLike[str],
+    *,
+    allow_outside: bool = False,
+    overrides: Iterable[str | Override] = (),
+    on_note: _Note = _LOG.warning,
+) -> Scenario:
+    """Returns the scenario that a TOML file describes, with what it takes from the files that it names.
 
     Args:
         path: the file, of 10 MB at most.
-        allow_outside: whether the file of nodes may be outside the folder of this one.
+        allow_outside: whether the files that it names may be outside its folder.
+        overrides: changes such as ``jammers.M.power_w=10``; those of ``nodes_from``,
+            ``airspace.geofence_from`` and ``airspace.no_fly_from`` name files, relative to this one's folder.
+        on_note: is called with what became of the features of the files, a line each.
 
     Raises:
-        ScenarioError: when the file cannot be read or is faulty; with every fault it has.
+        ScenarioError: when a file cannot be read or is faulty; with every fault it has.
 
     Example:
         >>> import nullpose
@@ -44,15 +58,32 @@ def load(path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenar
     """
     source = os.fspath(path)
     origins: dict[str, str] = {}
+    changes = [each if isinstance(each, Override) else parse_override(each) for each in overrides]
     try:
         tables = tables_of(file_text(Path(source)))
+        others = [change for change in changes if not _names_a_file(tables, change)]
         tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
-        tables, origins = _with_areas_from(tables, Path(source).parent, allow_outside)
+        tables, origins = _with_areas_from(tables, Path(source).parent, allow_outside, on_note)
         if _KEY in tables and "nodes" not in tables:
-            return _with_nodes_from(tables, Path(source).parent, allow_outside)
-        return Scenario.from_dict(tables)
+            found = _with_nodes_from(tables, Path(source).parent, allow_outside, on_note)
+        else:
+            found = Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError([_from_file(fault, origins) for fault in error.faults], source) from None
+    return apply_overrides(found, others)
+
+
+def _names_a_file(tables: dict[str, Any], change: Override) -> bool:
+    """Returns whether a change names a file, which then takes the place of what the tables state."""
+    table, _, key = change.path.rpartition(".")
+    holder = tables.get("airspace") if table == "airspace" else tables
+    replaced = {_FENCE_KEY: _FENCES, _ZONES_KEY: (), _KEY: ("nodes",)}.get(key)
+    if replaced is None or not isinstance(holder, dict) or (key == _KEY) != (table == ""):
+        return False
+    for other in replaced:
+        holder.pop(other, None)
+    holder[key] = change.value
+    return True
 
 
 def scenario_from_text(content: bytes, name: str) -> Scenario:
@@ -84,7 +115,7 @@ def files_of(path: Path) -> dict[str, Path]:
     """
     tables = tables_of(file_text(path))
     named = {_KEY: tables.get(_KEY), "antenna.file": tables.get("antenna", {}).get("file")}
-    named |= {f"airspace.{key}": tables["airspace"].get(key) for key in _AREA_KEYS}
+    named |= {f"airspace.{key}": tables["airspace"].get(key) for key in (_FENCE_KEY, _ZONES_KEY)}
     return {"the scenario": path} | {key: path.parent / file for key, file in named.items() if file}
 
 
@@ -126,12 +157,12 @@ def _with_antenna_from(tables: dict[str, Any], folder: Path, allow_outside: bool
         ) from None
 
 
-def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> Scenario:
+def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool, on_note: _Note) -> Scenario:
     """Returns the scenario whose nodes another file lists; faults name the place in either file."""
     file = tables[_KEY]
     nodes: list[ListedNode] = []
     try:
-        nodes = _listed_nodes(file, folder, allow_outside)
+        nodes = _listed_nodes(file, folder, allow_outside, on_note)
         faults = [_at(file, f"{node.where}{fault.path}", fault) for node in nodes if (fault := node.fault)]
     except ScenarioError as error:
         faults = [fault if fault.path == _KEY else _at(file, fault.path, fault) for fault in error.faults]
@@ -148,52 +179,59 @@ def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool) 
     return scenario
 
 
-def _listed_nodes(file: object, folder: Path, allow_outside: bool) -> list[ListedNode]:
-    text, ending = _listed_text(file, _NODES_FILE, folder, allow_outside, _KEY)
-    return nodes_from_csv(text) if ending == ".csv" else nodes_from_features(text, ending)
+def _listed_nodes(file: object, folder: Path, allow_outside: bool, on_note: _Note) -> list[ListedNode]:
+    path = _named_path(file, _NODES_FILE, folder, allow_outside, _KEY)
+    if path.suffix.lower() == ".csv":
+        return nodes_from_csv(file_text(path, _NODES_FILE, folder, _KEY))
+    nodes, notes = nodes_of_features(
+        features_of(file_content(path, _NODES_FILE, folder, _KEY, MOST_BYTES), path)
+    )
+    for note in notes:
+        on_note(f"{file}: {note}")
+    return nodes
 
 
-def _listed_text(
-    file: object, kind: FileKind, folder: Path, allow_outside: bool, key: str
-) -> tuple[str, str]:
-    """Returns the text of a file that a key names, and how its name ends."""
+def _named_path(file: object, kind: FileKind, folder: Path, allow_outside: bool, key: str) -> Path:
+    """Returns where a file is that a key names."""
     if not isinstance(file, str) or not file.strip():
         raise refusal(
             key, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
         )
-    ending = PurePath(file).suffix.lower()
-    if ending not in kind.endings:
+    if PurePath(file).suffix.lower() not in kind.endings:
         raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
-    return file_text(inside(folder, file, allow_outside, key), kind, folder, key), ending
+    return inside(folder, file, allow_outside, key)
 
 
 def _with_areas_from(
-    tables: dict[str, Any], folder: Path, allow_outside: bool
+    tables: dict[str, Any], folder: Path, allow_outside: bool, on_note: _Note
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Returns the tables with the fence and the zones of other files, and which file each is from."""
     stated = tables.get("airspace")
     airspace: dict[str, Any] = dict(stated) if isinstance(stated, dict) else {}
-    origins: dict[str, str] = {}
-    for key in _AREA_KEYS & airspace.keys():
-        own = airspace.get("no_fly", []) if key == "no_fly_from" else [*_FENCES & airspace.keys()]
-        if not isinstance(own, list) or (key == "geofence_from" and own):
-            continue  # which is refused
+    places: dict[str, str] = {}
+    for key, read in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
+        zones = airspace.get("no_fly", [])
+        clashes = key == _FENCE_KEY and any(fence in airspace for fence in _FENCES)
+        if key not in airspace or clashes or not isinstance(zones, list):
+            continue  # what is at fault is refused with the rest
         file = airspace.pop(key)
         label = f"airspace.{key}: {file}"
         try:
-            areas = areas_from_features(*_listed_text(file, _AREA_FILE, folder, allow_outside, ""))
+            path = _named_path(file, _AREA_FILE, folder, allow_outside, "")
+            features = features_of(file_content(path, _AREA_FILE, folder, "", MOST_BYTES), path)
+            airspace, areas = read(airspace, features, tables.get("origin"))
         except ScenarioError as error:
             raise ScenarioError([_at(label, fault.path, fault) for fault in error.faults]) from None
-        if key == "no_fly_from":
-            airspace["no_fly"] = [*own, *areas]
-            places = (f"airspace.no_fly[{len(own) + index}]" for index in range(len(areas)))
-            origins |= {place: f"{label}: features[{index}]" for index, place in enumerate(places)}
-        elif len(areas) == 1 and "polygon_lat_lon_deg" in areas[0]:
-            airspace["geofence_lat_lon_deg"] = areas[0]["polygon_lat_lon_deg"]
-            origins["airspace.geofence_lat_lon_deg"] = f"{label}: coordinates"
-        else:
-            raise refusal(label, f"got {len(areas)} features, must be one Polygon, the fence")
-    return (tables | {"airspace": airspace} if origins else tables), origins
+        for line in areas.account(is_fence=key == _FENCE_KEY):
+            on_note(f"{file}: {line}")
+        if key == _FENCE_KEY:
+            places["airspace.geofence_lat_lon_deg"] = f"{label}: {areas.areas[0].place}"
+        added = [area.place for area in areas.areas for _ in area.zones()] if key == _ZONES_KEY else []
+        first = len(airspace.get("no_fly", [])) - len(added)
+        places |= {
+            f"airspace.no_fly[{first + index}]": f"{label}: {place}" for index, place in enumerate(added)
+        }
+    return (tables | {"airspace": airspace} if places else tables), places
 
 
 def _from_file(fault: Fault, origins: Mapping[str, str]) -> Fault:

@@ -50,7 +50,9 @@ def tables_of(content: bytes | str) -> dict[str, Any]:
     Raises:
         ScenarioError: it is no TOML, or would take too long to read.
     """
-    text = content if isinstance(content, str) else _decoded(content)
+    if len(content) > MOST_BYTES:
+        raise refusal("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
+    text = content if isinstance(content, str) else decoded(content)
     place, message = "", ""
     if text.count("=") > _MOST_KEYS:  # each takes the reader some 5 microseconds
         message = f"it has more than {_MOST_KEYS} keys, the most that is read"
@@ -93,8 +95,26 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
     Raises:
         ScenarioError: it cannot be read, or is no text.
     """
+    return decoded(file_content(path, kind, base, place))
+
+
+def file_content(
+    path: Path, kind: FileKind, base: Path = Path(), place: str = "", most: int = MOST_BYTES
+) -> bytes:
+    """Returns what a file holds.
+
+    Args:
+        path: the file.
+        kind: what it should be, as for :func:`file_text`.
+        base: the folder from which files are named that are suggested in its place.
+        place: where the file is named, for messages.
+        most: the largest file that is read, bytes.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
     try:
-        content = read_bytes(path)
+        return read_bytes(path, most)
     except FileNotFoundError:
         message = f"there is no such file{_other_file(path, kind, base)}"
     except IsADirectoryError:
@@ -106,14 +126,15 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
         )
     except ValueError:  # a null character in the name
         message = "this cannot be the name of a file"
-    else:
-        return _decoded(content)
     raise refusal(place, message)
 
 
-def _decoded(content: bytes) -> str:
-    if len(content) > MOST_BYTES:
-        raise refusal("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
+def decoded(content: bytes) -> str:
+    """Returns the text of some bytes, which is UTF-8.
+
+    Raises:
+        ScenarioError: it is no text.
+    """
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -1,0 +1,150 @@
+"""What a scenario file's airspace takes from other files: its fence and no-fly zones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
+from nullpose.scenario.areas import Area, Areas, Rectangle, areas_of, corners_of
+from nullpose.scenario.arrays import Floats
+from nullpose.scenario.faults import refusal
+from nullpose.scenario.geo_file import Feature
+from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
+from nullpose.scenario.polygon import MOST_CORNERS
+from nullpose.scenario.units import EARTHLY_RANGES
+
+_HALVES_M = (7e4, 3.5e4, 1.7e4, 8e3, 4e3, 2e3)  # of squares about the origin; the first is what a frame holds
+_POLE_DEG = 85.0  # longitudes say little beyond
+
+
+def with_zones(
+    airspace: Mapping[str, Any], features: Sequence[Feature], origin: Any
+) -> tuple[dict[str, Any], Areas]:
+    """Return a raw airspace with the zones of a file after its own, and their account.
+
+    Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
+
+    Args:
+        airspace: raw.
+        features: of the file.
+        origin: the scenario's, raw.
+
+    Raises:
+        ScenarioError: with the faults of all features.
+    """
+    stated, here = list(airspace.get("no_fly", ())), _place(origin)
+    names = {str(zone.get("name")) for zone in stated if isinstance(zone, Mapping)}
+    far_deg = None if here is None else _rectangle_deg(_box_m({}, _HALVES_M[0], here), here)
+    areas = areas_of(features, far_deg, _ground_m(origin), names)
+    bounds: dict[str, Any] = {}
+    for half_m in _HALVES_M:
+        if here is None or areas.corners <= MOST_CORNERS:
+            break
+        box_m = _box_m(airspace, half_m, here)
+        areas.cut(_rectangle_deg(box_m, here))
+        ends_m = dict(zip(("x_m", "y_m"), box_m.T.tolist(), strict=True))
+        bounds = {key: ends for key, ends in ends_m.items() if half_m in ends}
+        words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
+        areas.remarks[:0] = [f"they are cut to {words}, since all have too many corners"]
+    zones = [zone for area in areas.areas for zone in area.zones()]
+    return {**airspace, **bounds, "no_fly": [*stated, *zones]}, areas
+
+
+def with_fence(
+    airspace: Mapping[str, Any], features: Sequence[Feature], origin: Any
+) -> tuple[dict[str, Any], Areas]:
+    """Return a raw airspace with the fence of a file, and its account.
+
+    The fence's holes are zones, and its altitudes bound those of the airspace.
+
+    Args:
+        airspace: raw, without a fence.
+        features: of the file, of which one is a polygon.
+        origin: the scenario's, raw.
+
+    Raises:
+        ScenarioError: there is not one polygon, or the altitudes leave none.
+    """
+    here, ground_m = _place(origin), _ground_m(origin)
+    everywhere_deg = None if here is None else [here[1] - 1e4, -1e4, here[1] + 1e4, 1e4]
+    areas = areas_of(features, everywhere_deg, ground_m)
+    polygons = [polygon for area in areas.areas for polygon in area.polygons]
+    if len(polygons) != 1 or len(areas.areas) != 1 or areas.areas[0].cylinders:
+        raise refusal("", f"it has {areas.counts['area']} areas, must be one polygon, the fence")
+    holes = [
+        {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
+        for index, ring in enumerate(polygons[0].interiors, 1)
+    ]
+    found = {**airspace, "geofence_lat_lon_deg": corners_of(polygons[0].exterior)}
+    found |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
+    return found | dict(_altitudes(airspace, areas.areas[0], ground_m)), areas
+
+
+def _altitudes(
+    airspace: Mapping[str, Any], fence: Area, ground_m: Ground
+) -> Iterator[tuple[str, list[float]]]:
+    """Yield the airspace's ranges of altitudes within those of its fence."""
+    for key, over in product(RANGES, fence.limits):
+        ends_m, limits_m = _ends(airspace.get(key)), _ends(fence.limits[over])
+        if limits_m is None:
+            raise refusal(f"{fence.place}.{over}", f"got {fence.limits[over]!r}, must be [low, high] in m")
+        if ends_m is None:
+            continue
+        over_m = shift_m(fence.place, over, key, ground_m)
+        low_m, high_m = max(ends_m[0], limits_m[0] + over_m), min(ends_m[1], limits_m[1] + over_m)
+        if low_m > high_m:
+            raise refusal(
+                fence.place,
+                f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
+                f"{airspace[key]}; change either",
+            )
+        yield key, [low_m, high_m]
+
+
+def _ground_m(origin: Any) -> Ground:
+    stated = origin if isinstance(origin, Mapping) else {}
+    return {"altitude_m": 0.0} | {key: stated.get(over) for key, over in EARTHLY_RANGES.items()}
+
+
+def _place(origin: Any) -> Floats | None:
+    """Return the origin's latitude and longitude, and altitude 0, (3,); None where it is at fault."""
+    try:
+        return np.array([origin["lat_deg"], origin["lon_deg"], 0.0], dtype=float)
+    except (KeyError, TypeError, ValueError):
+        return None  # which the scenario is refused for
+
+
+def _box_m(airspace: Mapping[str, Any], half_m: float, here: Floats) -> Floats:
+    """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
+    ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
+    fence = airspace.get("geofence_m")
+    if airspace.get("geofence_lat_lon_deg"):
+        corners = [[lat, lon, 0.0] for lat, lon in airspace["geofence_lat_lon_deg"]]
+        fence = enu_from_geodetic(corners, here)[:, :2]
+    if fence is not None:
+        ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0))
+    sides_m = np.array([_ends(airspace.get(key)) or (-np.inf, np.inf) for key in ("x_m", "y_m")])
+    return np.asarray(np.clip(ends_m, *sides_m.T))
+
+
+def _ends(stated: Any) -> tuple[float, float] | None:
+    """Return both ends of a range; None where there is none, or one that the scenario is refused for."""
+    is_range = isinstance(stated, list | tuple) and len(stated) == 2
+    is_range = is_range and all(isinstance(end, int | float) for end in stated)
+    return (float(stated[0]), float(stated[1])) if is_range else None
+
+
+def _rectangle_deg(ends_m: Floats, here: Floats) -> Rectangle:
+    """Return a rectangle of the local frame, and a little more, in degrees."""
+    east_m, north_m = np.meshgrid(*np.linspace(ends_m[0], ends_m[1], 9).T)
+    places = geodetic_from_enu(np.stack([east_m, north_m, 0.0 * east_m], axis=-1).reshape(-1, 3), here)
+    corners = places[:, 1::-1]
+    corners[:, 0] -= 360.0 * np.round((corners[:, 0] - here[1]) / 360.0)
+    if np.abs(corners[:, 1]).max() > _POLE_DEG:
+        corners = np.vstack([corners, [here[1] - 180.0, here[0]], [here[1] + 180.0, here[0]]])
+    more = 0.01 * np.ptp(corners, axis=0) + 1e-4
+    return [*(corners.min(axis=0) - more), *(corners.max(axis=0) + more)]
