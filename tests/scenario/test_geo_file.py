@@ -85,7 +85,10 @@ def kml_of(shape: Any, more: str = "") -> str:
 def kml(*placemarks: str) -> str:
     """Return a KML document, its placemarks in two folders."""
     half = len(placemarks) // 2
-    folders = "".join(f"<Folder>{''.join(some)}</Folder>" for some in (placemarks[:half], placemarks[half:]))
+    folders = "".join(
+        f"<Folder><name>areas</name>{''.join(some)}</Folder>"
+        for some in (placemarks[:half], placemarks[half:])
+    )
     return f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{folders}</Document></kml>'
 
 
@@ -408,6 +411,22 @@ def test_a_file_of_another_kind_reads_no_other_file(tmp_path: Path) -> None:
         (tmp_path / f"z{ending}").write_text(f"{text}</OGRVRTDataSource>", encoding="utf-8")
         with pytest.raises(ScenarioError):
             zones_of(tmp_path, f"z{ending}")
+
+
+def test_layers_need_no_name_of_their_own(tmp_path: Path) -> None:
+    """Of folders with one name, as of those without any, none is left out; a table of styles is no area."""
+    for text in (
+        kml(placemark(SQUARE, {"name": 1}), placemark(SQUARE, {"name": 2})),
+        kml(placemark(SQUARE, {})),
+    ):
+        for content in (text, text.replace("<name>areas</name>", "")):
+            (tmp_path / "z.kml").write_text(content, encoding="utf-8")
+            assert len(zones_of(tmp_path, "z.kml")[0].airspace.no_fly) == text.count("<Placemark>")
+    write_gdal(tmp_path / "z.gpkg", [(SQUARE, {"name": "A"})])
+    pyogrio.raw.write(tmp_path / "z.gpkg", None, [np.array(["x"], object)], ["style"], layer="s", append=True)
+    scenario, notes = zones_of(tmp_path, "z.gpkg")
+    assert [zone.name for zone in scenario.airspace.no_fly] == ["A"]
+    assert "1 feature without a place" in notes[0]
 
 
 def test_waypoints_of_gpx_are_nodes(tmp_path: Path) -> None:

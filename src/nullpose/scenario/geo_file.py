@@ -37,6 +37,7 @@ _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a",
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = ("CRS84", "CRS84h", "4326", "4979", "4258")  # as the names of reference systems end
 _NO_MATTER = ("Non closed ring", "non conformant file extension")  # of GDAL's warnings: rings are closed here
+_POINTS_OF_LINES = {"route_points", "track_points"}  # of GPX, which are in its lines too
 _OF_DRAWING = {"id", "tessellate", "visibility", "drawOrder", "icon", "snippet"}  # GDAL's columns of KML
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACE = re.compile(rf"{_NUMBER},{_NUMBER}(?:,(?:{_NUMBER})?)?")
@@ -233,17 +234,19 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         try:
-            layers = [name for name, _ in pyogrio.list_layers(source)]
-            read = {name: pyogrio.raw.read(source, layer=name) for name in layers if "_points" not in name}
+            names = [str(name) for name, _ in pyogrio.list_layers(source)]
+            kept = [index for index, name in enumerate(names) if name not in _POINTS_OF_LINES]
+            layers = [(names[index], pyogrio.raw.read(source, layer=index)) for index in kept]
         except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, RuntimeError) as error:
             raise refusal("", f"GDAL cannot read it: {str(error)[:200]}") from None
     for warning in said:
         if not any(words in str(warning.message) for words in _NO_MATTER):
             raise refusal("", f"GDAL reads it in part only: {str(warning.message)[:200]}; export it anew")
-    for layer, (meta, _, shapes, columns) in read.items():
-        if shapes is None:
-            raise refusal(layer, "it has no geometries, must be a layer of features")
-        _require_wgs84(str(meta["crs"]))
+    for layer, (meta, _, shapes, columns) in layers:
+        if shapes is None:  # a table, such as of styles
+            shapes = [None] * len(columns[0]) if columns else []
+        else:
+            _require_wgs84(str(meta["crs"]))
         for index, shape in enumerate(shapes):
             cells = dict(zip(meta["fields"], (_cell(column[index]) for column in columns), strict=True))
             if is_kml:
@@ -258,6 +261,8 @@ def _cell(value: Any) -> Any:
     """Return a value of a table as plain data; numbers and lists in texts as such, None for none."""
     if isinstance(value, np.generic):
         value = value.item() if value.dtype.kind != "M" else None if np.isnat(value) else str(value)
+    if isinstance(value, np.ndarray):
+        return value.tolist()
     if isinstance(value, str):
         with suppress(ValueError, RecursionError):
             return json.loads(value)
