@@ -87,12 +87,14 @@ def test_the_fence_and_the_zones_load(tmp_path: Path) -> None:
     assert scenario.airspace.geofence_m is not None
     ring = [[14.4989, 49.9993], [14.5053, 49.9993], [14.5053, 50.0025], [14.4989, 49.9993]]
     place = " ".join(f"{lon},{lat}" for lon, lat in ring)
-    shape = f"<Polygon><LinearRing><coordinates>{place}</coordinates></LinearRing></Polygon>"
+    shape = f"<outerBoundaryIs><LinearRing><coordinates>{place}</coordinates></LinearRing></outerBoundaryIs>"
     geometry = {"type": "Polygon", "coordinates": [ring]}
     feature = {"type": "Feature", "properties": {}, "geometry": geometry}
     text = json.dumps({"type": "FeatureCollection", "features": [feature]})
     (tmp_path / "fence.geojson").write_text(text, encoding="utf-8")
-    (tmp_path / "zones.kml").write_text(f"<kml><Placemark>{shape}</Placemark></kml>", encoding="utf-8")
+    (tmp_path / "zones.kml").write_text(
+        f"<kml><Placemark><Polygon>{shape}</Polygon></Placemark></kml>", encoding="utf-8"
+    )
     (tmp_path / "scene.toml").write_text(scene + files + receiver, encoding="utf-8")
     airspace = nullpose.load(tmp_path / "scene.toml").airspace
     assert airspace.geofence_m == airspace.no_fly[0].polygon_m

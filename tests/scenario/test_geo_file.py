@@ -373,6 +373,8 @@ def test_doubled_corners_and_spikes_are_no_faults(tmp_path: Path) -> None:
     ("text", "words"),
     [
         (kml("<NetworkLink><Link><href>more.kml</href></Link></NetworkLink>"), "NetworkLink"),
+        (kml("<Placemark><Polygon><LinearRing><coordinates>14,50 15,50 15,51 14,50</coordinates></LinearRing>"
+             "</Polygon></Placemark>"), "without its outerBoundaryIs"),
         (kml("<GroundOverlay><LatLonBox/></GroundOverlay>"), "GroundOverlay"),
         (kml('<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>14.5, 50.0 14.6, 50.0 14.6, 50.1'
              '</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>'), "without blanks"),

@@ -10,7 +10,7 @@ import json
 import re
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,12 +76,16 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
         raise refusal("", f"it does not begin as a {ending} file does; is it of another kind?")
     content = _kml_of_kmz(content) if ending == ".kmz" else content
     is_kml = ending in (".kml", ".kmz")
-    placemarks = _placemarks(content) if is_kml else 0
+    expected = _placemarks(content) if is_kml else (0, 0)
     if ending == ".gpx":
         _root(content, "gpx")
     features = list(_features_of_gdal(path if ending == ".shp" else content, is_kml))
-    if is_kml and len(features) != placemarks:
-        raise refusal("", f"{len(features)} of its {placemarks} placemarks can be read; export it anew")
+    if is_kml and (len(features), min(_corners(features), expected[1])) != expected:
+        raise refusal(
+            "",
+            f"GDAL reads {len(features)} placemarks with {_corners(features)} coordinates, and it has "
+            f"{expected[0]} with {expected[1]}; is a polygon without its outerBoundaryIs? Export it anew",
+        )
     if not features:
         raise refusal("", "there is no feature in it, must be one or more")
     return features
@@ -205,21 +209,28 @@ def _root(content: bytes, kind: str) -> Element:
     return root
 
 
-def _placemarks(content: bytes) -> int:
-    """Return how many placemarks a KML document has; refuse what it has beside them that may hold areas."""
+def _corners(features: Sequence[Feature]) -> int:
+    import shapely
+
+    return int(sum(shapely.get_num_coordinates([feature.geometry for feature in features])))
+
+
+def _placemarks(content: bytes) -> tuple[int, int]:
+    """Return how many placemarks and coordinates a KML document has; refuse what else may hold areas."""
     root = _root(content, "kml")
-    kinds = Counter(map(_kind, root.iter()))
+    kinds, corners = Counter(map(_kind, root.iter())), 0
     for kind, words in (("NetworkLink", "a link to another file"), ("GroundOverlay", "a picture on a map")):
         if kinds[kind]:
             raise refusal("", f"it has a {kind}, {words}, which is not read; save what it shows as KML")
     for placemark in (each for each in root.iter() if _kind(each) == "Placemark"):
         for each in placemark.iter():
             places = (each.text or "").split() if _kind(each) == "coordinates" else []
+            corners += len(places)
             wrong = next((word for word in places if not _PLACE.fullmatch(word)), None)
             if wrong is not None:
                 name = f'Placemark "{placemark.findtext("{*}name", "").strip()}"'
                 raise refusal(name, f'got "{wrong[:60]}", must be longitude,latitude without blanks')
-    return kinds["Placemark"]
+    return kinds["Placemark"], corners
 
 
 def _kind(element: Element) -> str:
