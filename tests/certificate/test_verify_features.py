@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nullpose.certificate import Certificate, certificate_text, parse_certificate, verify
+from nullpose.certificate import Certificate, certificate_text, differences, parse_certificate, verify
 from nullpose.certificate.certificate import KEPT_OUT
 from nullpose.family import build_family
 from nullpose.scenario import Airspace, Eavesdropper, Scenario, Transmitter
+from nullpose.scenario.polygon import depth_m
 
 ALTITUDE_M = (8.0, 30.0)
 ZONES = {
@@ -131,6 +132,35 @@ def test_a_smaller_zone_is_another_claim(zoned: Callable) -> None:
     assert "no-fly zone" in rejected(replace(certificate, scenario=larger))
 
 
+@pytest.mark.parametrize("name", ["block", "cylinder", "triangle", "fence"])
+def test_a_margin_is_proved(name: str, zoned: Callable, certified: Callable, paper: Callable) -> None:
+    """A pose on a border moves away from it by the margin, and the proof holds for no smaller margin."""
+    margin_m = 1.5
+
+    def beside_m(certificate: Certificate) -> float:
+        """Return how far a pose is from the border as stated, sideways or in height."""
+        airspace = certificate.scenario.airspace
+        if airspace.geofence_m is not None:
+            return float(depth_m(certificate.position_m[:2], airspace.geofence_outline_m))
+        return -float(airspace.no_fly[0].depth_m(certificate.position_m, ALTITUDE_M))
+
+    assert beside_m(zoned(name)) == pytest.approx(0.0, abs=1e-6)
+    certificate = certified(within(paper(), margin_m=margin_m, **ZONES[name]))
+    assert certificate.value < zoned(name).value
+    assert beside_m(certificate) == pytest.approx(margin_m, abs=1e-4)
+    assert beside_m(certificate) >= margin_m - 1e-9
+    assert f"with a margin of {margin_m} m" in accepted(certificate)
+    again = parse_certificate(certificate_text(certificate))
+    assert not differences(again, certificate.scenario)
+    accepted(again)
+    for less_m in (0.0, 1.4):  # a forger's, whose proof is another and whose scenario too
+        forged = replace(certificate, scenario=within(paper(), margin_m=less_m, **ZONES[name]))
+        assert rejected(forged)
+        assert differences(forged, certificate.scenario)
+    larger = replace(certificate, scenario=within(paper(), margin_m=1.6, **ZONES[name]))
+    assert "within their margin_m" in rejected(larger)
+
+
 def test_forbidden_poses_are_rejected(zoned: Callable, certified: Callable, paper: Callable) -> None:
     """A pose in a zone or beyond the fence is none; one on the border, to a nanometre, is."""
     free = certified(paper())
@@ -141,8 +171,8 @@ def test_forbidden_poses_are_rejected(zoned: Callable, certified: Callable, pape
     certificate = zoned("cylinder")
     middle = np.array([-2.2, 23.8, certificate.position_m[2]])
     inwards = (middle - certificate.position_m) / np.linalg.norm(middle - certificate.position_m)
-    for depth_m, words in ((3e-9, "no-fly zone"), (5e-10, "")):
-        moved = replace(certificate, position_m=certificate.position_m + depth_m * inwards)
+    for sunk_m, words in ((3e-9, "no-fly zone"), (5e-10, "")):
+        moved = replace(certificate, position_m=certificate.position_m + sunk_m * inwards)
         verdict = verify(replace(moved, value=certificate.value))
         assert words in verdict.message
         assert verdict.proved or words or "smallest SINR" in verdict.message

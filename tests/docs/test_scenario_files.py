@@ -115,6 +115,7 @@ def test_words_are_those_of_the_program() -> None:
     ("heading", "key"),
     [
         ("### `[airspace]`", "keep_out_m"),
+        ("### `[airspace]`", "margin_m"),
         ("### `[airframe]`", "mount_deg"),
         ("### `[receiver]`", "attitude_error_deg"),
         ("### `[receiver]`", "position_error_m"),

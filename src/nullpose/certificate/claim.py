@@ -91,7 +91,7 @@ def _place_fault(scenario: Scenario, position_m: FloatArray) -> str:
     for i in np.flatnonzero(outside):
         return f"{'xyz'[i]} = {float(position_m[i])!r} m is outside the airspace"
     if not airspace.allows(position_m):
-        return "outside the geofence or in a no-fly zone"
+        return "outside the geofence or in a no-fly zone, or within their margin_m"
     least = max(Fraction(airspace.keep_out_m) - Fraction(_EDGE_M), Fraction(0))
     points = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
     for point in np.vstack(points):

@@ -40,7 +40,8 @@ def _places(certificate: Certificate) -> str:
     zones = len(airspace.no_fly)
     if zones:
         words.append("outside the no-fly zone" if zones == 1 else f"outside the {zones} no-fly zones")
-    return f" {' and '.join(words)}" if words else ""
+    margin = f" with a margin of {airspace.margin_m!r} m" if airspace.margin_m else ""
+    return f" {' and '.join(words)}{margin}" if words else ""
 
 
 def _numbers(certificate: Certificate) -> tuple[str, ...]:

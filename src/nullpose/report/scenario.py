@@ -150,6 +150,7 @@ def _airspace_rows(scenario: Scenario) -> dict[str, str | None]:
         "x, east (m)": _range(airspace.x_m, "unbounded"),
         "y, north (m)": _range(airspace.y_m, "unbounded"),
         "geofence": f"{len(fence_m)} corners, {_extent_words(fence_m)}" if len(fence_m) else None,
+        "margin to fence, zones (m)": f"{airspace.margin_m:g}" if airspace.margin_m else None,
         "keep-out radius (m)": f"{airspace.keep_out_m:g}",
     }
 

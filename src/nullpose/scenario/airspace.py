@@ -13,12 +13,13 @@ from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
+from nullpose.scenario.margin import largest_margin_m, offset_outlines_m
 from nullpose.scenario.names import Label
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import KeepOutMetres, Range
+from nullpose.scenario.units import KeepOutMetres, MarginMetres, Range
 from nullpose.scenario.ways import Ways
 
 BORDER_M = 1e-9
@@ -39,6 +40,8 @@ class Airspace(Section):
         y_m: southmost and northmost position [m], or None for no bound.
         keep_out_m: smallest distance from any node, jammer or eavesdropper [m], since the model has no limit
             there.
+        margin_m: how far the vehicle stays from fence and zones [m]: sideways, and from a zone's floor and
+            ceiling. The ranges have none.
         geofence_m: vertices [east, north] of a polygon [m] that the vehicle stays in, in order around it, the
             last being joined to the first; or None for no fence.
         geofence_lat_lon_deg: the same vertices on the Earth, from which a scenario with an origin fills in
@@ -48,7 +51,7 @@ class Airspace(Section):
         no_fly: zones that the vehicle stays out of.
     """
 
-    unstated: ClassVar[frozenset[str]] = frozenset({"no_fly"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"margin_m", "no_fly"})
     ways: ClassVar[tuple[Ways, ...]] = (
         ALTITUDES,
         Ways((("geofence_m",), ("geofence_lat_lon_deg",), ("geofence_from",)), fewest=0, most=3),
@@ -87,6 +90,12 @@ class Airspace(Section):
         description="Smallest distance in metres between the vehicle and any node, jammer or eavesdropper.",
         examples=[1.0],
     )
+    margin_m: MarginMetres = Field(
+        default=0.0,
+        description="How far in metres the vehicle stays inside the geofence and outside the no-fly zones: "
+        "sideways, above a zone's ceiling and below its floor. x_m, y_m and altitude_m have no margin.",
+        examples=[3.0],
+    )
     geofence_m: Polygon | None = Field(
         default=None,
         description="Vertices of a polygon that the vehicle stays in, in metres, in order around it: "
@@ -118,11 +127,19 @@ class Airspace(Section):
     )
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults that no scenario has placed what is on the Earth, or that a file is named."""
+        """Returns the faults of what has no place on the Earth, of named files and of too large a margin."""
         yield from unplaced(self, stated)
         for key in ("geofence_from", "no_fly_from"):
             if stated.get(key) is not None:
                 yield (key,), "only a scenario file may name another, in place of its own areas; remove one"
+        fence_m, margin_m = self.geofence_outline_m, self.margin_m or 0.0
+        if margin_m and self.geofence_m and (parts := len(offset_outlines_m(fence_m, -margin_m))) != 1:
+            yield (
+                ("margin_m",),
+                f"got {margin_m:g}, must leave the geofence in one part, but leaves {parts or 'none'}; try "
+                f"{largest_margin_m(fence_m, margin_m):g}, the most that does, or a fence that is wider "
+                "where it is narrow",
+            )
 
     @cached_property
     def lower_m(self) -> NDArray[np.float64]:
@@ -138,6 +155,16 @@ class Airspace(Section):
     def geofence_outline_m(self) -> NDArray[np.float64]:
         """Vertices of the geofence [m], (n, 2), counter-clockwise; none without a fence."""
         return counter_clockwise_m(self.geofence_m)
+
+    @cached_property
+    def inner(self) -> Airspace:
+        """The same without its margin, which larger zones and a smaller fence have instead."""
+        if not self.margin_m:
+            return self
+        stated = {key: getattr(self, key) for key in type(self).model_fields}
+        fence_m = self.geofence_m and offset_outlines_m(self.geofence_outline_m, -self.margin_m)[0]
+        zones = tuple(zone.grown(self.margin_m) for zone in self.no_fly)
+        return self.model_construct(**stated | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the vehicle may be at each position, the keep-out balls not being looked at.
@@ -169,7 +196,8 @@ class Airspace(Section):
     def clearances_m(self, position_m: ArrayLike) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yields where a position would be forbidden, in words, and how far each is from that [m].
 
-        For the ranges, the geofence and each no-fly zone; below 0 where it is forbidden by that.
+        For the ranges, the geofence and each no-fly zone, with their margin; below 0 where it is forbidden
+        by that.
 
         Args:
             position_m: positions [m], (..., 3).
@@ -178,10 +206,11 @@ class Airspace(Section):
         for axis, key in enumerate(("x_m", "y_m", "altitude_m")):
             across = position[..., axis]
             yield f"outside {key}", np.minimum(across - self.lower_m[axis], self.upper_m[axis] - across)
-        if self.geofence_m is not None:
-            yield "outside the geofence", depth_m(position[..., :2], self.geofence_outline_m)
-        for zone in self.no_fly:
-            yield f"inside the no-fly zone {zone.name}", -zone.depth_m(position, self.altitude_m)
+        counted = f", its margin of {self.margin_m:g} m counted" if self.margin_m else ""
+        if len(fence_m := self.inner.geofence_outline_m):
+            yield f"outside the geofence{counted}", depth_m(position[..., :2], fence_m)
+        for zone in self.inner.no_fly:
+            yield f"inside the no-fly zone {zone.name}{counted}", -zone.depth_m(position, self.altitude_m)
 
     def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
         unbounded = (-math.inf, math.inf)

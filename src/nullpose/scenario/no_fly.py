@@ -13,6 +13,7 @@ from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
+from nullpose.scenario.margin import offset_outlines_m
 from nullpose.scenario.names import Label
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.section import Section
@@ -152,6 +153,26 @@ class NoFlyZone(Section):
     def ceiling_m(self) -> float:
         """Highest altitude of the zone [m]; infinity for all altitudes."""
         return math.inf if self.altitude_m is None else self.altitude_m[1]
+
+    def grown(self, by_m: float) -> NoFlyZone:
+        """Returns a larger zone of the same shape: walls further out, floor lower, ceiling higher.
+
+        Args:
+            by_m: how much [m]; a polygon's corners as :func:`offset_outlines_m` moves them.
+        """
+        x_m, y_m, altitude_m = (
+            ends_m and (ends_m[0] - by_m, ends_m[1] + by_m)
+            for ends_m in (self.x_m, self.y_m, self.altitude_m)
+        )
+        return NoFlyZone.model_construct(
+            name=self.name,
+            x_m=x_m,
+            y_m=y_m,
+            centre_m=self.centre_m,
+            radius_m=self.radius_m and self.radius_m + by_m,
+            polygon_m=self.polygon_m and offset_outlines_m(self.outline_m, by_m)[0],
+            altitude_m=altitude_m,
+        )
 
     def forbidden_range_m(self, altitude_m: tuple[float, float]) -> tuple[float, float]:
         """Returns the zone's lowest and highest altitude [m] where only some altitudes are allowed anyway.

@@ -42,8 +42,9 @@ def airspace_faults(
         yield (
             ("airspace",),
             f"every position in it is less than keep_out_m = {airspace.keep_out_m!r} m from a node or "
-            "jammer, in a no-fly zone or outside the geofence, so there is no room for the vehicle; widen "
-            "altitude_m, x_m or y_m, make keep_out_m or a zone smaller, or move the geofence",
+            "jammer, in a no-fly zone or outside the geofence, or within their margin_m, so there is no room "
+            "for the vehicle; widen altitude_m, x_m or y_m, make keep_out_m or a zone smaller, lower "
+            "margin_m or move the geofence",
         )
 
 

@@ -57,6 +57,9 @@ Metres = Annotated[
 KeepOutMetres = Annotated[
     float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
 ]
+MarginMetres = Annotated[
+    float, Quantity("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")
+]
 RadiusMetres = Annotated[float, Quantity("a radius in m", 1e-3, 1e7, "a shape has an inside")]
 ErrorMetres = Annotated[
     float, Quantity("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")

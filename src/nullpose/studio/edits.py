@@ -186,6 +186,7 @@ def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
     for i, label in enumerate(("lowest altitude (m)", "highest altitude (m)")):
         yield Entry(f"airspace.altitude_m[{i}]", label, _text(airspace.altitude_m[i]))
     yield Entry("airspace.geofence_m", "fence corners (m)", _text(airspace.geofence_m))
+    yield Entry("airspace.margin_m", "margin to fence, zones (m)", _text(airspace.margin_m))
     yield Entry("airspace.keep_out_m", "distance to points (m)", _text(airspace.keep_out_m))
 
 

@@ -98,6 +98,7 @@ BOX = {"x_m": [-90.0, 90.0], "y_m": [-90.0, 90.0]}
         ({"no_fly": [BOX | {"altitude_m": [0.0, 12.0]}]}, 12.0),
         ({"no_fly": [BOX | {"altitude_m": [0.0, 12.0]}, BOX | {"altitude_m": [11.0, 15.0]}]}, 15.0),
         ({"no_fly": [BOX | {"altitude_m": [9.0, 15.0]}]}, 8.0),
+        ({"no_fly": [BOX | {"altitude_m": [9.0, 15.0]}], "margin_m": 3.0}, 18.0),
         ({"keep_out_m": 26.0, "altitude_m": [5.0, 60.0]}, None),
     ],
 )
