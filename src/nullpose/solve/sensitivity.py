@@ -26,6 +26,8 @@ _RINGS = np.outer([0.0, 0.3, 0.6, 1.0, 2.0, 4.0], np.exp(1j * np.arange(12) * np
 """Places of a jammer round the point below the drone, in heights of the drone over it."""
 _SPIRAL = np.sqrt((np.arange(40) + 0.5) / 40.0) * np.exp(2.4j * np.arange(40))
 """Places over a disc of radius 1, one after the other by the golden angle."""
+_ACROSS = np.array([-1.0, -0.5, -0.25, 0.25, 0.5, 1.0])
+"""Places across a linear array from a jammer, in radii of its disc."""
 _STARTS = 5  # descents of the worst ratios of each kind, and as many of the worst samples
 _ROUNDS = 12
 _JAMMED = 4  # errors of the drone for which jammers are moved anew, and ways to move them
@@ -147,12 +149,14 @@ class _Search:
     """Errors as points of a product of unit balls: a rotation vector, an offset, a disc for each jammer."""
 
     def __init__(self, scenario: Scenario, pose: Pose, sizes: ErrorSizes, ratios: Ratios | None) -> None:
-        self.position_m, self.sizes = pose.position_m, sizes
+        self.sizes = sizes
         orientation = pose.orientation(scenario.antenna_record)
         self.ratios_under = ratios or partial(ratios_under, scenario, pose.position_m, orientation)
         point = scenario.objective_record.interferers.removesuffix("s")
         self.offsets, self.unmoved = f"{point}_offsets_m", ErrorCase.none(scenario)
         self.points_m = getattr(scenario, f"{point}_positions_m").reshape(-1, 3)
+        self.away_m = pose.position_m - self.points_m
+        self.on_cones_m = _on_cones(scenario, pose, self.away_m, sizes.jammers_m)
         sides = [3, 3] + [2] * len(self.points_m)
         self.first = np.cumsum([0, *sides[:-1]])  # coordinate of each ball
         self.ball = np.repeat(np.arange(len(sides)), sides)
@@ -162,13 +166,16 @@ class _Search:
     def worst(self) -> FloatArray:
         """Search the smallest ratio without errors, then of each kind of error, (5,)."""
         samples, none = self._samples(), np.zeros((1, len(self.ball)))
-        jammed, nominal = self._with_worst_jammers(none), float(np.min(self._ratios(none)))
+        jammed, nominal = self._with_worst_jammers(none, _JAMMED), float(np.min(self._ratios(none)))
+        jammed = np.concatenate(
+            [jammed, self._with_worst_jammers(jammed)]
+        )  # then each among the others moved
         sets = [np.concatenate([samples * free, jammed * free]) for free in self.free]
         alone, (attitude, position, jammers) = self._descend(sets, self.free)
         # all together: from samples, from the worst places of jammers, and from places found for other poses
         drone = np.concatenate([samples * ~self.free[2], attitude[:1] + position[:1]])
         elsewhere = (jammers[:_JAMMED, None] + drone).reshape(-1, len(self.ball))
-        worst = np.argsort(np.min(self._ratios(drone + jammed), axis=1))[:_JAMMED]
+        worst = np.argsort(np.min(self._ratios(drone + jammed[:1]), axis=1))[:_JAMMED]
         sets = [samples, elsewhere, self._with_worst_jammers(drone[worst])]
         together, _ = self._descend(sets, np.ones((3, len(self.ball)), bool))
         lowest = np.minimum(nominal, [*alone, min(*alone, *together)])
@@ -257,27 +264,30 @@ class _Search:
         samples[::2] *= random.random((len(samples[::2]), len(self.first)))[:, self.ball] ** 0.4
         return samples
 
-    def _with_worst_jammers(self, points: FloatArray) -> FloatArray:
-        """Move each jammer alone to the worst of many places in its disc, for every point, (n, d).
+    def _with_worst_jammers(self, points: FloatArray, most: int = 1) -> FloatArray:
+        """Move each jammer alone to the worst of many places in its disc, for every point, (m, d).
+
+        Once for each of the ratios that become smallest, so many at most.
 
         A jammer's power is largest close to below the drone, so that many of the places are there.
         """
         if not (len(self.points_m) and self.sizes.jammers_m > 0.0):
             return points
-        away_m = self.position_m - self.points_m
-        rings_m = away_m[:, :1] + 1j * away_m[:, 1:2] + np.abs(away_m[:, 2:]) * _RINGS
-        spread = np.broadcast_to(_SPIRAL, (len(away_m), len(_SPIRAL)))
-        places = np.concatenate([rings_m / self.sizes.jammers_m, spread], axis=1)
+        below_m = self.away_m[:, :1] + 1j * self.away_m[:, 1:2]
+        seen_m = np.concatenate([np.abs(self.away_m[:, 2:]) * _RINGS, self.on_cones_m], axis=1)
+        spread = np.broadcast_to(_SPIRAL, (len(below_m), len(_SPIRAL)))
+        places = np.concatenate([(below_m + seen_m) / self.sizes.jammers_m, spread], axis=1)
         tried = np.tile(points[:, None, None], (1, *places.shape, 1))
         for jammer, start in enumerate(self.first[2:]):
             tried[:, jammer, :, start] = places[jammer].real
             tried[:, jammer, :, start + 1] = places[jammer].imag
         tried = self._projected(tried)
         ratios = self._ratios(tried.reshape(-1, len(self.ball))).reshape(*tried.shape[:3], -1)
-        ratio = np.argmin(np.min(ratios, axis=(1, 2)), axis=1)
-        place = np.argmin(ratios[np.arange(len(points)), ..., ratio], axis=2)  # (n, jammers)
-        worst = np.take_along_axis(tried, place[..., None, None], axis=2)[:, :, 0]
-        return np.asarray(points + np.sum(worst - points[:, None], axis=1))
+        ratio = np.argsort(np.min(ratios, axis=(1, 2)), axis=1)[:, :most]
+        row = np.repeat(np.arange(len(points)), ratio.shape[1])
+        place = np.argmin(ratios[row, ..., ratio.ravel()], axis=2)  # (m, jammers)
+        worst = np.take_along_axis(tried[row], place[..., None, None], axis=2)[:, :, 0]
+        return np.asarray(points[row] + np.sum(worst - points[row, None], axis=1))
 
     def _projected(self, points: FloatArray) -> FloatArray:
         """Return points with the part in each ball moved to its border if it is beyond."""
@@ -287,6 +297,32 @@ class _Search:
         """Return the length of the part in each ball, at each of its coordinates, (..., d)."""
         squares = np.add.reduceat(points * points, self.first, axis=-1)
         return np.asarray(np.sqrt(squares)[..., self.ball])
+
+
+def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float) -> FloatArray:
+    """Return places in whose direction a linear array hears a node, east + i north of the drone, (k, places).
+
+    They lie on the cone about the array through the node; the node's own direction is among them, in which
+    any array hears it.
+
+    Args:
+        scenario: nodes and array.
+        pose: of the array.
+        away_m: (k, 3) from each jammer to the drone.
+        reach_m: how far jammers move.
+    """
+    if scenario.array is None:
+        return np.zeros((len(away_m), 0), complex)
+    heading = np.exp(1j * pose.yaw_rad)
+    nodes_m = scenario.node_positions_m - pose.position_m
+    nodes = (nodes_m[:, 0] + 1j * nodes_m[:, 1]) / heading
+    slope = nodes.real / np.hypot(nodes.imag, nodes_m[:, 2])
+    jammers = -(away_m[:, 0] + 1j * away_m[:, 1]) / heading
+    across_m = jammers.imag[:, None] + reach_m * _ACROSS
+    towards_m = np.abs(away_m[:, 2:] / nodes_m[:, 2]) * nodes.imag
+    across_m = np.concatenate([across_m, towards_m], axis=1)[:, None]
+    places = slope[:, None] * np.hypot(across_m, away_m[:, 2:, None]) + 1j * across_m
+    return np.asarray(places.reshape(len(away_m), -1) * heading)
 
 
 def _starts(ratios: FloatArray) -> Any:
