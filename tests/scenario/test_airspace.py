@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nullpose.scenario import Airspace
+from nullpose.scenario import Airspace, NoFlyZone
 
 
 def test_unbounded_sides_are_infinite() -> None:
@@ -101,3 +101,26 @@ def test_zones_are_named_by_their_place() -> None:
     assert [zone.name for zone in FENCED.no_fly] == ["Z1", "mast"]
     assert Airspace.from_dict(FENCED.to_dict()) == FENCED
     assert Airspace(altitude_m=(8.0, 30.0)).to_dict() == {"altitude_m": [8.0, 30.0], "keep_out_m": 1.0}
+
+
+def test_zones_out_of_reach_of_ranges_and_fence_change_nothing() -> None:
+    """A zone is left out exactly where no allowed position would be forbidden by it."""
+    rng = np.random.default_rng(2)
+    fence = [[-40.0, -40.0], [40.0, -40.0], [40.0, 40.0], [-40.0, 40.0]]
+    for _ in range(200):
+        (x, y), r, low = rng.uniform(-90.0, 90.0, 2), rng.uniform(1.0, 20.0), rng.uniform(-20.0, 60.0)
+        box = {"x_m": (x - r, x + r), "y_m": (y - r, y + r)}
+        zone = NoFlyZone(name="Z", altitude_m=(low, low + 20.0), **box)
+        flat = rng.uniform() < 0.3
+        airspace = Airspace(
+            altitude_m=(20.0, 20.0 if flat else 40.0),
+            x_m=(-60.0, 30.0),
+            geofence_m=fence if rng.uniform() < 0.5 else None,
+            no_fly=(zone,),
+        )
+        free = airspace.model_copy(update={"no_fly": ()})
+        positions_m = rng.uniform([-90.0, -90.0, 20.0], [90.0, 90.0, 20.0 if flat else 40.0], (4000, 3))
+        forbids = bool(np.any(free.allows(positions_m) & ~airspace.allows(positions_m)))
+        assert airspace.reached(zone) or not forbids
+        if forbids:
+            assert airspace.reached(zone)

@@ -25,10 +25,9 @@ def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
         airspace: box, zones and fence.
     """
     zones: list[_Zone] = []
-    lowest, highest = airspace.altitude_m
     for zone in airspace.no_fly:
         is_flat = zone.shape == "box" and not area_m2(zone.outline_m) > 0.0
-        if is_flat or zone.floor_m >= highest or zone.ceiling_m <= lowest:
+        if is_flat or not airspace.reached(zone):
             continue
         kind, edges = FORBIDDEN_POLYGON, _edges(zone.outline_m)
         if zone.centre_m is not None and zone.radius_m is not None:

@@ -166,6 +166,18 @@ class Airspace(Section):
         zones = tuple(zone.grown(self.margin_m) for zone in self.no_fly)
         return self.model_construct(**stated | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
+    def reached(self, zone: NoFlyZone) -> bool:
+        """Returns whether a zone may forbid anything that the ranges and the fence allow.
+
+        Args:
+            zone: one of the airspace's.
+        """
+        low_m, high_m = zone.box_m
+        is_reached = np.all(low_m < self.upper_m) and np.all(high_m > self.lower_m)
+        if len(fence_m := self.geofence_outline_m):
+            is_reached &= np.all(low_m[:2] < fence_m.max(axis=0)) and np.all(high_m[:2] > fence_m.min(axis=0))
+        return bool(is_reached)
+
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the vehicle may be at each position, the keep-out balls not being looked at.
 

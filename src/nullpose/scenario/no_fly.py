@@ -145,6 +145,15 @@ class NoFlyZone(Section):
         return counter_clockwise_m(self.polygon_m)
 
     @property
+    def box_m(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lower and upper corner of the smallest box about the zone [m], (3,) each."""
+        outline_m = self.outline_m
+        if self.centre_m is not None and self.radius_m is not None:
+            outline_m = np.add([[-self.radius_m], [self.radius_m]], self.centre_m)
+        low, high = outline_m.min(axis=0), outline_m.max(axis=0)
+        return np.append(low, self.floor_m), np.append(high, self.ceiling_m)
+
+    @property
     def floor_m(self) -> float:
         """Lowest altitude of the zone [m]; minus infinity for all altitudes."""
         return -math.inf if self.altitude_m is None else self.altitude_m[0]

@@ -29,7 +29,8 @@ def airspace_faults(
         error_m: how far the vehicle may be from where it is meant to be [m].
     """
     centres_m = np.array([point.position_m for point in points.values()], dtype=np.float64).reshape(-1, 3)
-    corners = sum(max(1, len(zone.outline_m)) for zone in airspace.no_fly) + len(airspace.geofence_outline_m)
+    corners = sum(max(1, len(zone.outline_m)) for zone in airspace.no_fly if airspace.reached(zone))
+    corners += len(airspace.geofence_outline_m)
     if corners > MOST_CORNERS:
         yield (
             ("airspace",),
