@@ -24,7 +24,7 @@ def draw_examples() -> None:
     plain = ("eavesdropper", "geodetic", "no-fly")
     results = {name: nullpose.solve(nullpose.load(EXAMPLES / f"{name}.toml")) for name in plain}
     results["robust"] = solve_robust(nullpose.load(EXAMPLES / "robust.toml"))
-    results["array"] = solve_array(nullpose.load(EXAMPLES / "array.toml"), "digital")
+    results["array"] = solve_array(nullpose.load(EXAMPLES / "array.toml"))
     for name, result in results.items():
         write_figure_file(draw_result(result), IMAGES / f"{name}.png")
 
