@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 help: ## what can be made, a line each
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
 
-demo: .venv/.with-core ## the paper's problem solved, its Figure 2 and its claims checked, into out/
+demo: .venv/.with-core ## the paper's problem solved and its Figure 2 redrawn, into out/
 	$(BIN)/nullpose compare examples/paper.toml
 	$(BIN)/nullpose reproduce --out out
 

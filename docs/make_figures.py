@@ -1,11 +1,13 @@
 """Update the pictures and the page of the paper's claims: `make figures`.
 
-`nullpose reproduce` and `nullpose solve --figure` write the same files.
+`nullpose reproduce` and `nullpose solve --figure` write the same pictures.
 """
 
 import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+from claims.page import check_claims, claims_page
 
 import nullpose
 from nullpose.paper.reproduce import reproduce
@@ -30,13 +32,14 @@ def draw_examples() -> None:
 
 
 def main() -> None:
-    """Run the reproduction and copy its figures and its claims, and draw the examples."""
+    """Draw the examples, run the reproduction, copy its figures and check the claims on its data."""
     draw_examples()
     with TemporaryDirectory() as folder:
-        reproduce(Path(folder))
+        reproduction = reproduce(Path(folder))
         for name in ("figure2.png", "poses.png"):
             shutil.copyfile(Path(folder) / name, IMAGES / name)
-        shutil.copyfile(Path(folder) / "claims.md", DOCS / "claims.md")
+    page = claims_page(reproduction, check_claims(reproduction))
+    (DOCS / "claims.md").write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,12 +3,16 @@
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+
+if TYPE_CHECKING:
+    from nullpose.paper.reproduce import Reproduction
 
 os.environ["MPLBACKEND"] = "Agg"
 
@@ -77,6 +81,16 @@ def random_scene(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
         )
 
     return build
+
+
+@pytest.fixture(scope="session")
+def reproduction(tmp_path_factory: pytest.TempPathFactory) -> "Reproduction":
+    """The paper's figures from two jamming levels a decade."""
+    from nullpose.paper.reproduce import reproduce
+
+    levels = [10.0 ** (exponent / 2) for exponent in range(-6, 13)]
+    folder = tmp_path_factory.mktemp("reproduction")
+    return reproduce(folder, levels=levels, printed_levels=[1e-3, 1.0, 1e5, 1e6])
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -61,7 +61,6 @@ def test_the_optimum_keeps_to_the_airframe(random_scene: Callable) -> None:
 @pytest.mark.parametrize(
     ("scheme", "null_jammer"),
     [
-        ("maximum-gain-printed", None),
         ("", None),
         ("Optimum", None),
         ("zero-interference", "M9"),

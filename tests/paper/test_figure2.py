@@ -13,12 +13,14 @@ from matplotlib.image import imread
 
 from nullpose import Scenario
 from nullpose.paper.figure2 import draw_figure2
-from nullpose.paper.pages import Reproduction
+from nullpose.paper.reproduce import Reproduction
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.solve import Objective
 from nullpose.study import SweepTable
+
+PRINTED_COLOUR = "#9a6060"
 
 
 def share_near(picture: np.ndarray, colour: str) -> float:
@@ -37,24 +39,25 @@ def test_figure2_shows_every_curve_in_its_colour(folder: Path) -> None:
     picture = imread(folder / "figure2.png")
     assert picture.shape[1] >= 1200
     assert picture[..., :3].std() > 0.05
-    for curve in CURVES.values():
-        assert share_near(picture, curve.colour) > 2e-4, curve.label
+    for colour in (*(curve.colour for curve in CURVES.values()), PRINTED_COLOUR):
+        assert share_near(picture, colour) > 2e-4, colour
 
 
 def test_figure2_has_labels_and_units(reproduction: Reproduction) -> None:
     """Axes are named with units, and each curve is labelled once."""
-    figure = draw_figure2(reproduction.table)
+    figure = draw_figure2(reproduction.table, reproduction.printed)
     (axes,) = figure.axes
     assert "P_M/P" in axes.get_xlabel()
     assert "(dB)" in axes.get_ylabel()
     assert axes.get_xscale() == "log"
     texts = " ".join(text.get_text() for text in axes.texts)
     assert all(curve.label in texts for curve in CURVES.values())
+    assert "maximum gain, eq. 3.5 as printed" in texts
 
 
 def test_figure2_labels_cover_nothing(reproduction: Reproduction) -> None:
     """No label overlaps another, and no label lies on a curve other than its own."""
-    figure = draw_figure2(reproduction.table)
+    figure = draw_figure2(reproduction.table, reproduction.printed)
     figure.draw_without_rendering()
     (axes,) = figure.axes
     boxes = [text.get_window_extent() for text in axes.texts]
@@ -85,7 +88,10 @@ def test_svg_is_whole_and_undated(folder: Path, name: str) -> None:
 
 def test_same_figure_same_files(reproduction: Reproduction, tmp_path: Path) -> None:
     """Drawing twice gives the same bytes."""
-    written = [write_figure(draw_figure2(reproduction.table), tmp_path, stem) for stem in ("first", "second")]
+    written = [
+        write_figure(draw_figure2(reproduction.table, reproduction.printed), tmp_path, stem)
+        for stem in ("first", "second")
+    ]
     for first, second in zip(*written, strict=True):
         assert first.read_bytes() == second.read_bytes()
 
@@ -101,13 +107,13 @@ def test_a_node_in_the_null_leaves_a_gap(reproduction: Reproduction) -> None:
 
 def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
     """The four curves have their bands, and small text says that every point is certified, or how many."""
-    figure = draw_figure2(reproduction.table)
+    figure = draw_figure2(reproduction.table, reproduction.printed)
     assert sum(isinstance(one, PolyCollection) for one in figure.axes[0].collections) == 4
     assert "certified optimal within 1e-6" in figure.get_supxlabel()
     assert "as printed: best found by search" in figure.get_supxlabel()
     first, *others = reproduction.table.rows
     doubtful = replace(first, status="gap-not-reached")
-    figure = draw_figure2(SweepTable(reproduction.table.path, (doubtful, *others)))
+    figure = draw_figure2(SweepTable(reproduction.table.path, (doubtful, *others)), reproduction.printed)
     assert "not reached at 1 of 19 points" in figure.get_supxlabel()
 
 
@@ -127,6 +133,6 @@ def test_pyplot_is_never_used(reproduction: Reproduction) -> None:
     """Figures are made without the global state that pyplot keeps."""
     import sys
 
-    draw_figure2(reproduction.table)
+    draw_figure2(reproduction.table, reproduction.printed)
     pyplot = sys.modules.get("matplotlib.pyplot")
     assert pyplot is None or pyplot.get_fignums() == []

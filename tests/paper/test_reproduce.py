@@ -2,56 +2,33 @@
 
 import csv
 import io
-import json
 
+import pytest
 from rich.console import Console
 
-from nullpose.paper.pages import Reproduction, reproduction_view
-
-KEYS = [
-    "id",
-    "claim",
-    "source",
-    "verdict",
-    "finding",
-    "evidence",
-    "holds_up_to",
-    "holds_from",
-    "fails_from",
-    "method",
-    "certainty",
-    "proved",
-    "unproved",
-]
+from nullpose.paper.printed import sinr_as_printed
+from nullpose.paper.reproduce import Reproduction, reproduction_view
+from nullpose.paper.scene import JAMMER_POWER, paper_scenario
+from nullpose.physics import min_sinr, to_db
+from nullpose.scenario import Override, apply_overrides
 
 
 def test_files(reproduction: Reproduction) -> None:
     """All are there, none is empty, and nothing else was left in the folder."""
     folder = reproduction.files[0].parent
     assert set(folder.iterdir()) == set(reproduction.files)
-    assert all(path.stat().st_size > 1000 for path in reproduction.files)
+    assert all(path.stat().st_size > 300 for path in reproduction.files)
 
 
-def test_claims_json(reproduction: Reproduction) -> None:
-    """The file is strict JSON with the documented keys."""
-
-    def refuse(name: str) -> float:
-        raise AssertionError(name)
-
-    (path,) = [path for path in reproduction.files if path.name == "claims.json"]
-    data = json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
-    assert [list(claim) for claim in data["claims"]] == [KEYS] * 8
+def test_what_is_proved_as_data(reproduction: Reproduction) -> None:
+    """Every point of the four curves is certified within the gap, which the object says of each curve."""
+    data = reproduction.to_dict()
+    assert data["scenario"] == "Bonilla Licea et al., ICASSP 2024, section 4"
     assert data["provenance"]["seed"] == 0
-    for claim in data["claims"]:
-        assert claim["certainty"]["certified"] == claim["certainty"]["values"] > 0
-        assert claim["certainty"]["largest_relative_gap"] <= 1e-6
-    printed = data["figure2"].pop("maximum-gain-printed")
-    assert (printed["best_found"], printed["largest_relative_gap"]) == (printed["values"], None)
-    assert {name: found["certified"] for name, found in data["figure2"].items()} == dict.fromkeys(
-        ("optimum", "zero-interference", "maximum-gain", "vertical"), 19
-    )
-    assert "certified optimal within 1e-6" in data["note"]
-    assert "proved only where a claim says so" in data["note"]
+    assert list(data["figure2"]) == ["optimum", "zero-interference", "maximum-gain", "vertical"]
+    for counts in data["figure2"].values():
+        assert counts["certified"] == counts["values"] == 19
+        assert counts["largest_relative_gap"] <= 1e-6
 
 
 def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
@@ -64,21 +41,37 @@ def test_figure2_csv_is_the_table(reproduction: Reproduction) -> None:
     ]
     assert [float(row["min_sinr_db"]) for row in rows] == [r.min_sinr_db for r in reproduction.table.rows]
     for row in rows:
-        if row["scheme"] == "maximum-gain-printed":
-            assert (row["status"], row["upper_bound_db"], row["relative_gap"]) == ("best-found", "", "")
-        else:
-            assert row["status"] == "certified"
-            assert 0.0 <= float(row["relative_gap"]) <= 1e-6
-            assert float(row["upper_bound_db"]) >= float(row["min_sinr_db"])
+        assert row["status"] == "certified"
+        assert 0.0 <= float(row["relative_gap"]) <= 1e-6
+        assert float(row["upper_bound_db"]) >= float(row["min_sinr_db"])
+
+
+def test_the_printed_curve_has_a_file(reproduction: Reproduction) -> None:
+    """Each of its points reads back to the last digit, and its value is eq. 3.5's at its position."""
+    (path,) = [path for path in reproduction.files if path.name == "figure2-printed.csv"]
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(reproduction.printed) == 4
+    for row, point in zip(rows, reproduction.printed, strict=True):
+        assert float(row["jammers.M.power_w"]) == point.level
+        assert float(row["min_sinr"]) == point.min_sinr
+        assert [float(row[name]) for name in ("x_m", "y_m", "z_m")] == point.position_m.tolist()
+        scene = apply_overrides(paper_scenario(), [Override(JAMMER_POWER, point.level)])
+        assert point.min_sinr == sinr_as_printed(scene, point.position_m).min()
+
+
+def test_rows_are_what_physics_says(reproduction: Reproduction) -> None:
+    """Every value of the four curves is the equation's at the pose beside it."""
+    for row in reproduction.table.rows:
+        scene = apply_overrides(paper_scenario(), [Override(JAMMER_POWER, row.value)])
+        assert row.min_sinr == pytest.approx(min_sinr(scene, row.pose), rel=1e-12)
+        assert row.min_sinr_db == pytest.approx(float(to_db(row.min_sinr)))
 
 
 def test_view(reproduction: Reproduction) -> None:
-    """The verdicts and the files are printed."""
+    """What is proved of each curve is printed, and that the printed form is only searched."""
     console = Console(width=200, file=io.StringIO())
     console.print(reproduction_view(reproduction))
     text = console.file.getvalue()
-    assert text.count("holds ") == 7
-    assert text.count("fails ") == 1
     assert "Vertical: each point is certified optimal within 1e-6 (relative)" in text
     assert "as printed: best found by search, no upper bound" in text
-    assert all(str(path) in text for path in reproduction.files)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose.solve import PAPER_SCHEMES, Scheme, Status, solve
+from nullpose.solve import Scheme, Status, solve
 
 KNOWN = Path(__file__).parents[1] / "reference" / "paper_scenario" / "known_answers.csv"
 
@@ -83,7 +83,7 @@ def test_one_node_alone_is_closed_form(altitude_m: tuple[float, float], scene: C
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6])
-@pytest.mark.parametrize("scheme", PAPER_SCHEMES)
+@pytest.mark.parametrize("scheme", Scheme)
 def test_the_paper_is_certified(scheme: Scheme, ratio: float, paper: Callable) -> None:
     """Each of the paper's cases is closed to a millionth at every strength of the jamming."""
     solution = solve(paper(ratio), scheme)

@@ -17,12 +17,10 @@ from nullpose.physics import (
     element_positions,
     evaluate,
     margins_of_many,
-    maximum_gain_sinr_as_printed,
     ratios_under,
     zero_interference_sinr,
 )
 from nullpose.scenario import Scenario
-from nullpose.schemes import Scheme
 from nullpose.study import sweep
 
 NODE_DBI, OTHER_DBI, DRONE_DBI = (2.15, -3.0), 5.0, 1.76
@@ -116,16 +114,3 @@ def test_whips_gain_on_an_isotropic_jammer() -> None:
     gained = nullpose.apply_overrides(scene, ["nodes.S1.gain_dbi=2.15", "nodes.S2.gain_dbi=2.15"])
     before, after = (nullpose.solve(one, gap=1e-4).objective.value_db for one in (scene, gained))
     assert after - before == pytest.approx(2.15, abs=2e-3)
-
-
-def test_equation_3_5_as_printed_is_refused_with_antennas_that_it_does_not_know() -> None:
-    """It has no place for the ground's antennas; the drone's gain is a factor."""
-    with pytest.raises(nullpose.UsageError, match="paper's antennas"):
-        nullpose.solve(with_gains(whips=False), scheme=Scheme.MAXIMUM_GAIN_PRINTED)
-    plain = nullpose.load("examples/paper.toml")
-    gained = nullpose.apply_overrides(plain, ["antenna.gain_dbi=10"])
-    louder = nullpose.apply_overrides(plain, ["receiver.reference_gain_db=10"])
-    at = (np.array([1.0, 25.0, 12.0]),)
-    np.testing.assert_allclose(
-        maximum_gain_sinr_as_printed(gained, *at), maximum_gain_sinr_as_printed(louder, *at), rtol=1e-12
-    )

@@ -8,10 +8,9 @@ from nullpose.cli.progress import Ticker
 
 
 def reproduce(out: OutFolder, seed: Seed = 0, json_output: JsonOutput = False) -> None:
-    """Redraw the paper's Figure 2 and check each of its claims."""
-    from nullpose.paper.pages import reproduction_view
-    from nullpose.paper.reproduce import reproduce as reproduce_paper
+    """Redraw the paper's Figure 2 and its poses."""
+    from nullpose.paper import reproduce as paper
 
     with compiling_announced(), Ticker("reproducing the paper") as ticker:
-        reproduction = reproduce_paper(out, seed=seed, on_progress=ticker)
-    tell(reproduction, reproduction_view, json_output)
+        reproduction = paper.reproduce(out, seed=seed, on_progress=ticker)
+    tell(reproduction, paper.reproduction_view, json_output, files=reproduction.files)

@@ -76,7 +76,6 @@ def solve(
       maximum-gain          the antenna broadside to the nodes; of three or more,
                             the axis with the largest smallest signal
       vertical              the antenna upright
-      maximum-gain-printed  maximum gain by the paper's eq. 3.5 as printed
     """  # noqa: D301  the mark that keeps the lines as they are
     from nullpose.report.results import result_view
 

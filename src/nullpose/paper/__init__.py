@@ -1,1 +1,1 @@
-"""The paper replicated: its Figure 2, its poses, its claims. Nothing else in the library knows them."""
+"""The paper's Figure 2 and its poses, recomputed. Nothing else in the library knows them."""

@@ -1,16 +1,14 @@
-"""The paper's Figure 2, a figure of its poses, and its claims checked, written to a folder."""
+"""The paper's Figure 2 and a figure of its poses, written to a folder."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from nullpose.files import check_outputs, write_text
-from nullpose.paper.claim import Claim
-from nullpose.paper.claims import CLAIMS
-from nullpose.paper.figure2 import draw_figure2
-from nullpose.paper.pages import Reproduction, claims_markdown
+from nullpose.files import check_outputs, write_csv
+from nullpose.paper.figure2 import draw_figure2, figure2_lines
+from nullpose.paper.printed import PrintedPoint, search_as_printed
 from nullpose.paper.scene import (
     JAMMER_POWER,
     JAMMING_LEVELS,
@@ -18,15 +16,38 @@ from nullpose.paper.scene import (
     PRINTED_LEVELS,
     paper_scenario,
 )
-from nullpose.paper.study import JammingStudy
+from nullpose.report.certainty import Certainty
+from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
-from nullpose.report.plain import json_text
-from nullpose.solve import PAPER_SCHEMES, Scheme
-from nullpose.study import sweep
+from nullpose.schemes import Scheme
+from nullpose.study import SweepTable, sweep
 
-_FILES = ("figure2.png", "figure2.svg", "figure2.csv", "poses.png", "poses.svg", "claims.md", "claims.json")
-_CLAIM_STEPS = 20  # a claim takes about as long as so many points of the sweep
+_FILES = ("figure2.png", "figure2.svg", "figure2.csv", "figure2-printed.csv", "poses.png", "poses.svg")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reproduction:
+    """What a reproduction found and wrote.
+
+    Args:
+        table: the four curves of Figure 2.
+        printed: its curve of maximum gain as eq. 3.5 is printed.
+        files: what was written.
+    """
+
+    table: SweepTable
+    printed: tuple[PrintedPoint, ...]
+    files: tuple[Path, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """Return what is proved of each curve as plain data."""
+        return {
+            "scenario": self.table.rows[0].scenario.name,
+            "levels_are": "P_M/P, the jamming-to-transmission power ratio",
+            "figure2": {name: asdict(Certainty.of(self.table.of(name))) for name in self.table.schemes},
+            "provenance": dict(self.table.rows[0].provenance),
+        }
 
 
 def reproduce(
@@ -44,44 +65,33 @@ def reproduce(
     Args:
         folder: where the files go; made if it is missing.
         seed: the random seed of every solve.
-        levels: P_M/P of the four curves, ascending.
+        levels: P_M/P of the four curves, ascending; those of the poses among them.
         printed_levels: P_M/P of maximum gain as eq. 3.5 is printed, ascending.
-        on_progress: called now and then with how many steps are done and how many there are.
+        on_progress: called with how many points of the four curves are done, and how many there are.
 
     Raises:
         OutputError: the folder or a file cannot be written; the folder is tried before any work.
     """
     check_outputs({}, {name: folder / name for name in _FILES})
-    four_cases = len(levels) * len(PAPER_SCHEMES)
-    solves = four_cases + len(printed_levels)
-
-    def told(done: int) -> None:
-        if on_progress is not None:
-            on_progress(done, solves + len(CLAIMS) * _CLAIM_STEPS)
-
     scenario = paper_scenario()
-    table = sweep(scenario, JAMMER_POWER, levels, seed=seed, on_progress=lambda done, _: told(done)).joined(
-        sweep(
-            scenario,
-            JAMMER_POWER,
-            printed_levels,
-            schemes=[Scheme.MAXIMUM_GAIN_PRINTED],
-            seed=seed,
-            on_progress=lambda done, _: told(four_cases + done),
-        )
-    )
-    study = JammingStudy(scenario, table, seed)
-    claims: list[Claim] = []
-    for claim in CLAIMS:
-        claims.append(claim.checked(study))
-        told(solves + len(claims) * _CLAIM_STEPS)
-    poses = [study.at(Scheme.OPTIMUM, level) for level in POSE_LEVELS]
-    found = Reproduction(table, tuple(claims), table.of(Scheme.ZERO_INTERFERENCE)[0].provenance)
+    table = sweep(scenario, JAMMER_POWER, levels, seed=seed, on_progress=on_progress)
+    printed = tuple(search_as_printed(scenario, level, seed=seed) for level in printed_levels)
+    poses = [row for row in table.of(Scheme.OPTIMUM) if row.value in POSE_LEVELS]
+    heading = (JAMMER_POWER, "min_sinr", "min_sinr_db", "x_m", "y_m", "z_m")
+    points = [(at.level, at.min_sinr, at.min_sinr_db, *at.position_m.tolist()) for at in printed]
     files = (
-        *write_figure(draw_figure2(table), folder, "figure2"),
+        *write_figure(draw_figure2(table, printed), folder, "figure2"),
         table.write_csv(folder / "figure2.csv"),
+        write_csv(folder / "figure2-printed.csv", [heading, *points]),
         *write_figure(draw_poses(scenario, poses), folder, "poses"),
-        write_text(folder / "claims.md", claims_markdown(found)),
-        write_text(folder / "claims.json", json_text(found.claims_dict()) + "\n"),
     )
-    return replace(found, files=files)
+    return Reproduction(table=table, printed=printed, files=files)
+
+
+def reproduction_view(reproduction: Reproduction) -> View:
+    """Return what is proved of Figure 2, as lines.
+
+    Args:
+        reproduction: what was found.
+    """
+    return document("\n".join(f"Figure 2: {line}" for line in figure2_lines(reproduction.table)))

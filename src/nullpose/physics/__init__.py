@@ -33,7 +33,6 @@ from nullpose.physics.many import margins_of_many
 from nullpose.physics.maximum_gain import (
     maximum_gain_axis,
     maximum_gain_sinr,
-    maximum_gain_sinr_as_printed,
 )
 from nullpose.physics.objective import margin, objective_value
 from nullpose.physics.polarisation import dipole_gain, interferer_gains, link_gain
@@ -79,7 +78,6 @@ __all__ = [
     "margins_of_many",
     "maximum_gain_axis",
     "maximum_gain_sinr",
-    "maximum_gain_sinr_as_printed",
     "min_margin",
     "min_secrecy_rate",
     "min_sinr",

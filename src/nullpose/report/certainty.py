@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from nullpose.report.document import grouped
-from nullpose.report.numbers import begun, count_of, short
+from nullpose.report.numbers import begun, short
 from nullpose.schemes import Scheme
 from nullpose.solve import Rigour, Status
 from nullpose.study import SweepRow, SweepTable
@@ -50,24 +50,6 @@ class Certainty:
         )
 
     @property
-    def complete(self) -> bool:
-        """Whether there are values, each of them certified."""
-        return self.certified == self.values > 0
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the counts as plain data."""
-        return asdict(self)
-
-    def words(self) -> str:
-        """Return the counts in words, as in ``9 values: 9 certified, ...; largest relative gap 1e-6``."""
-        gap = "none" if self.largest_relative_gap is None else short(self.largest_relative_gap)
-        return (
-            f"{count_of(self.values, 'value')}: {self.certified} certified, {self.gap_not_reached} with a "
-            f"bound outside the requested gap, {self.best_found} best found without a bound; largest "
-            f"relative gap {gap}"
-        )
-
-    @property
     def weakest(self) -> Status:
         """What can be said of each of them."""
         if self.best_found:
@@ -94,12 +76,21 @@ def certainty_lines(table: SweepTable) -> list[str]:
     Args:
         table: a sweep.
     """
+    return [begun(line) for line in grouped(labelled_certainty(table))]
+
+
+def labelled_certainty(table: SweepTable) -> list[tuple[str, str]]:
+    """Return the label of each of a table's curves with what is proved of it, in words.
+
+    Args:
+        table: a sweep.
+    """
     said: list[tuple[str, str]] = []
     for status in Status:
         schemes = [name for name in table.schemes if Certainty.of(table.of(name)).weakest is status]
         together = Certainty.of(row for row in table.rows if row.scheme in schemes)
         said += [(Scheme(name).label, together.sentence) for name in schemes]
-    return [begun(line) for line in grouped(said)]
+    return said
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:

@@ -16,7 +16,7 @@ from nullpose.report.numbers import bound_text, degrees_text, fixed
 from nullpose.report.results import azimuth_text, binding_nodes, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
-from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.schemes import Scheme
 from nullpose.solve import Result, compare
 
 
@@ -71,7 +71,7 @@ def compare_all(scenario: Scenario, **options: Any) -> Comparison:
         scenario: nodes, jammers, receiver and airspace.
         options: of :func:`nullpose.solve.compare`.
     """
-    reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in PAPER_SCHEMES]
+    reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in Scheme]
     left_out = tuple((scheme, reason) for scheme, reason in reasons if reason is not None)
     return Comparison(scenario, tuple(compare(scenario, **options)), left_out)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from decimal import ROUND_CEILING, Context, Decimal
 from typing import TYPE_CHECKING
 
 from nullpose.objectives import Quantity
@@ -89,22 +89,8 @@ def at_most(number: float, digits: int = 2) -> str:
         number: any.
         digits: how many.
     """
-    return _outward(number, digits, ROUND_CEILING)
-
-
-def at_least(number: float, digits: int = 2) -> str:
-    """Return a number rounded down to so many significant digits.
-
-    Args:
-        number: any.
-        digits: how many.
-    """
-    return _outward(number, digits, ROUND_FLOOR)
-
-
-def _outward(number: float, digits: int, rounding: str) -> str:
     known = Decimal(f"{number:.9g}")  # what is behind the ninth digit is rounding
-    return f"{float(Context(prec=digits, rounding=rounding).plus(known)):.{digits}g}"
+    return f"{float(Context(prec=digits, rounding=ROUND_CEILING).plus(known)):.{digits}g}"
 
 
 def number(value: float, quantity: Quantity | None = None) -> str:

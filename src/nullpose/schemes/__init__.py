@@ -1,4 +1,4 @@
-"""The schemes, one file each: the paper's four cases, and one of them as printed.
+"""The schemes, one file each: the paper's four cases.
 
 Nothing heavy is imported here: the command line reads the names for its help.
 """
@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
 from nullpose.schemes.maximum_gain import MAXIMUM_GAIN
-from nullpose.schemes.maximum_gain_printed import MAXIMUM_GAIN_PRINTED
 from nullpose.schemes.optimum import OPTIMUM
 from nullpose.schemes.record import Curve, SchemeRecord
 from nullpose.schemes.vertical import VERTICAL
@@ -19,12 +18,9 @@ from nullpose.schemes.zero_interference import ZERO_INTERFERENCE
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
-__all__ = ["PAPER_SCHEMES", "Curve", "Scheme", "SchemeRecord", "as_scheme"]
+__all__ = ["Curve", "Scheme", "SchemeRecord", "as_scheme"]
 
-RECORDS = {
-    record.name: record
-    for record in (OPTIMUM, ZERO_INTERFERENCE, MAXIMUM_GAIN, VERTICAL, MAXIMUM_GAIN_PRINTED)
-}
+RECORDS = {record.name: record for record in (OPTIMUM, ZERO_INTERFERENCE, MAXIMUM_GAIN, VERTICAL)}
 
 
 class Scheme(StrEnum):
@@ -34,7 +30,6 @@ class Scheme(StrEnum):
     ZERO_INTERFERENCE = ZERO_INTERFERENCE.name
     MAXIMUM_GAIN = MAXIMUM_GAIN.name
     VERTICAL = VERTICAL.name
-    MAXIMUM_GAIN_PRINTED = MAXIMUM_GAIN_PRINTED.name
 
     @property
     def record(self) -> SchemeRecord:
@@ -66,9 +61,6 @@ class Scheme(StrEnum):
         reason = self.not_applicable(scenario)
         if reason is not None:
             raise UsageError(f"scheme {self.value}: {reason}; try another scheme")
-
-
-PAPER_SCHEMES = tuple(scheme for scheme in Scheme if scheme.record.in_paper)
 
 
 def as_scheme(name: str) -> Scheme:

@@ -37,7 +37,6 @@ MAXIMUM_GAIN = SchemeRecord(
     label="Maximum gain",
     short="max. gain",
     curve=Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
-    in_paper=True,
     sentence=lambda scenario, null_jammer: "with an antenna broadside to both nodes",
     fields=_fields,
     note=_note,

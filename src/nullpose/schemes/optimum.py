@@ -37,7 +37,6 @@ OPTIMUM = SchemeRecord(
     label="Optimum",
     short="optimum",
     curve=Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
-    in_paper=True,
     sentence=_sentence,
     fields=_fields,
     any_objective=True,

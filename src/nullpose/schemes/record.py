@@ -7,9 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from nullpose.family import AxisField
     from nullpose.scenario import Scenario
 
@@ -39,15 +36,14 @@ class Curve:
 class SchemeRecord:
     """One way to choose the pose.
 
-    A scheme either names the axis fields that it allows, and is then proved over each of them; or it names
-    the axis at a position, and is then searched by values, under the bound of a free axis.
+    A scheme names the axis fields that it allows, and is proved over each of them. Where it names none, the
+    axis serves the nodes best, the jammers ignored; it is searched by values, under the bound of a free axis.
 
     Args:
         name: as in a file or an option.
         label: for tables.
         short: for the narrowest legends.
         curve: how it is drawn.
-        in_paper: whether it is one of the paper's four cases.
         sentence: from a scenario and the jammer to be nulled: which axes a certificate speaks of, in words.
         fields: from a scenario and the jammer to be nulled: the axis fields by the names that they have in a
             certificate; None where the scheme names none.
@@ -57,10 +53,6 @@ class SchemeRecord:
         any_airframe: whether it has a meaning for a vehicle that does not reach every axis.
         any_antenna: whether it has a meaning for an antenna that is no dipole.
         nulls_a_jammer: whether the jammer to be nulled may be named.
-        axis_at: from a scenario and a position, (3,): the axis there; for schemes without fields. None: the
-            axis that serves the nodes best, the jammers ignored.
-        ratios_at: from a scenario and positions, (..., 3): every node's ratio, where it is not eq. 2.1 at the
-            pose. Nothing is proved of such a scheme.
         unproved: why it is not certified where it has no fields.
     """
 
@@ -70,15 +62,12 @@ class SchemeRecord:
     curve: Curve
     sentence: Callable[[Scenario, str | None], str]
     fields: Callable[[Scenario, str | None], Mapping[str, AxisField] | None]
-    in_paper: bool = False
     note: Callable[[Scenario, tuple[str, ...], int], str] = field(default=lambda *_: "")
     reason_against: Callable[[Scenario], str | None] = field(default=lambda _: None)
     any_objective: bool = False
     any_airframe: bool = False
     any_antenna: bool = False
     nulls_a_jammer: bool = False
-    axis_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
-    ratios_at: Callable[[Scenario, NDArray[np.float64]], NDArray[np.float64]] | None = None
     unproved: str = ""
 
     def not_applicable(self, scenario: Scenario) -> str | None:

@@ -22,7 +22,6 @@ VERTICAL = SchemeRecord(
     label="Vertical",
     short="vertical",
     curve=Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
-    in_paper=True,
     sentence=lambda scenario, null_jammer: "with a vertical antenna",
     fields=_fields,
     reason_against=lambda scenario: (

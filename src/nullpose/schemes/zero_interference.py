@@ -36,7 +36,6 @@ ZERO_INTERFERENCE = SchemeRecord(
     label="Zero interference",
     short="zero interf.",
     curve=Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
-    in_paper=True,
     sentence=_sentence,
     fields=_fields,
     note=_note,

@@ -1,6 +1,6 @@
 """From a scenario to a solution: the paper's four cases."""
 
-from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
+from nullpose.schemes import Scheme, as_scheme
 from nullpose.solve.api import best_axis, compare, solve
 from nullpose.solve.array import ArrayDetails, solve_array
 from nullpose.solve.compiling import announce_compiling
@@ -25,7 +25,6 @@ ArraySolution = Result
 
 __all__ = [
     "NODE_LIMIT",
-    "PAPER_SCHEMES",
     "TIME_LIMIT_S",
     "ArrayDetails",
     "ArraySolution",

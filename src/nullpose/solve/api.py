@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from nullpose.errors import UsageError
 from nullpose.family import AxisField, build_family
 from nullpose.objectives import Quantity
-from nullpose.physics import Link, Pose, evaluate, to_db
+from nullpose.physics import Pose, evaluate
 from nullpose.physics.pose import as_position
 from nullpose.scenario import Scenario, require_scenario
-from nullpose.schemes import PAPER_SCHEMES, Scheme, as_scheme
+from nullpose.schemes import Scheme, as_scheme
 from nullpose.solve.by_scheme import solve_scheme
 from nullpose.solve.compiling import working_clock
 from nullpose.solve.options import SolveKeywords, SolveOptions
@@ -75,7 +75,7 @@ def solve(
     began = working_clock()
     outcome, fields = solve_scheme(scenario, record, asked, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
-    links = _links(scenario, scheme, pose)
+    links = evaluate(scenario, pose)
     rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
     objective = objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour)
     status, reason = status_of(objective, asked.target, outcome.reason)
@@ -103,7 +103,7 @@ def solve(
 def compare(
     scenario: Scenario,
     *,
-    schemes: Sequence[Scheme | str] = PAPER_SCHEMES,
+    schemes: Sequence[Scheme | str] = tuple(Scheme),
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Results:
@@ -182,14 +182,3 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
 
 
 _AXIS_NODES = 50_000  # of the proof at one position, which needs few if it is closed at all
-
-
-def _links(scenario: Scenario, scheme: Scheme, pose: Pose) -> tuple[Link, ...]:
-    ratios_at = scheme.record.ratios_at
-    if ratios_at is None:
-        return evaluate(scenario, pose)
-    ratios = ratios_at(scenario, pose.position_m)
-    return tuple(
-        Link(node=name, sinr=float(ratio), sinr_db=float(to_db(ratio)))
-        for name, ratio in zip(scenario.node_names, ratios, strict=True)
-    )

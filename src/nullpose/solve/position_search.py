@@ -1,9 +1,8 @@
 """Multistart over positions for objectives that are only known by their values.
 
-For the two comparison cases whose objective is not a family of smooth ratios in the position: maximum gain
-for other
-than two nodes (its axis is itself the answer of an optimisation, so the objective has kinks and may jump)
-and eq. 3.5 as printed. Nelder-Mead, restarted from its own answer until that no longer moves.
+For what is not a family of smooth ratios in the position: maximum gain for other than two nodes (its axis
+is itself the answer of an optimisation, so the objective has kinks and may jump) and the paper's eq. 3.5 as
+printed. Nelder-Mead, restarted from its own answer until that no longer moves.
 """
 
 from __future__ import annotations

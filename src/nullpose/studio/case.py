@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Scheme
+from nullpose.solve import Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
 
@@ -64,7 +64,7 @@ OPTIMUM = Case(label="Optimum pose")
 
 CASES = (
     OPTIMUM,
-    *(Case(label=scheme.label, scheme=scheme) for scheme in PAPER_SCHEMES if scheme is not Scheme.OPTIMUM),
+    *(Case(label=scheme.label, scheme=scheme) for scheme in Scheme if scheme is not Scheme.OPTIMUM),
     Case(label="Robust pose", robust=True),
     *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve import PAPER_SCHEMES, Result, Rigour, Scheme, Status, default_gap_of, solve
+from nullpose.solve import Result, Rigour, Scheme, Status, default_gap_of, solve
 from nullpose.solve.robust import ROBUST_GAP, solve_robust
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
@@ -114,7 +114,7 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
     if view.power_db is None:
         return
     low_db, high_db = POWER_DB
-    schemes = [one for one in PAPER_SCHEMES if one.not_applicable(view.scenario) is None]
+    schemes = [one for one in Scheme if one.not_applicable(view.scenario) is None]
     coarse = range(0, _CURVE_POINTS, 7)
     order = [*coarse, *(i for i in range(_CURVE_POINTS) if i not in coarse)]
     rows: list[SweepRow] = []

@@ -10,7 +10,7 @@ from typing import Unpack
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
-from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.schemes import Scheme
 from nullpose.solve import Result, SolveKeywords, SolveOptions, solve
 from nullpose.study.grid import solved_grid
 from nullpose.study.neighbours import freedom, from_freer
@@ -23,7 +23,7 @@ def sweep(
     path: str,
     values: Sequence[float],
     *,
-    schemes: Sequence[str] = PAPER_SCHEMES,
+    schemes: Sequence[str] = tuple(Scheme),
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> SweepTable:
@@ -182,7 +182,7 @@ def plan_sweep(
         stop: the last value.
         points: how many values.
         log: space the values by a constant ratio.
-        schemes: the cases to solve, each of which must apply; without it all of the paper's that do.
+        schemes: the cases to solve, each of which must apply; without it all that do.
         options: as for :func:`nullpose.solve`.
 
     Raises:
@@ -197,7 +197,7 @@ def plan_sweep(
     SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
     base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
-    wanted = PAPER_SCHEMES if schemes is None else tuple(Scheme(name) for name in schemes)
+    wanted = tuple(Scheme if schemes is None else map(Scheme, schemes))
     scenarios = _scenarios_along(base, varied[0], values)
     for scheme in wanted if schemes is not None else ():
         for _, at_value in scenarios:

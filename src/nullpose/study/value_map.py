@@ -245,8 +245,6 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
     if isinstance(scenario.antenna_record, PatternAntenna):
         return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
-    if scheme.record.ratios_at is not None:
-        return np.asarray(np.min(scheme.record.ratios_at(scenario, positions_m), axis=-1))
     fields = scheme.record.fields(scenario, result.null_jammer)
     given = [field for field in (fields or {}).values() if not field.is_free]
     if given:

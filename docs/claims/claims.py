@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nullpose.paper import places, values
-from nullpose.paper.claim import Claim
+from claims import places, values
+from claims.claim import Claim
 
 CLAIMS = (
     Claim(

@@ -1,21 +1,23 @@
-"""The data behind the claims: a sweep over the jamming level, and single solves between its points."""
+"""The data behind the claims: Figure 2's curves, and single solves between their points."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from nullpose.paper.printed import PrintedPoint, search_as_printed
+from nullpose.paper.reproduce import Reproduction
 from nullpose.paper.scene import JAMMER_POWER
-from nullpose.report.geometry import distance_m
+from nullpose.report.numbers import at_most
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.study import SweepRow, SweepTable, sweep
+from nullpose.study import SweepRow, sweep
 
 RATIO = "jamming_to_transmission_ratio"
 """Name of P_M/P in evidence."""
 
 NOISE = 1e-9
-"""In dB and in metres; what is smaller is rounding, and is told as at most this."""
+"""In dB and in metres; what is smaller is rounding, and is stated as at most this."""
 
 Measured = dict[str, Any]
 """Verdict, finding, evidence and what is proved, as fields of a claim."""
@@ -38,15 +40,14 @@ class JammingStudy:
     It notes in ``used`` which rows are looked at, so that a claim can say what it rests on.
 
     Args:
-        scenario: the paper's scenario.
-        table: its sweep over the jammer's power, at ascending levels.
-        seed: the random seed of the solves between the table's points.
+        reproduction: the data of Figure 2, at ascending levels.
     """
 
-    def __init__(self, scenario: Scenario, table: SweepTable, seed: int = 0) -> None:
-        self.scenario, self.table, self.seed, self.levels = scenario, table, seed, table.values
+    def __init__(self, reproduction: Reproduction) -> None:
+        self.table, self.printed = reproduction.table, reproduction.printed
+        self.scenario, self.levels = self.table.rows[0].scenario, self.table.values
         self.used: dict[tuple[str, float], SweepRow] = {}
-        self._rows = {(row.scheme, row.value): row for row in table.rows}
+        self._rows = {(row.scheme, row.value): row for row in self.table.rows}
 
     def at(self, scheme: str, level: float) -> SweepRow:
         """Return the pose of a scheme at a jamming level, solved now if it has not been yet.
@@ -75,14 +76,33 @@ class JammingStudy:
             scheme: the scheme's name.
             level: P_M/P, a power ratio.
         """
+        return self._row(f"{scheme} {_EQUIDISTANT}", float(level), scheme, self._plane)
+
+    @property
+    def _plane(self) -> Scenario:
         north_m = float(self.scenario.node_positions_m[:, 1].mean())
-        plane = apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
-        return self._row(f"{scheme} {_EQUIDISTANT}", float(level), scheme, plane)
+        return apply_overrides(self.scenario, [Override("airspace.y_m", [north_m, north_m])])
+
+    def printed_at(self, level: float) -> PrintedPoint:
+        """Return the best position by eq. 3.5 as printed, which nothing is proved of.
+
+        Args:
+            level: P_M/P, a power ratio.
+        """
+        return search_as_printed(self.scenario, level)
+
+    def printed_equidistant_at(self, level: float) -> PrintedPoint:
+        """Return the best one of those equally far from both nodes.
+
+        Args:
+            level: P_M/P, a power ratio.
+        """
+        return search_as_printed(self._plane, level)
 
     def _row(self, name: str, level: float, scheme: str, scenario: Scenario) -> SweepRow:
         row = self._rows.get((name, level))
         if row is None:
-            row = sweep(scenario, JAMMER_POWER, [level], schemes=[scheme], seed=self.seed).rows[0]
+            row = sweep(scenario, JAMMER_POWER, [level], schemes=[scheme]).rows[0]
         self._rows[name, level] = self.used[name, level] = row
         return row
 
@@ -152,7 +172,7 @@ def _bisected(condition: Callable[[float], bool], holding: float, failing: float
     return holding
 
 
-def told(level: float | None) -> str:
+def level_words(level: float | None) -> str:
     """Return a level in words.
 
     Args:
@@ -161,12 +181,24 @@ def told(level: float | None) -> str:
     return "no swept level" if level is None else f"P_M/P = {level:.3g}"
 
 
-def apart_m(study: JammingStudy, rows: Iterable[SweepRow]) -> float:
-    """Return by how much the distances to the two nodes differ at most, metres.
+def printed_apart_m(study: JammingStudy) -> float:
+    """Return by how much the printed form's distances to the two nodes differ at most, metres.
 
     Args:
-        study: with the nodes.
-        rows: the poses.
+        study: with the positions.
     """
     first_m, second_m = study.scenario.node_positions_m
-    return max(abs(distance_m(row.pose, first_m) - distance_m(row.pose, second_m)) for row in rows)
+    return max(
+        abs(math.dist(point.position_m, first_m) - math.dist(point.position_m, second_m))
+        for point in study.printed
+    )
+
+
+def at_least(number: float, digits: int = 2) -> str:
+    """Return a number rounded down to so many significant digits.
+
+    Args:
+        number: any.
+        digits: how many.
+    """
+    return f"{-float(at_most(-number, digits)):.{digits}g}"

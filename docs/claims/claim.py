@@ -6,11 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from nullpose.paper.study import JammingStudy
+from claims.study import JammingStudy
 from nullpose.report.certainty import Certainty
-from nullpose.schemes import Scheme
-
-_SEARCHED = Scheme.MAXIMUM_GAIN_PRINTED  # nothing is ever proved of it, which the claims that use it say
+from nullpose.report.numbers import short
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,8 +55,7 @@ class Claim:
         """
         study.used.clear()
         measured = self.measure(study)
-        rows = [row for row in study.used.values() if row.scheme != _SEARCHED]
-        return replace(self, **measured, certainty=Certainty.of(rows))
+        return replace(self, **measured, certainty=Certainty.of(study.used.values()))
 
     @property
     def verdict(self) -> str:
@@ -66,26 +63,21 @@ class Claim:
         return "holds" if self.holds else "fails"
 
     @property
+    def is_certified(self) -> bool:
+        """Whether it rests on values, each of them certified."""
+        return self.certainty.certified == self.certainty.values > 0
+
+    @property
+    def certainty_words(self) -> str:
+        """How many values of each status it rests on."""
+        rests_on, gap = self.certainty, self.certainty.largest_relative_gap
+        return (
+            f"{rests_on.values} values: {rests_on.certified} certified, {rests_on.gap_not_reached} with a "
+            f"bound outside the requested gap, {rests_on.best_found} best found without a bound; largest "
+            f"relative gap {'none' if gap is None else short(gap)}"
+        )
+
+    @property
     def proved_words(self) -> str:
         """What is proved of the claim, which is nothing if one of its values is not certified."""
-        if not self.certainty.complete:
-            return "Nothing: not every value that it rests on is certified."
-        return self.proved
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the claim as plain data."""
-        return {
-            "id": self.id,
-            "claim": self.claim,
-            "source": self.source,
-            "verdict": self.verdict,
-            "finding": self.finding,
-            "evidence": dict(self.evidence),
-            "holds_up_to": self.holds_up_to,
-            "holds_from": self.holds_from,
-            "fails_from": self.fails_from,
-            "method": self.method,
-            "certainty": self.certainty.to_dict(),
-            "proved": self.proved_words,
-            "unproved": self.unproved,
-        }
+        return self.proved if self.is_certified else "Nothing: not every value that it rests on is certified."

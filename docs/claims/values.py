@@ -9,11 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
+from claims.study import (
+    NOISE,
+    RATIO,
+    JammingStudy,
+    Measured,
+    at_least,
+    bound_db,
+    lead_of,
+    level_words,
+    printed_apart_m,
+)
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.report.numbers import at_least, at_most
-from nullpose.schemes import PAPER_SCHEMES, Scheme
+from nullpose.report.numbers import at_most
+from nullpose.schemes import Scheme
 
 COINCIDE_DB = 0.01
 CONSTANT_DB = 1e-6
@@ -21,7 +31,7 @@ SIGNIFICANT_DB = 1.0
 FLAT_DB, NEAR_DB = 1e-3, 0.01
 WEAK, STRONG = 0.01, 1.0  # P_M/P at most, at least
 
-(_OPTIMUM, _NULL, _GAIN, _VERTICAL), _PRINTED = PAPER_SCHEMES, Scheme.MAXIMUM_GAIN_PRINTED
+_OPTIMUM, _NULL, _GAIN, _VERTICAL = Scheme
 
 
 def weak_jamming(study: JammingStudy) -> Measured:
@@ -35,7 +45,7 @@ def weak_jamming(study: JammingStudy) -> Measured:
     limit = study.holds_up_to(lambda level: study.lead(_OPTIMUM, _GAIN, level).found_db <= COINCIDE_DB)
     measured = _approach(study, _GAIN, weakest, [weakest * 10**i for i in range(4)])
     return measured | {
-        "finding": f"{measured['finding']} It stays within {COINCIDE_DB} dB up to {told(limit)}.",
+        "finding": f"{measured['finding']} It stays within {COINCIDE_DB} dB up to {level_words(limit)}.",
         "proved": f"{measured['proved']}, and at least {at_least(next_db)} dB at {10 * weakest:g}: it grows.",
         "holds_up_to": limit,
     }
@@ -52,7 +62,7 @@ def strong_jamming(study: JammingStudy) -> Measured:
     measured = _approach(study, _NULL, strongest, [1.0, 10.0, 100.0, 1000.0, strongest])
     most_db = study.lead(_OPTIMUM, _NULL, limit or strongest).most_db
     return measured | {
-        "finding": f"{measured['finding']} It is within {COINCIDE_DB} dB from {told(limit)} on.",
+        "finding": f"{measured['finding']} It is within {COINCIDE_DB} dB from {level_words(limit)} on.",
         "proved": f"{measured['proved']}, and at most {at_most(most_db, 5)} dB at every power from "
         f"{limit or strongest:.3g} on, between the swept ones too: more jamming never raises the optimum, "
         "and does not touch zero interference.",
@@ -157,16 +167,16 @@ def pose_optimisation_wins(study: JammingStudy) -> Measured:
     if null_from is not None:
         behind_db = max(-study.lead(_NULL, _VERTICAL, null_from).least_db, 0.0)
         proved += (
-            f" From {told(null_from)} on, between the levels too, zero interference is ahead of the vertical "
-            f"case, or behind by at most {at_most(behind_db)} dB: the one does not change, the other does "
-            "not rise."
+            f" From {level_words(null_from)} on, between the levels too, zero interference is ahead of the "
+            f"vertical case, or behind by at most {at_most(behind_db)} dB: the one does not change, the "
+            "other does not rise."
         )
     return {
         "holds": bool(found_db.min() > 0.0 and strong_db.min() >= max(SIGNIFICANT_DB, weak_db.max())),
         "finding": f"{found_db[0]:.2f} dB at P_M/P = {levels[0]:g}, at least {SIGNIFICANT_DB:g} dB from "
-        f"{told(limit)} on, {found_db[-1]:.2f} dB at P_M/P = {levels[-1]:g}; the most, {found_db[peak]:.2f} "
-        f"dB, is at P_M/P = {levels[peak]:.2g}. Zero interference is ahead of vertical from "
-        f"{told(null_from)} on, maximum gain from {told(gain_from)} on.",
+        f"{level_words(limit)} on, {found_db[-1]:.2f} dB at P_M/P = {levels[-1]:g}; the most, "
+        f"{found_db[peak]:.2f} dB, is at P_M/P = {levels[peak]:.2g}. Zero interference is ahead of vertical "
+        f"from {level_words(null_from)} on, maximum gain from {level_words(gain_from)} on.",
         "evidence": {
             "lead_at_weakest_db": float(found_db[0]),
             "lead_at_strongest_db": float(found_db[-1]),
@@ -190,21 +200,29 @@ def saturation(study: JammingStudy) -> Measured:
         study: the data.
     """
     strongest = study.levels[-1]
-    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in (*PAPER_SCHEMES, _PRINTED)}
-    ends = [evidence[scheme] for scheme in PAPER_SCHEMES]
+    evidence: dict[str, Any] = {scheme.value: _end(study, scheme) for scheme in Scheme}
+    ends = list(evidence.values())
     starts = [end["within_0.01_db_from"] for end in ends]
     values = ", ".join(f"{name} {end['value_at_strongest_db']:.4f} dB" for name, end in evidence.items())
-    unequal_m = apart_m(study, study.curve(_PRINTED))
+    printed_db = study.printed_at(strongest).min_sinr_db
+    fall_db = printed_db - study.printed_at(strongest / 10.0).min_sinr_db
+    unequal_m = printed_apart_m(study)
     falls_db = [
-        lead_of(study.at(scheme, strongest / 10.0), study.at(scheme, strongest)).most_db
-        for scheme in PAPER_SCHEMES
+        lead_of(study.at(scheme, strongest / 10.0), study.at(scheme, strongest)).most_db for scheme in Scheme
     ]
     return {
         "holds": all(abs(end["change_over_last_decade_db"]) <= FLAT_DB for end in ends),
         "finding": f"At P_M/P = {strongest:g}: {values}. Eq. 3.5 as printed, its axis not normalised, "
-        f"changes by {evidence[_PRINTED]['change_over_last_decade_db']:.2f} dB over the last decade, its "
+        f"comes to {printed_db:.4f} dB and changes by {fall_db:.2f} dB over the last decade, its "
         f"position staying equidistant from the nodes to {max(unequal_m, NOISE):.1g} m.",
-        "evidence": evidence | {"printed_form_largest_distance_difference_m": unequal_m},
+        "evidence": evidence
+        | {
+            "as_printed": {
+                "value_at_strongest_db": printed_db,
+                "change_over_last_decade_db": fall_db,
+                "largest_distance_difference_m": unequal_m,
+            }
+        },
         "proved": f"Over the last decade no curve changes by more than {at_most(max(falls_db))} dB, between "
         "the swept levels either, as more jamming never raises a curve. For the same reason each, once "
         f"within {NEAR_DB} dB of its last value, stays there, but for the gap of the proofs.",

@@ -5,10 +5,20 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from nullpose.paper.study import NOISE, RATIO, JammingStudy, Measured, apart_m, bound_db, lead_of, told
+from claims.study import (
+    NOISE,
+    RATIO,
+    JammingStudy,
+    Measured,
+    at_least,
+    bound_db,
+    lead_of,
+    level_words,
+    printed_apart_m,
+)
 from nullpose.physics import received_power_w, to_db
 from nullpose.report.geometry import distance_m, null_angle_rad
-from nullpose.report.numbers import at_least, at_most
+from nullpose.report.numbers import at_most
 from nullpose.schemes import Scheme
 
 POINTED_DEG = 1.0
@@ -17,7 +27,7 @@ BETTER_DB = 1e-4
 
 _ANGLE, _AWAY = "angle_between_null_and_jammer_deg", "horizontal_distance_m"
 
-_GAIN, _VERTICAL, _PRINTED = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL, Scheme.MAXIMUM_GAIN_PRINTED
+_GAIN, _VERTICAL = Scheme.MAXIMUM_GAIN, Scheme.VERTICAL
 
 
 def null_at_jammer(study: JammingStudy) -> Measured:
@@ -32,9 +42,10 @@ def null_at_jammer(study: JammingStudy) -> Measured:
     place = ", ".join(f"{x:.2f}" for x in rows[-1]["position_m"])
     return {
         "holds": limit is not None,
-        "finding": f"The null is within {POINTED_DEG:g} degree of the jammer from {told(limit)} on, and "
-        f"{rows[-1][_ANGLE]:.2g} degrees off it at P_M/P = {strongest:g}, where the drone is at ({place}) m; "
-        f"along the line of the nodes the jammer is at y = {study.scenario.jammer_positions_m[0, 1]:g} m.",
+        "finding": f"The null is within {POINTED_DEG:g} degree of the jammer from {level_words(limit)} on, "
+        f"and {rows[-1][_ANGLE]:.2g} degrees off it at P_M/P = {strongest:g}, where the drone is at "
+        f"({place}) m; along the line of the nodes the jammer is at y = "
+        f"{study.scenario.jammer_positions_m[0, 1]:g} m.",
         "evidence": {"levels": rows},
         "proved": "At every level looked at, no pose of the case is better, by more than the gap, than the "
         "one whose angle is measured.",
@@ -55,7 +66,7 @@ def above_jammer(study: JammingStudy) -> Measured:
     rows = {level: _row(study, _VERTICAL, level) for level in levels}
     return {
         "holds": limit is not None,
-        "finding": f"Within {ABOVE_M} m of the vertical above the jammer from {told(limit)} on, and "
+        "finding": f"Within {ABOVE_M} m of the vertical above the jammer from {level_words(limit)} on, and "
         f"{rows[strongest][_AWAY]:.1g} m from it at P_M/P = {strongest:g}. It does not glide there: it is "
         f"{rows[weakest][_AWAY]:.1f} m from it at P_M/P = {weakest:g}, {rows[before][_AWAY]:.1f} m at "
         f"{before:.3g}, and then jumps.",
@@ -104,24 +115,24 @@ def equidistant(study: JammingStudy) -> Measured:
     failing = [level for level in study.levels if limit is None or level > limit]
     leads = [lead_of(study.at(_GAIN, x), study.equidistant_at(_GAIN, x)) for x in failing]
     proved_db = min((lead.least_db for lead in leads), default=0.0)
-    printed = study.curve(_PRINTED)
     levels = [
         _equidistant_row(study, level) for level in (0.1, 1.0, 1.4, 1.6, 3.0, 10.0, 1e3, study.levels[-1])
     ]
     three = levels[4]
     first_m, second_m = three["distances_m"]
     as_printed = {
-        "largest_distance_difference_m": apart_m(study, printed),
+        "largest_distance_difference_m": printed_apart_m(study),
         "largest_lead_over_equidistant_db": max(
-            lead_of(row, study.equidistant_at(_PRINTED, row.value)).found_db for row in printed
+            point.min_sinr_db - study.printed_equidistant_at(point.level).min_sinr_db
+            for point in study.printed
         ),
     }
     return {
         "holds": not failing,
-        "finding": f"Equidistant up to {told(limit)} only. At P_M/P = 3 the best position is {first_m:.1f} m "
-        f"and {second_m:.1f} m from the nodes and reaches {three['best_db']:.3f} dB; the best equidistant "
-        f"one reaches {three['best_equidistant_db']:.3f} dB. With the axis of eq. 3.4 as printed, not "
-        "normalised, the distances never differ by more than "
+        "finding": f"Equidistant up to {level_words(limit)} only. At P_M/P = 3 the best position is "
+        f"{first_m:.1f} m and {second_m:.1f} m from the nodes and reaches {three['best_db']:.3f} dB; the "
+        f"best equidistant one reaches {three['best_equidistant_db']:.3f} dB. With the axis of eq. 3.4 as "
+        "printed, not normalised, the distances never differ by more than "
         f"{max(as_printed['largest_distance_difference_m'], NOISE):.1g} m.",
         "evidence": {"levels": levels, "as_printed": as_printed},
         "proved": "At P_M/P = 3 no equidistant position reaches more than "

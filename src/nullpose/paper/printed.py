@@ -1,0 +1,84 @@
+"""Maximum gain as eq. 3.5 is printed, its cross product not normalised: for comparison in Figure 2 only."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.family import build_family
+from nullpose.paper.scene import JAMMER_POWER
+from nullpose.physics import to_db
+from nullpose.physics.maximum_gain import direction_product
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.solve.position_search import search_positions
+
+
+class PrintedPoint(NamedTuple):
+    """The best position found at a jamming power. Nothing is proved of it.
+
+    Args:
+        level: P_M/P, a power ratio.
+        position_m: (3,) metres.
+        min_sinr: the smaller of both nodes' ratios, a power ratio.
+    """
+
+    level: float
+    position_m: FloatArray
+    min_sinr: float
+
+    @property
+    def min_sinr_db(self) -> float:
+        """The same, dB."""
+        return float(to_db(self.min_sinr))
+
+
+def sinr_as_printed(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
+    """Return eq. 3.5 to the letter.
+
+    ``Gamma_i = (P_i / d_i^2) / (sum_j (1 - <d_j, d_1 x d_2>^2) J_j / d_j^2 + sigma^2)``. The gain towards the
+    jammer comes out too large unless the nodes are seen at right angles; no antenna receives this.
+
+    Source: paper eq. 3.5, as printed.
+
+    Args:
+        scenario: a scenario with exactly two nodes, and the paper's antennas.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+
+    Returns:
+        Array of shape ``(..., 2)``, ratios.
+
+    Raises:
+        ValueError: the scenario does not have two nodes.
+    """
+    p = np.asarray(position_m, dtype=float)
+    product = direction_product(scenario, p)
+    to_nodes = scenario.node_positions_m - p[..., None, :]
+    to_jammers = scenario.jammer_positions_m - p[..., None, :]
+    jammer_distance_sq = np.sum(to_jammers**2, axis=-1)  # m^2
+    cosine_sq = np.sum(to_jammers * product[..., None, :], axis=-1) ** 2 / jammer_distance_sq
+    g0 = scenario.reference_gain
+    jamming_w = np.sum(g0 * (1.0 - cosine_sq) * scenario.jammer_powers_w / jammer_distance_sq, axis=-1)
+    signal_w = g0 * scenario.node_powers_w / np.sum(to_nodes**2, axis=-1)
+    return np.asarray(signal_w / (jamming_w[..., None] + scenario.receiver.noise_power_w))
+
+
+def search_as_printed(scenario: Scenario, level: float, *, seed: int = 0) -> PrintedPoint:
+    """Return the position with the largest smaller ratio by eq. 3.5 as printed, searched by values.
+
+    Args:
+        scenario: the paper's scenario, in any airspace.
+        level: P_M/P, a power ratio.
+        seed: of the coarse positions.
+    """
+    varied = apply_overrides(scenario, [Override(JAMMER_POWER, level)])
+
+    def min_sinr(position_m: FloatArray) -> float:
+        return float(np.min(sinr_as_printed(varied, position_m)))
+
+    family = build_family(varied)
+    position_m, *_ = search_positions(lambda at_m: math.log(min_sinr(at_m)), family, seed=seed)
+    return PrintedPoint(level, position_m, min_sinr(position_m))
