@@ -55,16 +55,6 @@ def test_unknown_scheme() -> None:
         TABLE.of("maximum-gain")
 
 
-def test_joined_tables_are_sorted_by_value() -> None:
-    """Two sweeps of one setting make one table; of two settings they do not."""
-    other = SweepTable("receiver.noise_w", (row(1.5, "maximum-gain"),), {"zero-interference": "no jammer"})
-    joined = TABLE.joined(other)
-    assert [r.value for r in joined.rows] == [1.0, 1.0, 1.5, 2.0, 2.0]
-    assert dict(joined.left_out) == {"zero-interference": "no jammer"}
-    with pytest.raises(ValueError, match=r"nodes\.S1"):
-        TABLE.joined(SweepTable("nodes.S1.power_w", ()))
-
-
 def test_csv_reads_back_to_the_last_digit(tmp_path: Path) -> None:
     """Numbers survive the file, angles in degrees, names with commas and notes quoted."""
     table = SweepTable("receiver.noise_w", (row(1 / 3, "optimum", db=-1 / 7, node='gate, "north"'),))

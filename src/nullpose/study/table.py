@@ -113,20 +113,6 @@ class SweepTable:
             raise KeyError(f"no scheme {scheme!r} in this table; it has {', '.join(self.schemes)}")
         return rows
 
-    def joined(self, other: SweepTable) -> SweepTable:
-        """Return the rows of this table and of another sweep of the same setting, by ascending value.
-
-        Args:
-            other: the other sweep.
-
-        Raises:
-            ValueError: the other table is of another setting.
-        """
-        if other.path != self.path:
-            raise ValueError(f"a sweep of {other.path} cannot join one of {self.path}")
-        rows = sorted((*self.rows, *other.rows), key=lambda row: row.value)
-        return SweepTable(self.path, tuple(rows), MappingProxyType({**self.left_out, **other.left_out}))
-
     def to_dict(self) -> dict[str, object]:
         """Return the table as plain data."""
         return {
