@@ -1,19 +1,27 @@
-"""What a browser may ask for."""
+"""What a browser's page says of its screen."""
+
+from types import SimpleNamespace
 
 import pytest
 
-from nullpose.studio.guard import Asked, asked_of
+from nullpose.studio.guard import SCREEN, Guard, Screen
+from nullpose.studio.opening import LOOPBACK
 
 
-def test_what_is_understood_is_taken() -> None:
-    """The tab, its colours and its scene."""
-    given = {"page": ["a-Z_9"], "dark": ["1"], "card": ["1"], "scene": ["eJw"]}
-    assert asked_of(given, "http://here/") == Asked(
-        page="a-Z_9", dark=True, card=True, scene="eJw", address="http://here/"
-    )
-
-
-@pytest.mark.parametrize("page", ["", "a b", "a/b", "\u00e9", "a\n", "x" * 65])
-def test_what_is_no_name_of_a_tab_is_left_out(page: str) -> None:
-    """So are unknown values and colours."""
-    assert asked_of({"page": [page], "dark": ["yes"], "more": ["1"]}, "") == Asked()
+@pytest.mark.parametrize(
+    ("said", "screen"),
+    [
+        ("dark=1&card=1", Screen(dark=True, card=True)),
+        ("card=1", Screen(dark=False, card=True)),
+        ("dark=yes&card=&more=1", Screen(dark=False, card=False)),
+    ],
+)
+def test_a_websocket_says_what_its_screen_is(said: str, screen: Screen) -> None:
+    """Beside the token; what is not understood counts as no."""
+    datastructures = pytest.importorskip("websockets.datastructures")
+    guard = Guard(LOOPBACK, LOOPBACK)
+    headers = datastructures.Headers(Host=LOOPBACK, Upgrade="websocket")
+    request = SimpleNamespace(path=f"{guard.address(80).partition(':80')[2]}&{said}", headers=headers)
+    connection = SimpleNamespace(local_address=(LOOPBACK, 80))
+    assert guard._answer(lambda *_: None, connection, request) is None
+    assert SCREEN.get() == screen

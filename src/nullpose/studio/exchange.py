@@ -1,4 +1,4 @@
-"""What leaves a page, and what comes into it: files, pictures, links."""
+"""What leaves a page, and what comes into it: files and pictures."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.editor import Change
 from nullpose.studio.exports import figure_png, pose_json, scenario_toml, scene_html
 from nullpose.studio.look import Look
-from nullpose.studio.panel import Panel, show_link
+from nullpose.studio.panel import Panel
 from nullpose.studio.picture import scene_png
-from nullpose.studio.scene_link import scene_to_text
 from nullpose.studio.session import Session
 from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
@@ -34,7 +33,6 @@ class Exchange:
         stage: what is drawn.
         sight: the page's camera.
         look: the page's colours.
-        address: of the studio as this browser reaches it.
         change: how the view is changed.
     """
 
@@ -46,11 +44,10 @@ class Exchange:
         stage: Stage,
         sight: Sight,
         look: Look,
-        address: str,
         change: Change,
     ) -> None:
         self._client, self._session, self._panel, self._stage = client, session, panel, stage
-        self._sight, self._look, self._address, self._change = sight, look, address, change
+        self._sight, self._look, self._change = sight, look, change
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
             (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),
@@ -60,7 +57,6 @@ class Exchange:
         ]
         for button, name, make in files:
             button.on_click(lambda event, name=name, make=make: self._send(name, make))
-        panel.link.on_click(lambda event: self._link())
         panel.upload.on_upload(lambda event: self._load(event.target.value))
 
     def _send(self, name: str, make: Callable[[], bytes]) -> None:
@@ -73,14 +69,6 @@ class Exchange:
         panel, stage = self._panel, self._stage
         shown = self._session, panel.map.value, stage.link_range_db
         return scene_html(*shown, look=self._look, camera=self._client.camera, pattern=panel.pattern.value)
-
-    def _link(self) -> None:
-        try:
-            scene = scene_to_text(self._session.view.scenario)
-        except NullposeError as error:
-            self._tell("No link", str(error))
-        else:
-            show_link(self._client.gui, f"{self._address}&scene={scene}")
 
     def _load(self, file: Any) -> None:
         def loaded(view: View) -> View:

@@ -1,26 +1,23 @@
-"""Who is let in, and what for: requests with the token, to the own address, that no foreign page sent."""
+"""Who is let in: requests with the token, to the own address, that no foreign page sent."""
 
 from __future__ import annotations
 
 import hmac
 import logging
-import re
 import secrets
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from functools import partial
 from http import HTTPStatus
 from ipaddress import ip_address
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import parse_qs
 
 from nullpose.studio.frame import framed
 
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
-_TAB = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _ALIVE = "/alive"  # where a page asks whether its studio still runs
 _HEADERS = {"Referrer-Policy": "no-referrer", "Content-Security-Policy": "frame-ancestors 'none'"}
 
@@ -33,39 +30,20 @@ _log = logging.getLogger("nullpose.studio.requests")
 _log.addFilter(lambda record: record.getMessage() != "opening handshake failed")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
-    """What one browser's tab asks for.
+class Screen(NamedTuple):
+    """What a browser's page says of its screen.
 
     Args:
-        page: a name that the tab keeps when it is loaded again; empty if it has none.
-        dark: whether the browser prefers dark pages.
-        card: whether the browser draws with a graphics card.
-        scene: the scene in the page's address as a text; empty without one.
-        address: the studio's address as this browser reaches it, with the token.
+        dark: whether it prefers dark pages.
+        card: whether it draws with a graphics card.
     """
 
-    page: str = ""
-    dark: bool = False
-    card: bool = False
-    scene: str = ""
-    address: str = ""
+    dark: bool
+    card: bool
 
 
-ASKED: ContextVar[Asked] = ContextVar("asked")
-"""What is asked for by the websocket that the running task serves."""
-
-
-def asked_of(given: Mapping[str, Sequence[str]], address: str) -> Asked:
-    """Return what a websocket's request asks for; what is not understood is left out.
-
-    Args:
-        given: the query's values by name.
-        address: the studio's address as this browser reaches it.
-    """
-    page, dark, card, scene = (given.get(name, [""])[0] for name in ("page", "dark", "card", "scene"))
-    known = page if _TAB.fullmatch(page) else ""
-    return Asked(page=known, dark=dark == "1", card=card == "1", scene=scene, address=address)
+SCREEN: ContextVar[Screen] = ContextVar("screen")
+"""That of the browser whose websocket the running task serves."""
 
 
 class Guard:
@@ -123,7 +101,7 @@ class Guard:
         if not hmac.compare_digest(given.get("token", [""])[0].encode(), self._token.encode()):
             return connection.respond(HTTPStatus.FORBIDDEN, _NO_TOKEN)
         if "Upgrade" in request.headers:  # this task goes on to serve the websocket
-            ASKED.set(asked_of(given, f"http://{hosts[0]}/?token={self._token}"))
+            SCREEN.set(Screen(*(given.get(name) == ["1"] for name in Screen._fields)))
         if path == _ALIVE:
             response = connection.respond(HTTPStatus.OK, "")
         else:

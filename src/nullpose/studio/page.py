@@ -15,7 +15,6 @@ from viser import ClientHandle
 from nullpose.errors import ScenarioError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.studio.autosave import Left
 from nullpose.studio.case import case_named
 from nullpose.studio.drawing import put
 from nullpose.studio.editor import Editor
@@ -38,8 +37,6 @@ _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
 
-_KEPT = ("map", "pattern", "freed")  # controls that a page leaves to the one that comes back
-
 _log = logging.getLogger("nullpose.studio")
 
 
@@ -51,12 +48,7 @@ class Page:
         scenario: the scene to begin with.
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
-        address: of the studio as this browser reaches it.
-        tab: name of the browser's tab; empty if it has none.
-        left: what to go on from, in place of the scene; None to begin anew.
-
-    Attributes:
-        begun: the history that was gone on from, or None.
+        card: whether the browser draws with a graphics card.
     """
 
     def __init__(
@@ -67,19 +59,15 @@ class Page:
         *,
         dark: bool = False,
         card: bool = False,
-        address: str = "",
-        tab: str = "",
-        left: Left | None = None,
     ) -> None:
-        self._client, self.tab, self.begun = client, tab, left and left.history
+        self._client = client
         self._lock = threading.RLock()
         self._open = True
         self._gesture = 0
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
         look = DARK if dark else LIGHT
-        told: dict[str, Any] = {"on_view": self._view_changed, "on_event": self._told}
-        self.session = Session(scenario, text, history=self.begun, **told)
+        self.session = Session(scenario, text, on_view=self._view_changed, on_event=self._told)
         self.panel = Panel(client.gui, dark=dark)
         self.sight = Sight(
             client,
@@ -91,29 +79,21 @@ class Page:
         self.stage = Stage(client.scene, self.sight.labels, self.session, look, self._dragged)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
-        self._exchange = Exchange(*own, self.stage, self.sight, look, address, self._change)
+        self._exchange = Exchange(*own, self.stage, self.sight, look, self._change)
         self.present = Present(client, self.sight)
         self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay, card=card)
         self._listen()
-        if left is not None:
-            for name, value in left.controls.items():
-                put(getattr(self.panel, name), value=value)
-            self.sight.go_on(left.eye_m, left.look_at_m)
         self.session.start()
 
-    def close(self, timeout_s: float = 5.0) -> bool:
-        """Return whether the session's thread has ended within a time.
-
-        Args:
-            timeout_s: the longest to wait, seconds.
-        """
+    def close(self) -> None:
+        """End the session's thread, and draw nothing more."""
         with self._lock:
             self._open = False
             self._not_late()
             self._proof.stop()
             self.sight.close()
         self.present.close()
-        return self.session.close(timeout_s)
+        self.session.close()
 
     def _listen(self) -> None:
         panel, session = self.panel, self.session
@@ -153,26 +133,10 @@ class Page:
         try:
             self.session.change(change, gesture)
         except ScenarioError as error:
-            self.tell(error, name)
+            self.panel.faults.content = failure_html(error, name)
             return False
         self.panel.faults.content = failure_html(None)
         return True
-
-    @property
-    def left(self) -> Left:
-        """What a later page of the same tab goes on from."""
-        camera = self._client.camera
-        controls = {name: getattr(self.panel, name).value for name in _KEPT}
-        return Left(self.session.history, camera.position, camera.look_at, controls)
-
-    def tell(self, error: ScenarioError, name: str) -> None:
-        """Show the faults of what was refused.
-
-        Args:
-            error: with the faults.
-            name: what was refused.
-        """
-        self.panel.faults.content = failure_html(error, name)
 
     def _compare(self, label: str) -> None:
         case = None if label == NO_CASE else case_named(label)

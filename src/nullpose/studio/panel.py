@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -118,12 +117,6 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "Download what is seen of the scene as a picture (PNG), with value, bound and colours.",
             {},
         ),
-        "link": (
-            "button",
-            "Link to this scene",
-            "Show an address that opens this scene in another tab, as long as this studio runs.",
-            {},
-        ),
         "html": (
             "button",
             "Export scene",
@@ -194,24 +187,6 @@ class Panel(SimpleNamespace):
         put(self.power_text, disabled=view.power_db is None, value=view.power_text)
         if view.power_db is not None:
             put(self.power, value=(round(min(max(view.power_db, POWER_DB[0]), POWER_DB[1]), 6),))
-
-
-def show_link(gui: GuiApi, address: str) -> None:
-    """Show an address to copy, until it is closed.
-
-    Args:
-        gui: the page's interface.
-        address: which.
-    """
-    modal = gui.add_modal("Link to this scene")
-    with modal:
-        gui.add_html(
-            f'<input data-np="link" readonly aria-label="address" value="{escape(address)}" '
-            'onfocus="this.select()" style="width:100%;font:13px monospace;padding:6px">'
-            '<p style="font-size:13px">It holds this run\'s token: whoever has it can use this studio.</p>'
-        )
-        close = gui.add_button("Close")
-    close.on_click(lambda event: modal.close())
 
 
 def by_hand(action: Callable[[Any], object]) -> Any:

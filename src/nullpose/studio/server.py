@@ -9,12 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
-from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
-from nullpose.studio.autosave import Autosave
-from nullpose.studio.guard import ASKED, Asked
+from nullpose.studio.guard import SCREEN, Screen
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
-from nullpose.studio.scene_link import SCENE, scenario_from_scene
 
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer
@@ -25,7 +22,6 @@ MOST_PAGES = 8
 """How many pages a studio serves at a time; each has a thread that solves."""
 
 _RELOAD_S = 2.0  # a page that is loaded again comes before its old self is gone
-
 
 _FULL = f"{MOST_PAGES} pages are open, and a studio serves no more. Close one, and load this one again."
 
@@ -51,7 +47,6 @@ class Studio:
         # a page may be closed at any moment, also while it is sent what was found
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection")
         self._closed = False
-        self._saved = Autosave()
         self.pages: dict[int, Page] = {}
         server.on_client_connect(self._connect)
         server.on_client_disconnect(self._disconnect)
@@ -67,16 +62,18 @@ class Studio:
             self._server.stop()
 
     async def _connect(self, client: ClientHandle) -> None:
-        # what the websocket asked for is known here, in its task, but to make a page would hold up all others
-        arguments = (client, ASKED.get(Asked()))
+        # the screen is known here, in the websocket's task, but to make a page would hold up all others
+        arguments = (client, SCREEN.get())
         threading.Thread(target=self._serve, args=arguments, name="nullpose-studio-page", daemon=True).start()
 
-    def _serve(self, client: ClientHandle, asked: Asked) -> None:
+    def _serve(self, client: ClientHandle, screen: Screen) -> None:
+        from nullpose.studio.page import Page
+
         if not self._places.acquire(timeout=_RELOAD_S):
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page = self._page(client, asked)
+            page = Page(client, self._scenario, self._text, dark=screen.dark, card=screen.card)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")
@@ -88,35 +85,12 @@ class Studio:
         if gone:
             self._disconnect(client)
 
-    def _page(self, client: ClientHandle, asked: Asked) -> Page:
-        """Return a page that goes on where its tab was, or begins with its address's scene or the file's."""
-        from nullpose.studio.page import Page
-
-        tab = asked.page and f"{asked.page} {asked.scene}"  # another scene in the address is a new beginning
-        with self._lock:
-            left = self._saved.begin(tab, [page.left for page in self.pages.values() if page.tab == tab])
-        begun, refused = (self._scenario, self._text), None
-        if left is None and asked.scene:
-            try:
-                begun = scenario_from_scene(asked.scene), ""
-            except ScenarioError as error:
-                refused = error
-        page = Page(
-            client, *begun, dark=asked.dark, card=asked.card, address=asked.address, tab=tab, left=left
-        )
-        if refused is not None:
-            page.tell(refused, SCENE)
-        return page
-
     def _disconnect(self, client: ClientHandle) -> None:
         with self._lock:
             page = self.pages.pop(client.client_id, None)
-            if page is None:
-                return
-            begun = [other.begun for other in self.pages.values() if other.tab == page.tab]
-            self._saved.end(page.tab, page.left, begun)
-        page.close()
-        self._places.release()
+        if page is not None:
+            page.close()
+            self._places.release()
 
 
 @contextmanager

@@ -31,7 +31,7 @@ class Session:
         on_view: called after every change of the view.
         on_event: called with everything that the worker finds.
         rest_s: how long nothing must have changed before a proof begins, seconds.
-        history: what to go on from, in place of the scene; None to begin anew.
+        case: how the pose is chosen at first; None for the first case that the scene allows.
 
     Attributes:
         version: of the scene now.
@@ -47,13 +47,12 @@ class Session:
         on_view: Callable[[], None] = lambda: None,
         on_event: Callable[[Event], None] = lambda event: None,
         rest_s: float = REST_S,
-        history: History | None = None,
+        case: Case | None = None,
     ) -> None:
         self.still = threading.RLock()
         self._on_view, self._on_event = on_view, on_event
         self.version = 0
-        begun = History(View(scenario=scenario, case=cases_of(scenario)[0], text=text))
-        self.history = begun if history is None else replace(history, gesture="")
+        self.history = History(View(scenario=scenario, case=case or cases_of(scenario)[0], text=text))
         self._found: dict[tuple[type, Case | None], Event] = {}
         self._worker = Worker(self.take, rest_s=rest_s)
 

@@ -17,11 +17,9 @@ from nullpose.studio.answer import answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.exports import scene_html
 from nullpose.studio.field_map import MAPS, field_map
-from nullpose.studio.history import History
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.opening import require_viser
 from nullpose.studio.session import Session
-from nullpose.studio.view import View
 
 
 def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> Path | None:
@@ -70,7 +68,7 @@ def _page(result: Result, *, dark: bool) -> str:
         raise UsageError("show: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM
     case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
-    session = Session(result.scenario, history=History(View(scenario=result.scenario, case=case)))
+    session = Session(result.scenario, case=case)
     try:
         answer = with_errors(answer_of(session.version, case, result))
         session.take(answer)

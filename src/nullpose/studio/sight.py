@@ -58,19 +58,6 @@ class Sight:
         with self._client.atomic():
             self._fit = aim(self._client.camera, view.scenario, answer.result.pose if answer else None)
 
-    def go_on(self, eye_m: ArrayLike, look_at_m: ArrayLike) -> None:
-        """Let the camera see what it saw before.
-
-        Args:
-            eye_m: (3,) where it stood, metres.
-            look_at_m: (3,) what it looked at, metres.
-        """
-        camera = self._client.camera
-        with self._client.atomic():
-            self.aim()  # which says how far it sees
-            camera.position, camera.look_at = np.asarray(eye_m), np.asarray(look_at_m)
-        self.aimed, self._fit = True, None
-
     def go_round(self, turn_rad: float) -> None:
         """Let the camera see points and drone from a side, whatever a hand has done with it.
 

@@ -1,34 +1,21 @@
-// Runs before viser. It names the tab, tells viser where its websocket is, shows the overlay and the state
-// of the connection, sends what is typed, and folds the panel on a phone.
+// Runs before viser. It tells viser where its websocket is, shows the overlay and the state of the connection,
+// sends what is typed, asks before a changed scene is left, and folds the panel on a phone.
 (() => {
   "use strict";
-  const LONGEST_SCENE = 7900; // the server takes a request line of 8192 bytes; what is cut off is refused there
   const ASK_MS = 2000;
   const WORDS = {
     connecting: "connecting",
     connected: "connected",
-    reconnecting: "reconnecting",
-    behind: "not connected; goes on when this window is in front",
+    reconnecting: "reconnecting; the scene then begins anew",
+    behind: "not connected; begins anew when this window is in front",
     ended: "not connected: the studio was ended or cannot be reached; a new one prints a new address to open",
     restarted: "not connected: the studio was ended or restarted; open the address that the new one prints",
   };
   const query = new URLSearchParams(location.search);
   const token = query.get("token");
 
-  function tab() {
-    const bytes = crypto.getRandomValues(new Uint8Array(16));
-    const made = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
-    try {
-      const kept = sessionStorage.getItem("nullpose-page");
-      sessionStorage.setItem("nullpose-page", kept ?? made);
-      return kept ?? made;
-    } catch {
-      return made; // storage is forbidden, as in some frames: the tab is then new each time
-    }
-  }
-
   function address(websocket) {
-    for (const name of ["page", "dark", "card", "websocket"]) query.delete(name);
+    for (const name of ["dark", "card", "websocket"]) query.delete(name);
     if (websocket) query.set("websocket", websocket);
     history.replaceState(null, "", `?${query}`);
   }
@@ -45,10 +32,9 @@
     return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
 
-  const own = new URLSearchParams({ token, page: tab() });
+  const own = new URLSearchParams({ token });
   if (matchMedia("(prefers-color-scheme: dark)").matches) own.set("dark", "1");
   if (isDrawnByCard()) own.set("card", "1");
-  if (query.has("scene")) own.set("scene", query.get("scene").slice(0, LONGEST_SCENE));
   address(`ws://${location.host}/?${own}`);
 
   const overlay = document.createElement("div");
@@ -84,6 +70,10 @@
     if (typeof content !== "string" || !content.startsWith('<div data-np="overlay"')) return;
     overlay.firstChild.outerHTML = content;
   }
+
+  addEventListener("beforeunload", (event) => { // the first version is the scene that the studio was started with
+    if (overlay.firstChild.dataset.version > 1) event.preventDefault();
+  });
 
   // viser's own limit for its sheet at the bottom; asked for late, since a phone is as wide as a desk's screen
   // until the page has said how wide it is
