@@ -167,7 +167,7 @@ class NoFlyZone(Section):
         """Returns a larger zone of the same shape: walls further out, floor lower, ceiling higher.
 
         Args:
-            by_m: how much [m]; a polygon's corners as :func:`offset_outlines_m` moves them.
+            by_m: how much [m]; a polygon's corners as ``offset_outlines_m`` moves them.
         """
         x_m, y_m, altitude_m = (
             ends_m and (ends_m[0] - by_m, ends_m[1] + by_m)
