@@ -83,7 +83,7 @@ def test_the_page_has_the_numbers_of_the_command_line(
     assert value == pytest.approx(solved["objective"]["value"], rel=1e-12)
     card = page.locator("[data-np=overlay-value-0]").last.get_attribute("data-value")
     assert float(card or "nan") == value
-    for _ in range(300):
+    for _ in range(900):
         if session.field_map is not None:
             break
         page.wait_for_timeout(100)
