@@ -497,3 +497,65 @@ def test_a_country_loads_quickly(tmp_path: Path) -> None:
     assert "of 5000 in reach" in notes[0]
     assert 10 < len(scenario.airspace.no_fly) < 500
     assert took_s < 4.0
+
+
+def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:
+    """The reason is the archive's own."""
+    text = kml(placemark(shapely.Point(HERE).buffer(0.01), {}))
+    for names in (["doc.kml"], ["doc.kml", "more.kml"]):
+        with zipfile.ZipFile(tmp_path / "z.kmz", "w", zipfile.ZIP_DEFLATED) as archive:
+            for name in names:
+                archive.writestr(name, text)
+        if len(names) == 1:
+            content = (tmp_path / "z.kmz").read_bytes()
+            start = 30 + len("doc.kml")  # of the packed text
+            (tmp_path / "z.kmz").write_bytes(content[:start] + b"\xff" * 9 + content[start + 9 :])
+        words = "z.kmz: this is not KMZ: Error -3" if len(names) == 1 else "z.kmz: it has 2 KML files"
+        with pytest.raises(ScenarioError, match=words):
+            zones_of(tmp_path, "z.kmz")
+
+
+def test_an_old_geopackage_keeps_its_zones(tmp_path: Path) -> None:
+    """One without the mark of a GeoPackage is one by its ending."""
+    zone = shapely.Point(HERE).buffer(0.01)
+    write_gdal(tmp_path / "z.gpkg", [(zone, {"name": "old"})])
+    content = (tmp_path / "z.gpkg").read_bytes()
+    (tmp_path / "z.gpkg").write_bytes(content[:68] + bytes(4) + content[72:])
+    scenario, _ = zones_of(tmp_path, "z.gpkg")
+    assert [zone.name for zone in scenario.airspace.no_fly] == ["old"]
+
+
+def test_styles_and_measures_are_no_faults(tmp_path: Path) -> None:
+    """Neither changes a place."""
+    zone = shapely.Point(HERE).buffer(0.01)
+    (tmp_path / "z.kml").write_text(
+        kml("<Style><LineStyle><width>2</width></LineStyle></Style>", placemark(zone, {}))
+    )
+    measured = shapely.from_wkt(
+        zone.wkt.replace("POLYGON", "POLYGON M").replace(",", " 7,").replace("))", " 7))")
+    )
+    shapes = np.array([shapely.to_wkb(measured, flavor="iso")], object)
+    pyogrio.raw.write(
+        tmp_path / "z.shp",
+        shapes,
+        [np.array(["a"], object)],
+        ["name"],
+        geometry_type="Measured Polygon",
+        crs="EPSG:4326",
+    )
+    for file in ("z.kml", "z.shp"):
+        assert len(zones_of(tmp_path, file)[0].airspace.no_fly) == 1
+
+
+def test_a_point_without_a_name_is_clamped_to_the_ground_too(tmp_path: Path) -> None:
+    """Its height of 0 is none."""
+    point = f"<Placemark><Point><coordinates>{HERE[0]},{HERE[1]},0</coordinates></Point></Placemark>"
+    (tmp_path / "n.kml").write_text(kml(point))
+    text = SCENE.format(lat=HERE[1], lon=HERE[0], airspace="altitude_m = [10.0, 120.0]").partition(
+        "[[nodes]]"
+    )[0]
+    (tmp_path / "scene.toml").write_text('nodes_from = "n.kml"\n' + text)
+    with pytest.raises(
+        ScenarioError, match=r"n.kml: Placemark\[0\].geometry.coordinates: there is no altitude"
+    ):
+        load(tmp_path / "scene.toml")

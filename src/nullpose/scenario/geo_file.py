@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,13 @@ _MOST_FAULTS = 100  # of one file
 _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a", ".kml": b"", ".gpx": b""}
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = ("CRS84", "CRS84h", "4326", "4979", "4258")  # as the names of reference systems end
-_NO_MATTER = ("Non closed ring", "non conformant file extension")  # of GDAL's warnings: rings are closed here
+# Of GDAL's warnings: rings are closed here; age, style and measures along lines change no place.
+_NO_MATTER = (
+    "Non closed ring",
+    "bad application_id",
+    "parsing kml Style",
+    "Measured (M) geometry types",
+)
 _POINTS_OF_LINES = {"route_points", "track_points"}  # of GPX, which are in its lines too
 _OF_DRAWING = {"id", "tessellate", "visibility", "drawOrder", "icon", "snippet"}  # GDAL's columns of KML
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -64,7 +71,8 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
 
     Args:
         content: of the file.
-        path: of the file, whose ending is one of ``ENDINGS``; a shapefile has further files beside it.
+        path: of the file, whose ending is one of ``ENDINGS``; a shapefile or a GeoPackage has further files
+            beside it.
 
     Raises:
         ScenarioError: it cannot be read as a whole, or is not in latitude and longitude.
@@ -79,12 +87,15 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     expected = _placemarks(content) if is_kml else (0, 0)
     if ending == ".gpx":
         _root(content, "gpx")
-    features = list(_features_of_gdal(path if ending == ".shp" else content, is_kml))
+    # GDAL knows an old GeoPackage by its ending, and reads the journal beside it
+    source = path if ending in (".shp", ".gpkg") else content
+    features = list(_features_of_gdal(source, is_kml))
     if is_kml and (len(features), min(_corners(features), expected[1])) != expected:
         raise refusal(
             "",
             f"GDAL reads {len(features)} placemarks with {_corners(features)} coordinates, and it has "
-            f"{expected[0]} with {expected[1]}; is a polygon without its outerBoundaryIs? Export it anew",
+            f"{expected[0]} with {expected[1]}; is a polygon without its outerBoundaryIs, or a LinearRing by "
+            "itself? Export it anew",
         )
     if not features:
         raise refusal("", "there is no feature in it, must be one or more")
@@ -181,16 +192,29 @@ def _on_earth(shape: Any, place: str) -> Any:
 
 def _kml_of_kmz(content: bytes) -> bytes:
     import zipfile
+    import zlib
 
+    names, found = [], b""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             names = [name for name in archive.namelist() if name.lower().endswith(".kml")]
-            if len(names) != 1:
-                raise refusal("", f"it has {len(names)} KML files, must be one; extract the one that counts")
-            with archive.open(names[0]) as file:
-                found = file.read(MOST_BYTES + 1)
-    except (zipfile.BadZipFile, OSError, NotImplementedError, RuntimeError, ValueError) as error:
-        raise refusal("", f"this is not KMZ: {error}; export it anew, or as .kml") from None
+            for name in names[:1]:
+                with archive.open(name) as file:
+                    found = file.read(MOST_BYTES + 1)
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        OSError,
+        NotImplementedError,
+        RuntimeError,
+        ValueError,
+    ) as error:
+        raise refusal(
+            "", f"this is not KMZ: {str(error) or 'it ends early'}; export it anew, or as .kml"
+        ) from None
+    if len(names) != 1:
+        raise refusal("", f"it has {len(names)} KML files, must be one; extract the one that counts")
     if len(found) > MOST_BYTES:
         raise refusal("", f"its KML is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
     return found
@@ -253,6 +277,7 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
     for warning in said:
         if not any(words in str(warning.message) for words in _NO_MATTER):
             raise refusal("", f"GDAL reads it in part only: {str(warning.message)[:200]}; export it anew")
+    numbers = count()
     for layer, (meta, _, shapes, columns) in layers:
         if shapes is None:  # a table, such as of styles
             shapes = [None] * len(columns[0]) if columns else []
@@ -264,7 +289,8 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
                 cells = {key: cells[key] for key in cells.keys() - _OF_DRAWING}
             found = {key: value for key, value in cells.items() if value not in (None, "")}
             name = found.get("Name", found.get("name"))
-            place = f"{layer}[{index}]" if name is None else f'{"Placemark" if is_kml else layer} "{name}"'
+            kind = "Placemark" if is_kml else layer
+            place = f"{kind}[{next(numbers) if is_kml else index}]" if name is None else f'{kind} "{name}"'
             yield Feature(place, _shape_of_wkb(shape, place), found)
 
 
