@@ -499,6 +499,28 @@ def test_a_country_loads_quickly(tmp_path: Path) -> None:
     assert took_s < 4.0
 
 
+@pytest.mark.parametrize("lat", [0.0, -50.0, 68.0, 84.0])
+def test_a_zone_may_cover_a_country(lat: float, tmp_path: Path) -> None:
+    """What lies beyond the reach of the origin is cut off, however far north a degree is narrow."""
+    country = shapely.box(HERE[0] - 40.0, lat - 5.0, HERE[0] + 40.0, lat + 5.0)
+    write_geojson(tmp_path / "z.geojson", [(country, {"name": "country"})])
+    scenario, notes = zones_of(tmp_path, "z.geojson", (HERE[0], lat))
+    assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon)"]
+    assert kept_out(scenario).contains(shapely.box(-6e4, -6e4, 6e4, 6e4))
+
+
+def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
+    """The account says that there is none."""
+    write_geojson(tmp_path / "far.geojson", [(shapely.Point(0.0, 0.0).buffer(0.1), {})])
+    write_geojson(tmp_path / "points.geojson", [(shapely.Point(HERE), {})])
+    assert zones_of(tmp_path, "far.geojson")[1] == [
+        "far.geojson: zones: 0 of 1 in reach; are latitude and longitude exchanged?"
+    ]
+    scenario, notes = zones_of(tmp_path, "points.geojson")
+    assert notes == ["points.geojson: zones: 0 of 0 in reach; passed over: 1 point"]
+    assert not scenario.airspace.no_fly
+
+
 def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:
     """The reason is the archive's own."""
     text = kml(placemark(shapely.Point(HERE).buffer(0.01), {}))

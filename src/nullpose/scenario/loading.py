@@ -231,7 +231,7 @@ def _with_areas_from(
         places |= {
             f"airspace.no_fly[{first + index}]": f"{label}: {place}" for index, place in enumerate(added)
         }
-    return (tables | {"airspace": airspace} if places else tables), places
+    return (tables | {"airspace": airspace} if isinstance(stated, dict) else tables), places
 
 
 def _from_file(fault: Fault, origins: Mapping[str, str]) -> Fault:
