@@ -521,6 +521,78 @@ def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
     assert not scenario.airspace.no_fly
 
 
+def test_what_looks_like_a_radius_is_said(tmp_path: Path) -> None:
+    """A point that is passed over may be a zone under another key."""
+    write_geojson(tmp_path / "z.geojson", [(shapely.Point(HERE), {"Bufferzone": 150, "name": "station"})])
+    assert zones_of(tmp_path, "z.geojson")[1] == [
+        "z.geojson: zones: 0 of 0 in reach; passed over: 1 point",
+        "z.geojson: of points Bufferzone is not read; a radius is radius_m",
+    ]
+
+
+def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
+    """One line says to what, and remarks are on the zones that are left."""
+    near, far = (shapely.Point(HERE[0] + x, HERE[1]).buffer(0.01, quad_segs=1200) for x in (0.03, 0.5))
+    write_geojson(
+        tmp_path / "z.geojson", [(near, {"name": "near", "upper": 1}), (far, {"name": "far", "upper": 1})]
+    )
+    _, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == [
+        "z.geojson: zones: 1 of 2 in reach (1 polygon)",
+        "z.geojson: they are cut to x_m = [-30000.0, 30000.0] and y_m = [-30000.0, 30000.0], since all have "
+        "too many corners",
+        'z.geojson: "near" counts at all altitudes; its upper = 1 is not read',
+    ]
+
+
+def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> None:
+    """Real sets have them: a loop at a corner, and rings of which the inner one is stated first."""
+    x, y = HERE
+    looped = [
+        (x, y),
+        (x + 0.02, y),
+        (x + 0.02, y + 0.02),
+        (x + 0.0001, y + 0.02),
+        (x - 0.0001, y + 0.0199),
+        (x, y + 0.0201),
+    ]
+    square = shapely.box(x + 0.03, y, x + 0.06, y + 0.03)
+    swapped = shapely.Polygon(square.buffer(-0.01).exterior, [square.exterior])
+    features: list[Feature] = [(shapely.Polygon(looped), {"name": "loop"}), (swapped, {"name": "swapped"})]
+    write_geojson(tmp_path / "z.geojson", features)
+    scenario, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == [
+        "z.geojson: zones: 2 of 2 in reach (3 polygons); borders that cross, all inside counts: 2"
+    ]
+    rings = shapely.node(shapely.LineString([*looped, looped[0]]))
+    assert (
+        not in_metres(shapely.union_all([*shapely.get_parts(shapely.polygonize([rings])), square]))
+        .difference(kept_out(scenario).buffer(0.3))
+        .area
+    )
+    with pytest.raises(ScenarioError, match="its border crosses itself"):
+        load(scene(tmp_path, 'altitude_m = [10.0, 120.0]\ngeofence_from = "z.geojson"'))
+    bow = shapely.Polygon([(x, y), (x + 0.01, y + 0.01), (x + 0.01, y), (x, y + 0.01)])
+    write_geojson(tmp_path / "bow.geojson", [(bow, {})])
+    with pytest.raises(ScenarioError, match="its border crosses itself"):
+        zones_of(tmp_path, "bow.geojson")
+
+
+def test_shapes_of_one_place_are_walls(tmp_path: Path) -> None:
+    """As the track of a receiver that stands still; a hole of one place takes nothing away."""
+    square = shapely.Point(HERE).buffer(0.01, quad_segs=1)
+    holed = shapely.Polygon(square.exterior, [[HERE] * 4])
+    features: list[Feature] = [
+        (shapely.LineString([HERE] * 4), {}),
+        (shapely.Polygon([HERE] * 4), {}),
+        (holed, {}),
+    ]
+    write_geojson(tmp_path / "z.geojson", features)
+    scenario, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon); passed over: 2 walls"]
+    assert kept_out(scenario).area == pytest.approx(in_metres(square).area, rel=1e-6)
+
+
 def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:
     """The reason is the archive's own."""
     text = kml(placemark(shapely.Point(HERE).buffer(0.01), {}))

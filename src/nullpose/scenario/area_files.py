@@ -42,6 +42,7 @@ def with_zones(
     far_deg = None if here is None else _rectangle_deg(_box_m({}, _HALVES_M[0], here), here)
     areas = areas_of(features, far_deg, _ground_m(origin), names)
     bounds: dict[str, Any] = {}
+    words = ""
     for half_m in _HALVES_M:
         if here is None or areas.corners <= MOST_CORNERS:
             break
@@ -50,7 +51,7 @@ def with_zones(
         ends_m = dict(zip(("x_m", "y_m"), box_m.T.tolist(), strict=True))
         bounds = {key: ends for key, ends in ends_m.items() if half_m in ends}
         words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
-        areas.remarks[:0] = [f"they are cut to {words}, since all have too many corners"]
+    areas.remarks += [f"they are cut to {words}, since all have too many corners"] if words else []
     zones = [zone for area in areas.areas for zone in area.zones()]
     return {**airspace, **bounds, "no_fly": [*stated, *zones]}, areas
 
@@ -72,7 +73,7 @@ def with_fence(
     """
     here, ground_m = _place(origin), _ground_m(origin)
     everywhere_deg = None if here is None else [here[1] - 1e4, -1e4, here[1] + 1e4, 1e4]
-    areas = areas_of(features, everywhere_deg, ground_m)
+    areas = areas_of(features, everywhere_deg, ground_m, is_fence=True)
     polygons = [polygon for area in areas.areas for polygon in area.polygons]
     if len(polygons) != 1 or len(areas.areas) != 1 or areas.areas[0].cylinders:
         raise refusal("", f"it has {areas.counts['area']} areas, must be one polygon, the fence")

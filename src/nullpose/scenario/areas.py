@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
@@ -19,9 +21,11 @@ _SAME_DEG = 9e-8  # corners closer than this are one: a centimetre
 _STRAIGHT_DEG = (
     0.02  # an edge of this length that is straight in degrees is within 0.2 m of straight in metres
 )
+_LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
 _NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
 _LONGEST_NAME = 80
 _MOST_REMARKS = 5
+_LIKE_RADII = re.compile("radi|buffer|diameter", re.IGNORECASE)
 _PASSED_OVER = ("point", "line", "wall", "feature without a place")
 
 
@@ -39,6 +43,7 @@ class Area:
         polygons: shapely's, of longitudes and latitudes.
         cylinders: longitude, latitude and radius in metres, each.
         limits: altitudes by the key of a zone.
+        remarks: on what of it is not read.
     """
 
     place: str
@@ -46,6 +51,7 @@ class Area:
     polygons: list[Any]
     cylinders: list[tuple[float, float, Any]]
     limits: dict[str, Any]
+    remarks: list[str]
 
     def zones(self) -> Iterator[dict[str, Any]]:
         """Yield raw no-fly zones, holes filled."""
@@ -67,7 +73,7 @@ class Areas:
     Args:
         areas: within reach.
         counts: of features by what became of them.
-        remarks: on what is not read.
+        remarks: on all of them.
     """
 
     areas: list[Area] = field(default_factory=list)
@@ -108,13 +114,17 @@ class Areas:
         parts += ["are latitude and longitude exchanged?"] if not areas and counts["area"] else []
         parts += [f"passed over: {listed_numbers(passed)}"] if any(passed.values()) else []
         parts += [f"holes {'that are zones' if is_fence else 'filled'}: {holes}"] if holes else []
+        parts += (
+            [f"borders that cross, all inside counts: {counts['crossing']}"] if counts["crossing"] else []
+        )
         if is_fence and areas[0].limits:
             parts.append(", ".join(f"{key} = {limits}" for key, limits in areas[0].limits.items()))
         if len(parts) > 1 or not is_fence:
             yield "; ".join(parts)
-        yield from self.remarks[:_MOST_REMARKS]
-        if len(self.remarks) > _MOST_REMARKS:
-            yield f"{len(self.remarks) - _MOST_REMARKS} more remarks of this kind"
+        remarks = [f'"{area.name or area.place}" {remark}' for area in areas for remark in area.remarks]
+        yield from [*self.remarks, *remarks[:_MOST_REMARKS]]
+        if len(remarks) > _MOST_REMARKS:
+            yield f"{len(remarks) - _MOST_REMARKS} more remarks of this kind"
 
 
 def listed_numbers(numbers: Mapping[str, int]) -> str:
@@ -129,7 +139,12 @@ def _plural(noun: str) -> str:
 
 
 def areas_of(
-    features: Sequence[Feature], reach_deg: Rectangle | None, ground_m: Ground, names: set[str] | None = None
+    features: Sequence[Feature],
+    reach_deg: Rectangle | None,
+    ground_m: Ground,
+    names: set[str] | None = None,
+    *,
+    is_fence: bool = False,
 ) -> Areas:
     """Return the areas of features: polygons, closed lines, and points with a radius.
 
@@ -141,6 +156,7 @@ def areas_of(
         reach_deg: where areas count; None where that is not known.
         ground_m: the origin's ground.
         names: that are taken.
+        is_fence: whether every crossing of a border is a fault; a zone may have small ones.
 
     Raises:
         ScenarioError: with the faults of all features.
@@ -148,16 +164,20 @@ def areas_of(
     found, taken, faults = Areas(), set(names or ()), list[Fault]()
     for feature in features:
         try:
-            area = _area(feature, reach_deg, found.counts)
+            area = _area(feature, reach_deg, found.counts, is_fence)
             if area is not None:
-                area.limits, remarks = altitude_limits(feature, ground_m)
+                area.limits, area.remarks = altitude_limits(feature, ground_m)
                 area.name = unique(area.name, taken)
                 found.areas.append(area)
-                found.remarks += [f'"{area.name or area.place}" {remark}' for remark in remarks]
         except ScenarioError as error:
             faults += error.faults
     if faults:
         raise ScenarioError(faults)
+    points = [each for each in features if getattr(each.geometry, "geom_type", "") in ("Point", "MultiPoint")]
+    keys = {key for point in points for key in point.properties if _LIKE_RADII.search(key)} - {"radius_m"}
+    found.remarks += (
+        [f"of points {', '.join(sorted(keys))} is not read; a radius is radius_m"] if keys else []
+    )
     return found
 
 
@@ -171,7 +191,7 @@ def corners_of(ring: Any) -> list[list[float]]:
     return corners.tolist()  # type: ignore[no-any-return]
 
 
-def _area(feature: Feature, reach_deg: Rectangle | None, counts: Counter[str]) -> Area | None:
+def _area(feature: Feature, reach_deg: Rectangle | None, counts: Counter[str], is_fence: bool) -> Area | None:
     """Return what a feature covers within reach; count what it is."""
     import shapely
 
@@ -190,20 +210,20 @@ def _area(feature: Feature, reach_deg: Rectangle | None, counts: Counter[str]) -
         elif kind == "LineString" and not (part.is_closed and len(part.coords) > 3):
             passed["line"] += 1
         else:
-            polygons.append(_near(part if kind == "Polygon" else shapely.Polygon(part), middle_deg))
+            polygons.append(_near(part if kind == "Polygon" else shapely.Polygon(part.coords), middle_deg))
     counts.update(passed)
     counts["area"] += bool(polygons or cylinders)
     if reach_deg is not None:
         polygons = [each for each in polygons if _meets(each.bounds, reach_deg)]
         cylinders = [each for each in cylinders if _meets(_bounds_of(*each), reach_deg)]
-    sound = [_sound(polygon, feature) for polygon in polygons]
+    sound = [_sound(polygon, feature, counts, is_fence) for polygon in polygons]
     ground = [polygon for polygon in sound if polygon is not None]
     whole = list(parts_of(shapely.union_all(ground) if len(ground) > 1 else ground))
     if polygons and not whole and not cylinders:
         counts.update({"wall": 1, "area": -1})
     if reach_deg is not None:
         whole = _cut(whole, reach_deg)
-    return Area(feature.place, name_of(feature), whole, cylinders, {}) if whole or cylinders else None
+    return Area(feature.place, name_of(feature), whole, cylinders, {}, []) if whole or cylinders else None
 
 
 def parts_of(geometry: Any) -> Iterator[Any]:
@@ -222,7 +242,7 @@ def _extent_m(extent: Any) -> Any:
     return extent.get("radius") if isinstance(extent, dict) else None
 
 
-def _sound(polygon: Any, feature: Feature) -> Any:
+def _sound(polygon: Any, feature: Feature, counts: Counter[str], is_fence: bool) -> Any:
     """Return a polygon without doubled corners and spikes, long edges straight in degrees; None for a wall.
 
     Raises:
@@ -230,11 +250,15 @@ def _sound(polygon: Any, feature: Feature) -> Any:
     """
     import shapely
 
-    polygon = shapely.remove_repeated_points(polygon, _SAME_DEG)
+    with suppress(shapely.GEOSException):  # a ring within a centimetre stays as it is
+        polygon = shapely.remove_repeated_points(polygon, _SAME_DEG)
     if not polygon.is_valid:
         # GEOS has the area inside the rings, which spikes do not change and crossings do
         valid = shapely.make_valid(polygon, method="structure", keep_collapsed=False)
         if abs(valid.area - polygon.area) > _SAME_DEG * polygon.length:
+            valid = None if is_fence else _enclosed(polygon)
+            counts["crossing"] += 1
+        if valid is None:
             raise refusal(
                 feature.place,
                 f"its border crosses itself ({shapely.is_valid_reason(polygon)}, longitude and latitude); "
@@ -242,6 +266,18 @@ def _sound(polygon: Any, feature: Feature) -> Any:
             )
         polygon = valid
     return None if polygon.area <= _SAME_DEG * polygon.length else shapely.segmentize(polygon, _STRAIGHT_DEG)
+
+
+def _enclosed(polygon: Any) -> Any:
+    """Return all that the rings of a polygon enclose; None where the crossings of a ring are not small."""
+    import shapely
+
+    rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
+    sound = [shapely.make_valid(ring, method="structure", keep_collapsed=False) for ring in rings]
+    is_small = all(
+        abs(whole.area - ring.area) <= _LOOPS * whole.area for whole, ring in zip(sound, rings, strict=True)
+    )
+    return shapely.union_all(sound) if is_small else None
 
 
 def _near(polygon: Any, middle_deg: float) -> Any:
