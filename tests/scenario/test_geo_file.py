@@ -509,6 +509,17 @@ def test_a_zone_may_cover_a_country(lat: float, tmp_path: Path) -> None:
     assert kept_out(scenario).contains(shapely.box(-6e4, -6e4, 6e4, 6e4))
 
 
+def test_the_edge_at_which_a_zone_is_cut_crosses_no_other(tmp_path: Path) -> None:
+    """In degrees it is straight, in metres a parallel is curved: a bay may end just short of it."""
+    x, y = HERE
+    country = shapely.box(x - 2.0, y - 2.0, x + 2.0, y + 2.0)
+    for tip in np.linspace(y - 0.556, y - 0.536, 21):
+        bay = shapely.Polygon([(x, tip), (x + 0.01, y + 2.1), (x - 0.01, y + 2.1)])
+        write_geojson(tmp_path / "z.geojson", [(country - bay, {})])
+        scenario, _ = zones_of(tmp_path, "z.geojson")
+        assert kept_out(scenario).area > 0.9 * 1.2e5**2
+
+
 def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
     """The account says that there is none."""
     write_geojson(tmp_path / "far.geojson", [(shapely.Point(0.0, 0.0).buffer(0.1), {})])
@@ -546,7 +557,7 @@ def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
 
 
 def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> None:
-    """Real sets have them: a loop at a corner, and rings of which the inner one is stated first."""
+    """Real sets have them: a loop at a corner, a ring that runs twice around, a hole around its border."""
     x, y = HERE
     looped = [
         (x, y),
@@ -558,11 +569,13 @@ def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> Non
     ]
     square = shapely.box(x + 0.03, y, x + 0.06, y + 0.03)
     swapped = shapely.Polygon(square.buffer(-0.01).exterior, [square.exterior])
-    features: list[Feature] = [(shapely.Polygon(looped), {"name": "loop"}), (swapped, {"name": "swapped"})]
+    corners = [(x - 0.01, y), (x - 0.01, y - 0.01), (x, y - 0.01), (x, y - 0.005)]
+    twice = shapely.Polygon(corners * 2)
+    features: list[Feature] = [(shapely.Polygon(looped), {"name": "loop"}), (swapped, {}), (twice, {})]
     write_geojson(tmp_path / "z.geojson", features)
     scenario, notes = zones_of(tmp_path, "z.geojson")
     assert notes == [
-        "z.geojson: zones: 2 of 2 in reach (3 polygons); borders that cross, all inside counts: 2"
+        "z.geojson: zones: 3 of 3 in reach (4 polygons); borders that cross, all inside counts: 3"
     ]
     rings = shapely.node(shapely.LineString([*looped, looped[0]]))
     assert (

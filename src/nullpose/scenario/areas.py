@@ -22,6 +22,7 @@ _STRAIGHT_DEG = (
     0.02  # an edge of this length that is straight in degrees is within 0.2 m of straight in metres
 )
 _LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
+_CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
 _NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
 _LONGEST_NAME = 80
 _MOST_REMARKS = 5
@@ -274,9 +275,7 @@ def _enclosed(polygon: Any) -> Any:
 
     rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
     sound = [shapely.make_valid(ring, method="structure", keep_collapsed=False) for ring in rings]
-    is_small = all(
-        abs(whole.area - ring.area) <= _LOOPS * whole.area for whole, ring in zip(sound, rings, strict=True)
-    )
+    is_small = all(ring.area >= (1 - _LOOPS) * whole.area for ring, whole in zip(rings, sound, strict=True))
     return shapely.union_all(sound) if is_small else None
 
 
@@ -310,7 +309,8 @@ def _cut(polygons: list[Any], box_deg: Rectangle) -> list[Any]:
     """Return what of polygons lies in a rectangle; those that lie in it as they are."""
     import shapely
 
-    box, kept = shapely.box(*box_deg), []
+    # In metres a long edge of the box would leave the parallel, and might cross other edges
+    box, kept = shapely.segmentize(shapely.box(*box_deg), _CUT_DEG), []
     for polygon in polygons:
         inside = box.contains(polygon)
         kept += (
