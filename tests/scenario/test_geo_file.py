@@ -532,6 +532,20 @@ def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
     assert not scenario.airspace.no_fly
 
 
+def test_no_node_lies_where_zones_do_not_count(tmp_path: Path) -> None:
+    """Its zones would be left out as being out of reach, and the vehicle sent among them."""
+    far = (HERE[0], HERE[1] + 0.7)
+    write_geojson(tmp_path / "z.geojson", [(shapely.Point(far).buffer(0.01), {})])
+    path = scene(tmp_path, 'altitude_m = [10.0, 120.0]\nno_fly_from = "z.geojson"')
+    text = path.read_text()
+    start = text.index("[[nodes]]")
+    path.write_text(text[:start] + text[start:].replace(f"lat_deg = {HERE[1]}", f"lat_deg = {far[1]}"))
+    with pytest.raises(
+        ScenarioError, match=r"no_fly_from: its zones count up to 60 km .* node S1 is 78 km away"
+    ):
+        load(path)
+
+
 def test_what_looks_like_a_radius_is_said(tmp_path: Path) -> None:
     """A point that is passed over may be a zone under another key."""
     write_geojson(tmp_path / "z.geojson", [(shapely.Point(HERE), {"Bufferzone": 150, "name": "station"})])

@@ -17,8 +17,10 @@ from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.units import EARTHLY_RANGES
 
-# Half sides of squares about the origin; the first, in degrees, lies within the 100 km that a frame holds
-_HALVES_M = (6e4, 3e4, 1.5e4, 8e3, 4e3, 2e3)
+REACH_M = 6e4
+"""How far east, west, north and south of the origin zones of files count; in degrees this square lies within
+the 100 km that a frame holds."""
+_HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 

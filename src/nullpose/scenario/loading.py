@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path, PurePath
 from typing import Any
 
+import numpy as np
+
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.antenna import with_harmonics
-from nullpose.scenario.area_files import with_fence, with_zones
+from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, features_of
 from nullpose.scenario.listed_nodes import ListedNode, retold
@@ -63,11 +65,15 @@ def load(
         tables = tables_of(file_text(Path(source)))
         others = [change for change in changes if not _names_a_file(tables, change)]
         tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
+        airspace = tables.get("airspace")
+        has_zones_from = isinstance(airspace, dict) and _ZONES_KEY in airspace
         tables, origins = _with_areas_from(tables, Path(source).parent, allow_outside, on_note)
         if _KEY in tables and "nodes" not in tables:
             found = _with_nodes_from(tables, Path(source).parent, allow_outside, on_note)
         else:
             found = Scenario.from_dict(tables)
+        if has_zones_from:
+            _require_nodes_in_reach(found)
     except ScenarioError as error:
         raise ScenarioError([_from_file(fault, origins) for fault in error.faults], source) from None
     return apply_overrides(found, others)
@@ -232,6 +238,18 @@ def _with_areas_from(
             f"airspace.no_fly[{first + index}]": f"{label}: {place}" for index, place in enumerate(added)
         }
     return (tables | {"airspace": airspace} if isinstance(stated, dict) else tables), places
+
+
+def _require_nodes_in_reach(scenario: Scenario) -> None:
+    """Raises the fault of a node near which zones of a file would not count."""
+    for name, node in zip(scenario.node_names, scenario.nodes, strict=True):
+        away_m = float(np.abs(np.asarray(node.position_m)[:2]).max())
+        if away_m > REACH_M:
+            raise refusal(
+                f"airspace.{_ZONES_KEY}",
+                f"its zones count up to {REACH_M / 1e3:g} km east, west, north and south of the origin, and "
+                f"node {name} is {away_m / 1e3:.0f} km away; move [origin] to the nodes",
+            )
 
 
 def _from_file(fault: Fault, origins: Mapping[str, str]) -> Fault:
