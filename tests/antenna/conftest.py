@@ -15,6 +15,8 @@ FREQUENCY_HZ = 2.4e9
 Field = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.complex128]]
 """From polar angles and azimuths (degrees, any shape) to the parts along theta and phi, (..., 2)."""
 
+Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
+
 _RNG = np.random.default_rng(7)
 _FLAT, _SLOPE = _RNG.normal(size=(2, 3)) + 1j * _RNG.normal(size=(2, 3))
 _TOWARDS = _RNG.normal(size=3)
@@ -47,18 +49,48 @@ def db(power: NDArray[np.float64]) -> NDArray[np.float64]:
     return 10.0 * np.log10(np.maximum(power, 1e-99))
 
 
-def _rows(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64], *, theta_inner: bool) -> list[tuple]:
+def dipole_field(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Returns the field of a short dipole along x, which has two exact nulls."""
+    theta, phi = np.radians(np.broadcast_arrays(theta_deg, phi_deg))
+    return np.sqrt(1.5) * np.stack([np.cos(theta) * np.cos(phi), -np.sin(phi)], axis=-1).astype(complex)
+
+
+def _raw_omni_field(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> NDArray[np.complex128]:
+    theta, phi = np.radians(np.broadcast_arrays(theta_deg, phi_deg))
+    along = 0.1 * np.cos(theta) - np.sin(theta) ** 2 * (1.0 - 0.3 * np.cos(theta))
+    return np.exp(1j * phi)[..., None] * np.stack([along, np.full(theta.shape, 0.1j)], axis=-1)
+
+
+_OMNI_MEAN = 0.5 * np.sum(
+    _WEIGHTS[:, None] * np.abs(_raw_omni_field(np.degrees(np.arccos(_Z)), np.zeros(12))) ** 2
+)
+
+
+def omni_field(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Returns the field of an antenna that is the same all round, stronger below, with nulls of 17 dB."""
+    return _raw_omni_field(theta_deg, phi_deg) / np.sqrt(_OMNI_MEAN)
+
+
+FIELDS: dict[str, Field] = {"any": field_of, "dipole": dipole_field, "omni": omni_field}
+
+
+def _rows(grid: Grid, field: Field, *, theta_inner: bool) -> list[tuple]:
     """Returns theta, phi and both parts of the field of every direction, in a file's order."""
-    theta, phi = np.meshgrid(theta_deg, phi_deg, indexing="ij")
+    theta, phi = np.meshgrid(*grid, indexing="ij")
     if theta_inner:
         theta, phi = theta.T, phi.T
-    field = field_of(theta, phi).reshape(-1, 2)
-    return list(zip(theta.ravel(), phi.ravel(), field[:, 0], field[:, 1], strict=True))
+    parts = field(theta, phi).reshape(-1, 2)
+    return list(zip(theta.ravel(), phi.ravel(), parts[:, 0], parts[:, 1], strict=True))
 
 
-def _nec_rows(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> str:
+def _sphere(step_deg: float, first_deg: float = 0.0, last_deg: float = 360.0) -> Grid:
+    """Returns polar angles from 0 to 180 and azimuths, the last included."""
+    return np.arange(0.0, 181.0, step_deg), np.arange(first_deg, last_deg + 1.0, step_deg)
+
+
+def _nec_rows(grid: Grid, field: Field) -> str:
     lines = []
-    for theta, phi, along, round_z in _rows(theta_deg, phi_deg, theta_inner=True):
+    for theta, phi, along, round_z in _rows(grid, field, theta_inner=True):
         gains = " ".join(f"{float(db(np.array(p))):8.2f}" for p in (abs(along) ** 2, abs(round_z) ** 2))
         total = float(db(np.array(abs(along) ** 2 + abs(round_z) ** 2)))
         parts = " ".join(
@@ -68,9 +100,9 @@ def _nec_rows(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> s
     return "\n".join(lines)
 
 
-def write_nec() -> str:
+def write_nec(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns what nec2c writes."""
-    table = _nec_rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 361.0, 5.0))
+    table = _nec_rows(_sphere(step_deg), field)
     return (
         " --------- FREQUENCY --------\n FREQUENCY : 2.4000E+03 MHz\n\n"
         " ---------- RADIATION PATTERNS -----------\n\n"
@@ -81,9 +113,9 @@ def write_nec() -> str:
     )
 
 
-def write_4nec2() -> str:
+def write_4nec2(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns what 4nec2 writes: polar angles from -180, half of the azimuths."""
-    table = _nec_rows(np.arange(-180.0, 181.0, 5.0), np.arange(0.0, 181.0, 5.0))
+    table = _nec_rows((np.arange(-180.0, 181.0, step_deg), np.arange(0.0, 181.0, step_deg)), field)
     return (
         " - - - - FREQUENCY - - - -\n\n FREQUENCY= 2.4000E+03 MHZ\n\n\n - - - RADIATION PATTERNS - - -\n\n"
         "  - - ANGLES - -   - POWER GAINS -   - - - POLARIZATION - - -   - E(THETA) -   - E(PHI) -\n"
@@ -93,18 +125,29 @@ def write_4nec2() -> str:
     )
 
 
-def write_ffd() -> str:
+def write_ffd(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns what HFSS writes: polar angles in the outer loop, azimuths from -180, volts."""
-    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(-180.0, 181.0, 5.0), theta_inner=False)
+    grid = _sphere(step_deg, -180.0, 180.0)
+    rows = _rows(grid, field, theta_inner=False)
     table = "\n".join(
         f"{9 * a.real:.8e} {9 * a.imag:.8e} {9 * b.real:.8e} {9 * b.imag:.8e}" for _, _, a, b in rows
     )
-    return f"0 180 37\n-180 180 73\nFrequencies 1\nFrequency 2.4e9\n{table}\n"
+    counts = [len(angles) for angles in grid]
+    return f"0 180 {counts[0]}\n-180 180 {counts[1]}\nFrequencies 1\nFrequency 2.4e9\n{table}\n"
 
 
-def write_ffs(powers: tuple[float, ...] = (0.4, 0.4, 0.5)) -> str:
+def write_old_ffd(field: Field = field_of, step_deg: float = 5.0) -> str:
+    """Returns what older versions write: no frequencies."""
+    lines = write_ffd(field, step_deg).split("\n")
+    return "\n".join([*lines[:2], *lines[4:]])
+
+
+def write_ffs(
+    field: Field = field_of, step_deg: float = 5.0, powers: tuple[float, ...] = (0.4, 0.4, 0.5)
+) -> str:
     """Returns what CST writes as a far-field source: azimuth first, polar angle in the inner loop."""
-    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 361.0, 5.0), theta_inner=True)
+    grid = _sphere(step_deg)
+    rows = _rows(grid, field, theta_inner=True)
     volts = np.sqrt(376.730313 / (2.0 * np.pi) * powers[1])
     table = "\n".join(
         f"{phi:9.3f} {theta:9.3f} " + " ".join(f"{volts * x:.8e}" for x in (a.real, a.imag, b.real, b.imag))
@@ -115,19 +158,19 @@ def write_ffs(powers: tuple[float, ...] = (0.4, 0.4, 0.5)) -> str:
         "// CST Farfield Source File\n\n// Version:\n3.0\n\n// Data Type\nFarfield\n\n// #Frequencies\n1\n\n"
         "// Position\n0 0 0\n\n// zAxis\n0 0 1\n\n// xAxis\n1 0 0\n\n"
         f"// Radiated/Accepted/Stimulated Power , Frequency\n{told}\n{FREQUENCY_HZ:e}\n\n"
-        "// >> Total #phi samples, total #theta samples\n73 37\n\n"
+        f"// >> Total #phi samples, total #theta samples\n{len(grid[1])} {len(grid[0])}\n\n"
         f"// >> Phi, Theta, Re(E_Theta), Im(E_Theta), Re(E_Phi), Im(E_Phi):\n{table}\n"
     )
 
 
-def write_cst() -> str:
+def write_cst(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns what CST writes as a table in text."""
     lines = [
         "Theta [deg.]  Phi   [deg.]  Abs(Dir.)[dBi   ]   Abs(Theta)[dBi   ]  Phase(Theta)[deg.]  "
         "Abs(Phi  )[dBi   ]  Phase(Phi  )[deg.]  Ax.Ratio[dB    ]",
         "-" * 120,
     ]
-    for theta, phi, a, b in _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=True):
+    for theta, phi, a, b in _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True):
         total, along, round_z = (
             float(db(np.array(p))) for p in (abs(a) ** 2 + abs(b) ** 2, abs(a) ** 2, abs(b) ** 2)
         )
@@ -137,9 +180,9 @@ def write_cst() -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_csv() -> str:
+def write_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a table of gains, its rows in no order."""
-    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=True)
+    rows = _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True)
     lines = [
         f"{theta:g},{phi:g},{float(db(np.array(abs(a) ** 2 + abs(b) ** 2))):.4f}" for theta, phi, a, b in rows
     ]
@@ -147,11 +190,46 @@ def write_csv() -> str:
     return "\n".join(["theta_deg,phi_deg,gain_dbi", *lines]) + "\n"
 
 
-def write_complex_csv() -> str:
+def write_complex_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a table of fields."""
-    rows = _rows(np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0), theta_inner=False)
+    rows = _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=False)
     lines = [f"{t:g},{p:g},{a.real:.7f},{a.imag:.7f},{b.real:.7f},{b.imag:.7f}" for t, p, a, b in rows]
     return "\n".join(["theta_deg,phi_deg,re_theta,im_theta,re_phi,im_phi", *lines]) + "\n"
+
+
+def write_hfss_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
+    """Returns what a report of HFSS writes: headings and units in quotes, azimuths from -180."""
+    lines = ['"Freq [GHz]","Phi [deg]","Theta [deg]","dB(GainTotal) []"']
+    for theta, phi, a, b in _rows(_sphere(step_deg, -180.0, 180.0), field, theta_inner=True):
+        lines.append(f"2.4,{phi:g},{theta:g},{float(db(np.array(abs(a) ** 2 + abs(b) ** 2))):.9f}")
+    return "\n".join(lines) + "\n"
+
+
+def write_hfss_linear(field: Field = field_of, step_deg: float = 5.0) -> str:
+    """Returns a report of linear realised gains, its columns in another order, polar angles from -180."""
+    lines = ["RealizedGainTotal,Theta[deg],Phi[deg],Freq[MHz]"]
+    grid = np.arange(-180.0, 181.0, step_deg), np.arange(0.0, 180.0, step_deg)
+    for theta, phi, a, b in _rows(grid, field, theta_inner=False):
+        lines.append(f"{abs(a) ** 2 + abs(b) ** 2:.9f},{theta:g},{phi:g},2400")
+    return "\n".join(lines) + "\n"
+
+
+def write_cst_gains(field: Field = field_of, step_deg: float = 5.0) -> str:
+    """Returns a table of CST without phases, of realised gains."""
+    lines = ["Theta [deg.]  Phi   [deg.]  Abs(Grlz)[dBi   ]   Ax.Ratio[dB    ]  ", "-" * 60]
+    for theta, phi, a, b in _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True):
+        total = float(db(np.array(abs(a) ** 2 + abs(b) ** 2)))
+        lines.append(f"{theta:8.3f} {phi:8.3f} {total:.3e} 4.000e+01")
+    return "\n".join(lines) + "\n"
+
+
+def write_omni_msi(field: Field = omni_field, step_deg: float = 1.0) -> str:
+    """Returns two cuts of an antenna that is the same all round."""
+    at_deg = np.arange(360.0)
+    theta = np.where(at_deg <= 90.0, 90.0 + at_deg, np.where(at_deg < 270.0, 270.0 - at_deg, at_deg - 270.0))
+    gain_dbi = db(np.sum(np.abs(field(theta, 0.0)) ** 2, axis=-1))
+    peak_dbi = np.max(gain_dbi)
+    return write_msi(np.full(360, peak_dbi - gain_dbi[0]), peak_dbi - gain_dbi, f"{peak_dbi:.6f} dBi")
 
 
 def write_msi(
@@ -166,7 +244,7 @@ def write_msi(
     return head + "\n".join(cuts) + "\n"
 
 
-WRITERS: dict[str, tuple[str, Callable[[], str]]] = {
+WRITERS: dict[str, tuple[str, Callable[..., str]]] = {
     "nec": ("nec", write_nec),
     "4nec2": ("nec", write_4nec2),
     "ffd": ("ffd", write_ffd),
@@ -174,6 +252,10 @@ WRITERS: dict[str, tuple[str, Callable[[], str]]] = {
     "cst": ("cst", write_cst),
     "csv": ("csv", write_csv),
     "complex-csv": ("csv", write_complex_csv),
+    "old-ffd": ("ffd", write_old_ffd),
+    "hfss-csv": ("csv", write_hfss_csv),
+    "hfss-linear": ("csv", write_hfss_linear),
+    "cst-gains": ("cst", write_cst_gains),
 }
 
 
@@ -187,6 +269,18 @@ def written() -> dict[str, str]:
 def formats() -> dict[str, str]:
     """Which format each writer writes."""
     return {name: told for name, (told, _) in WRITERS.items()}
+
+
+@pytest.fixture(scope="session")
+def patterns() -> dict[str, Field]:
+    """Three known patterns: one without any symmetry, one with exact nulls, one the same all round."""
+    return FIELDS
+
+
+@pytest.fixture(scope="session")
+def writers() -> dict[str, Callable[..., str]]:
+    """What writes a pattern, (field, step in degrees), by the writer's name; two cuts of the last only."""
+    return {name: write for name, (_, write) in WRITERS.items()} | {"msi": write_omni_msi}
 
 
 @pytest.fixture(scope="session")

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from nullpose.antenna.files import FORMATS, read_pattern, read_profile
-from nullpose.antenna.files.reading import mean_gain, solid_angles
-from nullpose.antenna.table import PatternTable
+from nullpose.antenna.harmonics import directions
+from nullpose.antenna.pattern import deepest_null, table_harmonics
+from nullpose.antenna.table import PatternTable, mean_gain, solid_angles
+from nullpose.errors import ScenarioError
 
-NAMES = ("nec", "4nec2", "ffd", "ffs", "cst", "csv", "complex-csv")
-WITH_FIELD = ("nec", "4nec2", "ffd", "ffs", "cst", "complex-csv")
+WITH_FIELD = ("nec", "4nec2", "ffd", "old-ffd", "ffs", "cst", "complex-csv")
+NAMES = (*WITH_FIELD, "csv", "hfss-csv", "hfss-linear", "cst-gains")
 Field = Callable[..., np.ndarray]
 
 
@@ -78,15 +80,18 @@ def test_what_the_file_tells_of_itself_is_kept(written: dict[str, str], tmp_path
     """Frequency, quantity and notes: no power in .ffd is told, nor clockwise bearings kept silent."""
     tables = {name: read(text, tmp_path) for name, text in written.items()}
     known = {name: table.frequency_hz for name, table in tables.items() if table.frequency_hz}
-    assert known == dict.fromkeys(("nec", "4nec2", "ffd", "ffs"), 2.4e9)
-    assert {name for name, table in tables.items() if table.quantity == "directivity"} == {"ffd", "cst"}
+    assert known == dict.fromkeys(("nec", "4nec2", "ffd", "ffs", "hfss-csv", "hfss-linear"), 2.4e9)
+    directive = {name for name, table in tables.items() if table.quantity == "directivity"}
+    assert directive == {"ffd", "old-ffd", "cst"}
+    realised = {name for name, table in tables.items() if table.quantity == "realised gain"}
+    assert realised == {"hfss-linear", "cst-gains"}
     assert "no power" in tables["ffd"].notes[0]
     assert mean_gain(tables["ffd"]) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_a_frequency_is_picked(written: dict[str, str], field: Field, tmp_path: Path) -> None:
     """Of several frequencies the stated one is read; a file that tells none takes the user's word."""
-    strong, _, rows = written["ffd"].partition("Frequency 2.4e9\n")
+    strong, _, rows = written["ffd"].replace("Frequencies 1", "Frequencies 2").partition("Frequency 2.4e9\n")
     other = "\n".join("1.0 0.0 0.0 0.5" for _ in rows.splitlines())
     two = f"{strong}Frequency 9e8\n{other}\nFrequency 2.4e9\n{rows}"
     table = read(two, tmp_path, frequency_hz=2.4e9)
@@ -104,6 +109,10 @@ def test_units_of_a_text_table(written: dict[str, str], field: Field, tmp_path: 
         ("Abs(Realized Gain)[ ]", power, "realised gain"),
         ("Abs(E)[V/m]", 3.0 * np.sqrt(power), "directivity"),
         ("Abs(E)[dB(1V/m)]", 10.0 * np.log10(7.0 * power), "directivity"),
+        ("Abs(E)[dBuV/m]", 10.0 * np.log10(7.0 * power) + 120.0, "directivity"),
+        ("Abs(E)[]", 3.0 * np.sqrt(power), "directivity"),
+        ("Abs(Gain)[dBd]", 10.0 * np.log10(power) - 2.15, "gain"),
+        ("Abs(Grlz)[dB]", 10.0 * np.log10(power), "realised gain"),
     ):
         body = "\n".join(f"{row[0]} {row[1]} {value:.8e}" for row, value in zip(rows, values, strict=True))
         table = read(f"Theta [deg.]  Phi [deg.]  {head}\n{'-' * 40}\n{body}\n", tmp_path)
@@ -126,21 +135,42 @@ def test_two_cuts_of_an_antenna_that_is_the_same_all_round(
     assert np.ptp(loss, axis=1) == pytest.approx(np.zeros(181), abs=1e-9)
     assert table.frequency_hz == 2.4e9
     assert any("dBi" in note if "dBi" in gain else "dBd" in note for note in table.notes)
-    assert table.notes[-1].startswith("Two cuts, and the horizontal one is flat")
+    assert "horizontal cut's ripple of 0.0 dB, and 0.0 dB between the halves" in table.notes[1]
+    assert table.notes[2] == "Its FREQUENCY, 2400, is read in MHz."
+    assert table.doubt == ""
+
+
+def test_the_profile_of_an_omni_is_the_mean_of_its_halves(msi: Callable[..., str], tmp_path: Path) -> None:
+    """A horizontal cut within 1.5 dB makes a profile, whose note says what it leaves out."""
+    at = np.radians(np.arange(360.0))
+    down_db = 10.0 * np.sin(at) ** 2 + 0.5 * (1.0 - np.cos(at))
+    table = read(msi(0.7 * (1.0 - np.cos(at)), down_db, "0 dBi"), tmp_path)
+    halves = 10.0 ** (-np.stack([down_db[np.arange(-90, 91)], down_db[270 - np.arange(181)]]) / 10.0)
+    assert table.gain == pytest.approx(np.tile(np.mean(halves, axis=0), (360, 1)).T, rel=1e-4)
+    assert table_harmonics(table).is_axisymmetric
+    assert "ripple of 1.4 dB, and 1.0 dB between the halves" in table.notes[1]
 
 
 def test_an_estimate_from_two_cuts_has_both_of_them(msi: Callable[..., str], tmp_path: Path) -> None:
-    """Of another antenna two cuts make an estimate, which agrees with both, and the notes warn."""
+    """Of another antenna two cuts make an estimate, which agrees with both, points ahead and says so."""
     at = np.radians(np.arange(360.0))
-    across_db = 3.0 - 3.0 * np.cos(at) + 1.0 * np.sin(at) + 0.2
-    down_db = 8.0 - 3.0 * np.cos(at) - 2.0 * np.sin(at) - 5.0 * np.cos(at) ** 2 + 0.2
-    text = msi(across_db, down_db, "3 dBi")
-    table = read(text, tmp_path, estimate=True)
-    loss = 3.0 - 10.0 * np.log10(table.gain)
+    across_db = 8.0 - 8.0 * np.cos(at) + 1.0 * np.sin(at) ** 2
+    down_db = 8.0 - 8.0 * np.cos(at) + 9.0 * np.sin(at) ** 2
+    table = read(msi(across_db, down_db, "9 dBi"), tmp_path, estimate=True)
+    with np.errstate(divide="ignore"):
+        loss = 9.0 - 10.0 * np.log10(table.gain)
     assert loss[90] == pytest.approx(across_db[-np.arange(360) % 360], abs=1e-3)
-    assert loss[:, 0] == pytest.approx(down_db[(np.arange(181) - 90) % 360], abs=1e-3)
-    assert loss[:, 180] == pytest.approx(down_db[270 - np.arange(181)], abs=1e-3)
-    assert any(note.startswith("Not fit for solving: it is not the same all round") for note in table.notes)
+    assert loss[1:-1, 0] == pytest.approx(down_db[(np.arange(1, 180) - 90) % 360], abs=1e-3)
+    behind_db = np.maximum(across_db[180], down_db[270 - np.arange(1, 180)])
+    assert loss[1:-1, 180] == pytest.approx(behind_db, abs=1e-3)
+    assert np.unravel_index(np.argmax(table.gain), table.gain.shape) == (90, 0)
+    assert np.min(loss) == pytest.approx(0.0, abs=1e-9)
+    assert solid_angles(table)[loss < 3.0].sum() < 0.1
+    assert "estimate by the sum of losses: its horizontal cut changes by 16.0 dB" in table.doubt
+    at_half = loss[45, 90]  # theta 45, phi 90: half of each half of the vertical cut
+    assert at_half == pytest.approx(
+        across_db[270] + 0.5 * (down_db[315] + max(0.0, down_db[225] - 16.0)), abs=1e-3
+    )
 
 
 def test_isolated_nulls_are_nulls(tmp_path: Path) -> None:
@@ -168,6 +198,47 @@ def test_averages_are_exact(written: dict[str, str], tmp_path: Path) -> None:
     assert mean_gain(table) == pytest.approx(1.0, abs=1e-4)
 
 
+def far_field(field: Field, step_deg: float, offset_m: np.ndarray) -> str:
+    """Returns a table of the fields of the antenna that is away from the origin, at 300 MHz."""
+    theta, phi = np.meshgrid(np.arange(0.0, 181.0, step_deg), np.arange(0.0, 360.0, step_deg), indexing="ij")
+    towards = directions(np.arange(0.0, 181.0, step_deg), np.arange(0.0, 360.0, step_deg))
+    parts = field(theta, phi) * np.exp(2j * np.pi * towards @ offset_m)[..., None]
+    rows = zip(theta.ravel(), phi.ravel(), *parts.reshape(-1, 2).T, strict=True)
+    lines = [f"{t:g},{p:g},{a.real:.7f},{a.imag:.7f},{b.real:.7f},{b.imag:.7f}" for t, p, a, b in rows]
+    return "\n".join(["theta_deg,phi_deg,re_theta,im_theta,re_phi,im_phi", *lines]) + "\n"
+
+
+@pytest.mark.parametrize("away_m", [0.0, 3.0, 5.0, 30.0])
+def test_an_antenna_far_from_the_origin_is_read(field: Field, tmp_path: Path, away_m: float) -> None:
+    """Whatever its phases, which turn too fast for steps of 10 degrees, solvers use its gains to .02 dB."""
+    table = read(far_field(field, 10.0, away_m * np.array([0.6, 0.0, 0.8])), tmp_path)
+    theta_deg, phi_deg = np.arange(3.0, 180.0, 7.0), np.arange(3.0, 360.0, 7.0)
+    used = table_harmonics(table).gain(directions(theta_deg, phi_deg))
+    truth = np.sum(np.abs(field(*np.meshgrid(theta_deg, phi_deg, indexing="ij"))) ** 2, axis=-1)
+    strong = truth > 1e-2 * np.max(truth)
+    assert np.max(np.abs(10.0 * np.log10(used[strong] / truth[strong]))) < 0.05
+
+
+def test_no_null_is_deeper_than_the_files(data: Path) -> None:
+    """What solvers use has no gain below the smallest one of the file, on any grid."""
+    table = read_pattern(data / "hex35_beside_10_half_5deg.out.gz")
+    used, least = table_harmonics(table), np.min(table.gain)
+    assert np.min(used.on_grid(*(np.radians(np.arange(0.05, end, 0.7)) for end in (180.0, 360.0)))) >= least
+    assert deepest_null(used)[0] >= least * (1.0 - 1e-9)
+
+
+def test_two_tables_at_one_frequency(written: dict[str, str], field: Field, tmp_path: Path) -> None:
+    """The one over the whole sphere is read beside a cut, and a note says so; of two whole ones none is."""
+    head, table = written["nec"].split(" ---------- RADIATION", 1)
+    whole = " ---------- RADIATION" + table
+    cut = "\n".join(line for line in whole.split("\n") if line[5:6] != "." or line[9:17].strip() == "0.00")
+    found = read(head + cut.replace("TOTAL RUN TIME", "") + whole, tmp_path)
+    assert largest_error_db(found, field) < 0.01
+    assert found.notes == ("Other tables at this frequency do not cover the sphere; they are not read.",)
+    with pytest.raises(ScenarioError, match="2 tables at one frequency, from the lines"):
+        read(head + whole + whole, tmp_path)
+
+
 def test_compressed_files_are_read(written: dict[str, str], field: Field, tmp_path: Path) -> None:
     """A .gz file is the file inside it."""
     path = tmp_path / "pattern.csv.gz"
@@ -178,10 +249,10 @@ def test_compressed_files_are_read(written: dict[str, str], field: Field, tmp_pa
 def test_a_profile(tmp_path: Path) -> None:
     """Angles come back in order, gains linear; a floor is no gain."""
     path = tmp_path / "profile.csv"
-    path.write_text("angle_deg,gain_dbi\n180,-999\n90,3.0103\n0,0\n", encoding="utf-8")
+    path.write_text("angle_deg,gain_dbi\n180,-999\n90,0\n0,-3.0103\n", encoding="utf-8")
     angle_deg, gain = read_profile(path)
     assert angle_deg.tolist() == [0.0, 90.0, 180.0]
-    assert gain == pytest.approx([1.0, 2.0, 0.0], abs=1e-6)
+    assert gain == pytest.approx([0.5, 1.0, 0.0], abs=1e-6)
 
 
 def test_every_format_is_tested(formats: dict[str, str]) -> None:

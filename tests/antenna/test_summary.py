@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from nullpose.antenna.pattern import deepest_null, table_harmonics
 from nullpose.antenna.summary import summary_of
 from nullpose.antenna.table import PatternTable
 
@@ -60,12 +61,24 @@ def test_gains_alone_tell_no_polarisation() -> None:
 
 @pytest.mark.parametrize("degree", [0, 2, 5, 9])
 def test_degree(degree: int) -> None:
-    """The degree of a polynomial of the cosine is found; a degree beyond the grid is none."""
+    """The degree that solvers use is that of a polynomial of the cosine, and its errors are 0."""
     ripple = np.polynomial.legendre.Legendre.basis(degree)
     found = summary_of(table_of(lambda t, p: 1.5 + 0.5 * ripple(np.cos(t)), step_deg=15.0))
     assert (found.degree, found.supported_degree) == (degree, 11)
-    sharp = summary_of(table_of(lambda t, p: np.where(t > 1.0, 2.0, 1.0) + 0.0 * p, step_deg=15.0))
-    assert sharp.degree is None
+    assert max(found.error_10_db, found.error_20_db, found.null_error_db) < 1e-6
+
+
+def test_the_null_that_is_used() -> None:
+    """Where the fit does not follow, depth and place of its null are told, and its errors by direction."""
+    sharp = summary_of(table_of(lambda t, p: np.where(t > 1.0, 2.0, 0.001) + 0.0 * p, step_deg=15.0))
+    table, used = sharp.table, table_harmonics(sharp.table)
+    gain = used.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg))
+    apart_db = np.abs(10.0 * np.log10(gain / table.gain))
+    assert sharp.null_db == pytest.approx(10.0 * np.log10(2000.0))
+    assert sharp.used_null_db == pytest.approx(10.0 * np.log10(np.max(gain) / deepest_null(used)[0]))
+    assert sharp.error_20_db == sharp.error_10_db == pytest.approx(np.max(apart_db[table.gain > 1.0]))
+    assert np.max(apart_db[table.theta_deg == sharp.error_deg[0]]) == pytest.approx(sharp.error_20_db)
+    assert sharp.null_error_db == pytest.approx(apart_db[table.gain < 1.0][0])
 
 
 def test_the_step_and_the_frequency_tell_a_size() -> None:

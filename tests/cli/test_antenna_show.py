@@ -52,6 +52,12 @@ def test_json(run: Run) -> None:
             "ripple_db",
             "polarisation",
             "axial_ratio_db",
+            "used_null_db",
+            "used_null_rad",
+            "error_10_db",
+            "error_20_db",
+            "error_rad",
+            "null_error_db",
             "degree",
             "supported_degree",
             "step_rad",
@@ -81,7 +87,7 @@ def test_two_cuts_are_shown_with_a_warning(run: Run, tmp_path: Path) -> None:
     file.write_text(f"GAIN 4 dBi\nHORIZONTAL 360\n{cut}\nVERTICAL 360\n{cut}\n", encoding="utf-8")
     result = run("antenna", file)
     assert result.exit_code == 0
-    assert "Not fit for solving: it is not the same all round" in result.stdout
+    assert "Estimate: it is an estimate by the sum of losses" in result.stdout
 
 
 def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:

@@ -27,10 +27,9 @@ _TINY = 1e-7  # of the largest gain
 _LOW = 0.005  # of all directions, weighted by the grid's density
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
 _HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
-_GRID = (
-    np.radians(np.arange(181.0)),
-    np.radians(np.arange(360.0)),
-)  # where least and largest gain are looked for
+_GRID = np.radians(np.arange(181.0)), np.radians(np.arange(360.0))  # where the largest gain is looked for
+_STEP_DEG = 0.25  # of the grid where the least gain is looked for, then about its lowest minima
+_MINIMA = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +133,7 @@ def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
         gain: (n,) power gain there, linear; it changes linearly between.
     """
     whole = _axial(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), HIGHEST_DEGREE)
-    return _shortened(whole, float(np.max(gain)))
+    return _shortened(whole, float(np.min(gain)), float(np.max(gain)))
 
 
 def table_harmonics(table: PatternTable) -> Harmonics:
@@ -143,8 +142,31 @@ def table_harmonics(table: PatternTable) -> Harmonics:
     Args:
         table: over the whole sphere.
     """
-    peak = float(np.max(table.gain))
-    return _shortened(fit(table, supported_degree(table)), peak)
+    return _shortened(
+        fit(table, supported_degree(table)), float(np.min(table.gain)), float(np.max(table.gain))
+    )
+
+
+def deepest_null(harmonics: Harmonics) -> tuple[float, float, float]:
+    """Return the least gain of a pattern, with its polar angle and azimuth, radians.
+
+    Args:
+        harmonics: of any pattern.
+    """
+    from scipy.ndimage import minimum_filter
+
+    grid = np.arange(0.0, 180.0 + _STEP_DEG, _STEP_DEG), np.arange(0.0, 360.0, _STEP_DEG)
+    gains = harmonics.on_grid(*map(np.radians, grid))
+    rows, columns = np.nonzero(gains == minimum_filter(gains, 3, mode=("nearest", "wrap")))
+    lowest = np.argsort(gains[rows, columns])[:_MINIMA]
+    near = np.radians(np.linspace(-_STEP_DEG, _STEP_DEG, 21))
+    theta = np.radians(grid[0][rows[lowest]])[:, None, None] + near[:, None]
+    phi = np.radians(grid[1][columns[lowest]])[:, None, None] + near
+    theta, phi = np.broadcast_arrays(theta, phi)
+    there = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    found = harmonics.gain(there)
+    least = np.unravel_index(np.argmin(found), found.shape)
+    return float(found[least]), float(theta[least]), float(phi[least])
 
 
 def normalised(harmonics: Harmonics) -> Harmonics:
@@ -167,12 +189,15 @@ def _axial(function: Any, degree: int) -> Harmonics:
     return Harmonics(cosine, np.zeros_like(cosine))
 
 
-def _shortened(harmonics: Harmonics, peak: float) -> Harmonics:
-    """Return the harmonics without the high degrees and tiny terms, lifted so that no gain is negative."""
+def _shortened(harmonics: Harmonics, least: float, peak: float) -> Harmonics:
+    """Return the harmonics without the high degrees and tiny terms, lifted to the least gain that is known.
+
+    A null that the fit makes deeper than any known gain would let jamming vanish that is received.
+    """
     for terms in (harmonics.cosine, harmonics.sine):
         terms[np.abs(terms) < _TINY * peak] = 0.0  # a symmetry of the antenna is then one of the terms
     left_out = np.sqrt(np.cumsum(harmonics.spectrum[::-1])[::-1])
     degree = int(np.argmax(np.append(left_out[1:], 0.0) <= _LEFT_OUT * peak))
     kept = harmonics.truncated(degree)
-    kept.cosine[0, 0] += max(0.0, -float(np.min(kept.on_grid(*_GRID))))
+    kept.cosine[0, 0] += max(0.0, least - deepest_null(kept)[0])
     return kept

@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.antenna.files.block import FloatArray
-from nullpose.antenna.files.reading import mean_gain
-from nullpose.antenna.harmonics import fit, supported_degree
-from nullpose.antenna.table import PatternTable
+from nullpose.antenna.harmonics import supported_degree
+from nullpose.antenna.pattern import deepest_null, table_harmonics
+from nullpose.antenna.table import PatternTable, mean_gain
 
-_NEAR_PEAK = 1e-2  # of it; the gains that the degree has to reproduce
-_CLOSE_DB = 0.05
+_NONE = 1e-12  # of the peak; rounding errors of an exact null
 _LINEAR_DB = 20.0  # axial ratio from which a field counts as linear
 _ALONG_DEG = 5.0  # tilt up to which it lies along theta or phi
 _SPEED = 299792458.0  # m/s
@@ -33,8 +31,13 @@ class PatternSummary:
         ripple_db: largest over smallest gain round the z axis, at the polar angle nearest to 90 degrees.
         polarisation: at the peak, in words.
         axial_ratio_db: there; None where no field is known, above 100 where it is linear.
-        degree: of the spherical harmonics that reproduce gains within 20 dB of the peak to 0.05 dB, root mean
-            square; None if ``supported_degree`` does not.
+        used_null_db: how far the smallest gain that solvers use is below the largest; infinite for none.
+        used_null_deg: polar angle and azimuth of it.
+        error_10_db: largest error of the gains that solvers use, within 10 dB of the peak.
+        error_20_db: within 20 dB of it.
+        error_deg: polar angle and azimuth of the latter.
+        null_error_db: error there of the smallest gain; not finite where that is none.
+        degree: of the spherical harmonics that solvers use.
         supported_degree: that the grid tells.
         step_deg: the widest of the grid.
         largest_m: radius about the origin of the largest structure whose pattern such steps hold at the
@@ -50,7 +53,13 @@ class PatternSummary:
     ripple_db: float
     polarisation: str
     axial_ratio_db: float | None
-    degree: int | None
+    used_null_db: float
+    used_null_deg: tuple[float, float]
+    error_10_db: float
+    error_20_db: float
+    error_deg: tuple[float, float]
+    null_error_db: float
+    degree: int
     supported_degree: int
     step_deg: float
     largest_m: float | None
@@ -73,11 +82,20 @@ def summary_of(table: PatternTable) -> PatternSummary:
     Args:
         table: any.
     """
-    with np.errstate(divide="ignore"):
-        gain_dbi = 10.0 * np.log10(table.gain)
+    used = table_harmonics(table)
+    used_gain = used.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gain_dbi, used_dbi = (10.0 * np.log10(np.maximum(gain, 0.0)) for gain in (table.gain, used_gain))
+        apart_db = np.abs(used_dbi - gain_dbi)
     peak, null = (_place(table, find(table.gain)) for find in (np.argmax, np.argmin))
     equator_dbi = gain_dbi[np.argmin(np.abs(table.theta_deg - 90.0))]
     polarisation, axial_ratio_db = _polarisation(None if table.field is None else table.field[peak])
+    error_10_db, error_db = (
+        np.where(gain_dbi > gain_dbi[peak] - below, apart_db, 0.0) for below in (10.0, 20.0)
+    )
+    farthest = _place(table, np.argmax(error_db))
+    least, *used_null = deepest_null(used)
+    exact = least <= _NONE * np.max(used_gain)
     step_deg = max(180.0 / (len(table.theta_deg) - 1), 360.0 / len(table.phi_deg))
     # a structure of radius r has a field of degree 2 pi r / wavelength, and a power of twice that
     waves = 180.0 / step_deg / (2.0 if table.field is None else 1.0) / (2.0 * np.pi)
@@ -91,7 +109,13 @@ def summary_of(table: PatternTable) -> PatternSummary:
         ripple_db=float(np.ptp(equator_dbi)) if np.min(equator_dbi) > -np.inf else float("inf"),
         polarisation=polarisation,
         axial_ratio_db=axial_ratio_db,
-        degree=_degree(table),
+        used_null_db=float("inf") if exact else float(np.max(used_dbi) - 10.0 * np.log10(least)),
+        used_null_deg=(float(np.degrees(used_null[0])), float(np.degrees(used_null[1])) % 360.0),
+        error_10_db=float(np.max(error_10_db)),
+        error_20_db=float(error_db[farthest]),
+        error_deg=(float(table.theta_deg[farthest[0]]), float(table.phi_deg[farthest[1]])),
+        null_error_db=float(apart_db[null]),
+        degree=used.degree,
         supported_degree=supported_degree(table),
         step_deg=float(step_deg),
         largest_m=None if table.frequency_hz is None else float(waves * _SPEED / table.frequency_hz),
@@ -118,17 +142,3 @@ def _polarisation(field: Any) -> tuple[str, float | None]:
     if min(abs(tilt_deg), 90.0 - abs(tilt_deg)) > _ALONG_DEG:
         return f"linear, {abs(tilt_deg):.0f} degrees from theta towards {'-' * (tilt_deg < 0.0)}phi", ratio_db
     return f"linear along {'theta' if abs(tilt_deg) < 45.0 else 'phi'}", ratio_db
-
-
-def _degree(table: PatternTable) -> int | None:
-    """Return the lowest degree that reproduces the gains near the peak, or None."""
-    whole = fit(table, supported_degree(table))
-    near = table.gain >= _NEAR_PEAK * np.max(table.gain)
-    angles = np.radians(table.theta_deg), np.radians(table.phi_deg)
-
-    def missed_db(degree: int) -> float:
-        found: FloatArray = whole.truncated(degree).on_grid(*angles)[near]
-        apart_db = 10.0 * np.log10(np.maximum(found, 1e-12) / table.gain[near])
-        return float(np.sqrt(np.mean(apart_db**2)))
-
-    return next((degree for degree in range(whole.degree + 1) if missed_db(degree) <= _CLOSE_DB), None)

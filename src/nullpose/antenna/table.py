@@ -22,6 +22,8 @@ class PatternTable:
         quantity: what the file tells: "gain", "realised gain" or "directivity".
         source: the file and the format, for messages.
         notes: what a user should know of how it was read, a sentence each.
+        doubt: why it is an estimate and not a pattern; empty if it is one.
+        lines: (t, p) where in the file; None where rows have no line of their own.
     """
 
     theta_deg: NDArray[np.float64]
@@ -32,3 +34,30 @@ class PatternTable:
     quantity: str = "gain"
     source: str = ""
     notes: tuple[str, ...] = ()
+    doubt: str = ""
+    lines: NDArray[np.int64] | None = None
+
+
+def solid_angles(table: PatternTable) -> NDArray[np.float64]:
+    """Return each direction's share of the sphere, (t, p), for polynomials of the cosine exactly.
+
+    Source: Clenshaw and Curtis, 1960: weights for equal steps of the polar angle.
+
+    Args:
+        table: any.
+    """
+    steps = len(table.theta_deg) - 1
+    k = np.arange(1, steps // 2 + 1)
+    parts = np.where(2 * k == steps, 1.0, 2.0) / (4.0 * k**2 - 1.0)
+    bands = 1.0 - np.cos(2.0 * np.radians(np.outer(table.theta_deg, k))) @ parts
+    bands[[0, -1]] *= 0.5
+    return np.outer(bands / steps, np.full(len(table.phi_deg), 1.0 / len(table.phi_deg)))
+
+
+def mean_gain(table: PatternTable) -> float:
+    """Return a table's mean gain over the sphere: what is radiated of the power that is fed.
+
+    Args:
+        table: any.
+    """
+    return float(np.sum(solid_angles(table) * table.gain))

@@ -22,13 +22,15 @@ def pattern_view(summary: PatternSummary) -> View:
         ("frequency", None if table.frequency_hz is None else f"{table.frequency_hz / 1e6:.7g} MHz"),
         ("peak", f"{fixed(summary.peak_dbi, 2)} dBi, at {_place(summary.peak_deg)}"),
         ("average", f"{fixed(summary.mean_db, 2)} dB over the sphere"),
-        ("deepest null", _null_text(summary)),
+        ("deepest null", _null_text(summary.null_db, summary.null_deg)),
+        ("null used", _null_text(summary.used_null_db, summary.used_null_deg)),
+        ("error of the fit", _error_text(summary)),
         ("ripple round z", f"{fixed(summary.ripple_db, 2)} dB, at theta 90"),
         (
             "polarisation",
             summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak",
         ),
-        ("degree needed", _degree_text(summary)),
+        ("degree used", f"{summary.degree}; the grid resolves {summary.supported_degree}"),
         ("grid", f"steps of {summary.step_deg:g} degrees, {known}"),
         (
             "",
@@ -38,18 +40,22 @@ def pattern_view(summary: PatternSummary) -> View:
     return document(head(table.source), pairs("", rows), *table.notes)
 
 
-def _null_text(summary: PatternSummary) -> str:
-    if summary.null_db == 0.0:
+def _null_text(depth_db: float, place_deg: tuple[float, float]) -> str:
+    if depth_db == 0.0:
         return "none"
-    depth = f"{fixed(summary.null_db, 1)} dB below the peak" if math.isfinite(summary.null_db) else "exact"
-    return f"{depth}, at {_place(summary.null_deg)}"
+    depth = f"{fixed(depth_db, 1)} dB below the peak" if math.isfinite(depth_db) else "exact"
+    return f"{depth}, at {_place(place_deg)}"
 
 
-def _degree_text(summary: PatternSummary) -> str:
-    most = summary.supported_degree
-    return f"more than {most}" if summary.degree is None else f"{summary.degree}; the grid resolves {most}"
+def _error_text(summary: PatternSummary) -> str:
+    null_db = summary.null_error_db
+    at_null = f", {fixed(null_db, 2)} dB at the null" if math.isfinite(null_db) else ""
+    return (
+        f"{fixed(summary.error_10_db, 2)} dB within 10 dB of the peak, {fixed(summary.error_20_db, 2)} dB "
+        f"within 20 dB, at {_place(summary.error_deg)}{at_null}"
+    )
 
 
 def _place(angles_deg: tuple[float, float]) -> str:
-    theta_deg, phi_deg = angles_deg
+    theta_deg, phi_deg = (round(angle_deg, 1) for angle_deg in angles_deg)
     return f"theta {theta_deg:g}" if theta_deg in (0.0, 180.0) else f"theta {theta_deg:g}, phi {phi_deg:g}"

@@ -20,17 +20,20 @@ from nullpose.antenna.pattern import (
     table_harmonics,
 )
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import Place
+from nullpose.scenario.faults import Place, refusal
 from nullpose.scenario.rules import Choice, ListOf
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels
 
+ESTIMATE = "estimate from two cuts"
+"""What the antenna's label and the scenario's name say where two cuts do not tell the pattern."""
 _KINDS = ("dipole", "half-wave", "profile", "pattern")
 _FILED = ("profile", "pattern")
 _MOST_ROWS = HIGHEST_DEGREE + 1
 
 _Kind = Annotated[str, Choice("an antenna", _KINDS)]
 _Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
+_TwoCuts = Annotated[str, Choice("a way to read two cuts", ("sum-of-losses",))]
 _Row = Annotated[
     tuple[Coefficient, ...], ListOf("a list of 2 n + 1 numbers for degree n", 1, 2 * _MOST_ROWS - 1)
 ]
@@ -46,7 +49,8 @@ class Antenna(Section):
             null.
         file: name of the file that a profile or a pattern is from, relative to the scenario's.
         format: the file's format; None where the file tells it.
-        frequency_hz: which of a file's frequencies [Hz].
+        frequency_hz: which of a file's frequencies [Hz]; as read, where the file says it.
+        two_cuts: "sum-of-losses" for an estimate from two cuts.
         normalise: "peak" for a largest gain of 1, "none" for the file's gain.
         gain_dbi: its gain across its axis, or where it is largest, over an isotropic antenna [dBi].
         harmonics: what was read of the file: the terms of its spherical harmonics, by degree.
@@ -84,6 +88,13 @@ class Antenna(Section):
         description="Which of several frequencies in the file, in Hz.",
         examples=[2.4e9],
     )
+    two_cuts: _TwoCuts | None = Field(
+        default=None,
+        description='"sum-of-losses": make an estimate of two cuts (msi) of an antenna that is not the same '
+        "all round, and say so in every result. Left out: such cuts are refused, as they do not tell the "
+        "pattern.",
+        examples=["sum-of-losses"],
+    )
     normalise: _Normalise = Field(
         default="none",
         description='"none": gains are over an isotropic antenna, as in the file; "peak": the largest gain '
@@ -107,8 +118,9 @@ class Antenna(Section):
         """Returns keys that have no meaning for the kind, and what a profile or a pattern lacks."""
         if self.kind is None:
             return
-        allowed = {"dipole": {"null_depth_db"}, "half-wave": set()}.get(
-            self.kind, {"file", "format", "frequency_hz", "normalise", "harmonics"}
+        filed = {"file", "format", "frequency_hz", "normalise", "harmonics"}
+        allowed = {"dipole": {"null_depth_db"}, "half-wave": set(), "profile": filed}.get(
+            self.kind, filed | {"two_cuts"}
         )
         for key in stated.keys() - {"kind", "gain_dbi"} - allowed:
             if stated[key] is not None:
@@ -142,7 +154,9 @@ class Antenna(Section):
         if self.normalise == "peak":
             harmonics = normalised(harmonics)
         of_file = f" of {PurePath(self.file).name}" if self.file else ""
-        return PatternAntenna(self.kind, f"{self.kind}{of_file}", harmonics)
+        at = "" if self.frequency_hz is None else f" at {self.frequency_hz / 1e6:.7g} MHz"
+        estimate = "" if self.two_cuts is None else f" ({ESTIMATE})"
+        return PatternAntenna(self.kind, f"{self.kind}{of_file}{at}{estimate}", harmonics)
 
 
 def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
@@ -156,6 +170,7 @@ def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
         ScenarioError: the file cannot be read as stated.
     """
     from nullpose.antenna.files import read_pattern, read_profile
+    from nullpose.antenna.files.checks import require_fit
 
     if table.get("kind") not in _FILED:
         return dict(table)
@@ -165,8 +180,14 @@ def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
     except ScenarioError:
         return unread  # its faults are told with the rest of the scenario's
     if table["kind"] == "profile":
-        harmonics = profile_harmonics(*read_profile(path))
-    else:
-        frequency = table.get("frequency_hz")
-        harmonics = table_harmonics(read_pattern(path, table.get("format"), frequency))
-    return {**table, "harmonics": PatternAntenna("", "", harmonics).rows()}
+        profile = profile_harmonics(*read_profile(path))
+        return {**table, "harmonics": PatternAntenna("", "", profile).rows()}
+    is_estimate = table.get("two_cuts") is not None
+    pattern = read_pattern(path, table.get("format"), table.get("frequency_hz"), estimate=is_estimate)
+    if is_estimate and not pattern.doubt:
+        raise refusal("", "two_cuts has no meaning: the file tells the whole pattern; remove the key")
+    if is_estimate:
+        require_fit(pattern)
+    known = {} if pattern.frequency_hz is None else {"frequency_hz": pattern.frequency_hz}
+    harmonics = table_harmonics(pattern)
+    return {**table, **known, "harmonics": PatternAntenna("", "", harmonics).rows()}

@@ -18,7 +18,7 @@ from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.antenna import Antenna
+from nullpose.scenario.antenna import ESTIMATE, Antenna
 from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only, rows_of_points
 from nullpose.scenario.crosscheck import scenario_faults
@@ -193,7 +193,13 @@ class Scenario(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw scenario with the positions of points that are stated by latitude and longitude."""
+        """Returns the raw scenario with the positions of points that are stated by latitude and longitude.
+
+        The name, which every output has, says of an antenna that is an estimate that it is one.
+        """
+        antenna, name = data.get("antenna"), data.get("name", "")
+        if isinstance(antenna, Mapping) and antenna.get("two_cuts") and ESTIMATE not in str(name):
+            data = {**data, "name": f"{name} (antenna: {ESTIMATE})".strip()}
         return located(data)
 
     def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:

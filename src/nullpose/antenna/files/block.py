@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, TypeAlias
@@ -13,10 +14,15 @@ from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
 
 _FLOOR_DB = -190.0  # gains from here down stand for none: NEC writes -999.99, CST -200
-_HIGHEST_DB = 100.0
+_HIGHEST_DB = 1000.0
+_FREQUENCIES_HZ = 1e3, 1e13
 _LARGEST = 1e100  # number; the square of one beyond overflows
 _FEWEST = 4  # angles
 _UNEVEN_DEG = 0.01  # angles are written with two digits
+DBD = 2.15
+"""Decibels of a half-wave dipole over an isotropic antenna."""
+SAME_FIELD = 0.03
+"""How far a gain and the square of its field may be apart, of the gain: .13 dB."""
 _SAME, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -31,13 +37,13 @@ class Block:
     Args:
         theta_deg: (n,) polar angles, which may begin at -180.
         phi_deg: (n,) azimuths, from -360 to 360.
-        gain: (n,) power gain, linear; None where the field tells it.
-        field: (n, 2) complex parts along theta and phi; None for a table without phases.
+        gain: (n,) power gain, linear; None where only the field tells it.
+        field: (n, 2) complex parts along theta and phi, whose squares are the gain; None without phases.
         lines: (n,) where in the file; empty where rows have no line of their own.
         frequency_hz: None where the file does not say.
-        quantity: "gain", "realised gain" or "directivity".
+        quantity: "gain", "realised gain", "directivity", or "field" where the file does not say its power.
         notes: what a user should know, a sentence each.
-        doubt: why it is a guess and not a pattern; empty if it is one.
+        doubt: why it is an estimate and not a pattern; empty if it is one.
     """
 
     theta_deg: FloatArray
@@ -64,13 +70,14 @@ def refuse(message: str, line: int = 0) -> NoReturn:
     raise ScenarioError([Fault(f"line {line}" if line else "", message)])
 
 
-def numbers(lines: Lines, count: int, what: str) -> FloatArray:
+def numbers(lines: Lines, count: int, what: str, separator: str | None = None) -> FloatArray:
     """Return the numbers of some lines, (n, count), all finite.
 
     Args:
-        lines: numbers between blanks or commas.
+        lines: numbers, in quotes or not.
         count: how many each must have.
         what: they are, in words.
+        separator: between them; None for blanks.
 
     Raises:
         ScenarioError: a line has others, or there is none.
@@ -80,12 +87,14 @@ def numbers(lines: Lines, count: int, what: str) -> FloatArray:
     rows = []
     for line, text in lines:
         try:
-            row = [float(word) for word in text.replace(",", " ").split()]
+            row = [float(word) for word in text.replace('"', "").split(separator)]
         except ValueError:
             row = []
-        if len(row) != count or not all(abs(number) < _LARGEST for number in row):
+        if len(row) != count or "_" in text or not all(abs(number) < _LARGEST for number in row):
             amount = "one finite number" if count == 1 else f"{count} finite numbers"
-            refuse(f"got {text.strip()[:60]!r}, must be {amount}: {what}", line)
+            comma = separator != "," and re.search(r"\d,\d", text)
+            advice = "; write decimal points in place of decimal commas" if comma else ""
+            refuse(f"got {text.strip()[:60]!r}, must be {amount}: {what}{advice}", line)
         rows.append(row)
     return np.array(rows)
 
@@ -103,9 +112,9 @@ def rows_of(lines: Lines, start: int, count: float, width: int, what: str) -> Fl
     Raises:
         ScenarioError: there are fewer, or one has other numbers.
     """
-    if not 0 < count <= len(lines) - start:
-        got = len(lines) - start
-        refuse(f"{count:g} rows are announced and {got} lines follow; the file is cut short", lines[-1][0])
+    got = len(lines) - start
+    if not 0 < count <= got or count % 1.0:
+        refuse(f"{count:g} rows are announced and {got} lines follow; is the file cut short?", lines[-1][0])
     return numbers(lines[start : start + int(count)], width, what)
 
 
@@ -129,6 +138,8 @@ def gridded(block: Block, source: str) -> PatternTable:
     Raises:
         ScenarioError: rows are missing, contradict each other or are beyond the sphere.
     """
+    if block.frequency_hz and not _FREQUENCIES_HZ[0] <= block.frequency_hz <= _FREQUENCIES_HZ[1]:
+        refuse(f"its frequency is {block.frequency_hz:g} Hz, must be 1 kHz to 10 THz; is the unit right?")
     theta, phi = np.round(block.theta_deg, 3), np.round(block.phi_deg, 3)
     beyond = (np.abs(theta) > 180.0) | (np.abs(phi) > 360.0)
     _refuse_row(block, beyond, "is beyond the sphere; polar angles go from 0 to 180, azimuths from 0 to 360")
@@ -151,8 +162,12 @@ def gridded(block: Block, source: str) -> PatternTable:
     if field is not None:
         _refuse_row(block, np.any(np.abs(field) > _LARGEST, axis=1), "has a field beyond all measure")
         field = field * np.where(back, -1.0, 1.0)[:, None]
-        gain = np.sum(np.abs(field) ** 2, axis=1)
+        given, gain = gain, np.sum(np.abs(field) ** 2, axis=1)
+        if given is not None:
+            apart = np.abs(gain - given) > SAME_FIELD * given + _WEAK * np.max(given)
+            _refuse_row(block, apart, "has a gain and fields that contradict each other")
     assert gain is not None  # a block has the one or the other
+    _refuse_row(block, gain < 0.0, "has a gain below 0; is a column in decibels read as linear?")
     pole = (rows == 0) | (rows == len(thetas) - 1)
     other = gain[first[rows, np.where(pole, 0, columns)]]
     apart = np.maximum(gain, other) > _SAME * np.minimum(gain, other)
@@ -165,10 +180,12 @@ def gridded(block: Block, source: str) -> PatternTable:
         phi_deg=np.linspace(0.0, 360.0, len(phis), endpoint=False),
         gain=gain[first],
         field=None if field is None else _turned(field[first], turn),
-        frequency_hz=block.frequency_hz if (block.frequency_hz or 0.0) > 0.0 else None,  # some write 0
+        frequency_hz=block.frequency_hz or None,  # some write 0
         quantity=block.quantity,
         source=source,
-        notes=block.notes,
+        notes=(*block.notes, *([f"Estimate: {block.doubt}."] if block.doubt else [])),
+        doubt=block.doubt,
+        lines=np.asarray(block.lines)[first] if len(block.lines) else None,
     )
 
 
@@ -199,8 +216,8 @@ def _refuse_row(block: Block, bad: NDArray[np.bool_], why: str) -> None:
 def _require_even(name: str, angles_deg: FloatArray, end_deg: float) -> None:
     even = np.linspace(0.0, end_deg, len(angles_deg))
     if len(angles_deg) < _FEWEST or np.max(np.abs(angles_deg - even)) > _UNEVEN_DEG:
-        told = ", ".join(f"{angle:g}" for angle in angles_deg[:3])
+        first = ", ".join(f"{angle:g}" for angle in angles_deg[:3])
         refuse(
-            f"{name} are {told} ... {angles_deg[-1]:g} degrees, must go from 0 to {end_deg:g} in equal "
+            f"{name} are {first} ... {angles_deg[-1]:g} degrees, must go from 0 to {end_deg:g} in equal "
             f"steps, {_FEWEST} angles at least; export the whole sphere. Is the file cut short?"
         )

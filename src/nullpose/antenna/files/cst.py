@@ -7,12 +7,31 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
+from nullpose.antenna.files.block import (
+    DBD,
+    SAME_FIELD,
+    Block,
+    FloatArray,
+    Lines,
+    from_db,
+    numbers,
+    refuse,
+    rows_of,
+)
 
 _OHM = 376.730313 / (2.0 * np.pi)  # |E|^2 over this and the power is the gain of a peak field at 1 m
 _HEADING = re.compile(r"([^\[\]]+)\[([^\]]*)\]")
 _LONGEST = 1000  # characters of a heading that are looked at
 _PARTS = ("abs(theta)", "abs(phi)")
+_TOTAL = re.compile(r"abs\((dir|gain|real|rlzd|grlz|e\)).*")
+_QUANTITIES = {"di": "directivity", "ga": "gain", "re": "realised gain", "rl": "realised gain"}
+_QUANTITIES |= {"gr": "realised gain", "e)": "field"}
+_DECIBELS = {"db": 0.0, "dbi": 0.0, "dbd": DBD}
+_OTHER_PARTS = "Its parts along theta and phi do not add up to its total; the total is read."
+_LINEAR = ("", "lin.", "1")
+_AXES = {"zaxis": (0.0, 0.0, 1.0), "xaxis": (1.0, 0.0, 0.0)}
+_UNALIGNED = 1e-6
+_TOLERANCE = 1.01  # of powers that must rise from radiated to stimulated
 
 
 def read_ffs(lines: Lines) -> Iterator[Block]:
@@ -22,25 +41,35 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
         lines: of the file, whose sections begin with lines of "//".
 
     Raises:
-        ScenarioError: a table is faulty, or there is no power.
+        ScenarioError: a table is faulty, there is no power, or the source is turned.
     """
-    heads = [
-        (i, line, text.lower()) for i, (line, text) in enumerate(lines) if text.lstrip().startswith("//")
-    ]
-    found = {
-        word: [i + 1 for i, _, text in heads if word in text] for word in ("power", "#phi", "re(e_theta)")
-    }
+    heads = [(i, text.lower()) for i, (_, text) in enumerate(lines) if text.lstrip().startswith("//")]
+    words = ("#freq", "power", "#phi", "re(e_theta)", *_AXES)
+    found = {word: [i + 1 for i, text in heads if word in text] for word in words}
     blocks = len(found["re(e_theta)"])
     if not found["power"] or len(found["#phi"]) != blocks:
         refuse("the powers, or the counts of azimuths and polar angles, are missing; is the file cut short?")
+    for at in found["#freq"]:
+        if (announced := rows_of(lines, at, 1, 1, "a count of frequencies")[0, 0]) != blocks:
+            refuse(f"{announced:g} frequencies are announced and {blocks} follow; must be the same")
+    for word, straight in _AXES.items():
+        for at in found[word]:
+            axis = rows_of(lines, at, 1, 3, f"the {word} of the source")[0]
+            if np.max(np.abs(axis - straight)) > _UNALIGNED:
+                refuse(
+                    f"its {word} is {axis}, must be {straight}: the source is turned; export it unturned",
+                    lines[at][0],
+                )
     what = "radiated, accepted and stimulated power in W, the frequency in Hz, of each pattern a line each"
     powers = rows_of(lines, found["power"][0], 4 * blocks, 1, what).reshape(-1, 4)
     for power, at, start in zip(powers, found["#phi"], found["re(e_theta)"], strict=True):
         count = float(np.prod(rows_of(lines, at, 1, 2, "the counts of azimuths and polar angles")))
         values = rows_of(lines, start, count, 6, "phi, theta, real and imaginary part of both fields")
-        if not power[1] > 0.0:
+        if not power[1] > 0.0 or np.any(power[:2] > _TOLERANCE * power[1:3]):
             refuse(
-                f"got an accepted power of {power[1]:g} W, must be more than 0", lines[found["power"][0]][0]
+                f"got {power[0]:g} W radiated, {power[1]:g} W accepted and {power[2]:g} W stimulated; must "
+                "be more than 0, each at most the next",
+                lines[found["power"][0]][0],
             )
         yield Block(
             theta_deg=values[:, 1],
@@ -61,35 +90,54 @@ def read_cst(lines: Lines) -> Iterator[Block]:
         ScenarioError: the table is faulty, or has no column of a gain, a directivity or a field.
     """
     heading = [
-        (re.sub(r"\s", "", name).lower(), unit.strip().lower())
+        (re.sub(r"\s", "", name).lower(), re.sub(r"\s", "", unit).lower())
         for name, unit in _HEADING.findall(lines[0][1][:_LONGEST])
     ]
-    columns = {name: i for i, (name, _) in enumerate(heading)}
-    total = next((name for name in columns if re.fullmatch(r"abs\((dir|gain|real|rlzd|e).*\)", name)), "")
-    if not total or "theta" not in columns or "phi" not in columns:
+    units, columns = dict(heading), {name: i for i, (name, _) in enumerate(heading)}
+    total = next(filter(_TOTAL.fullmatch, columns), "")
+    if not total or not all(units.get(name, "").startswith("deg") for name in ("theta", "phi")):
         refuse(
-            "must have columns Theta, Phi and Abs(Dir.), Abs(Gain), Abs(Realized Gain) or Abs(E)", lines[0][0]
+            "must have columns Theta [deg.], Phi [deg.] and Abs(Dir.), Abs(Gain), Abs(Realized Gain), "
+            "Abs(Grlz) or Abs(E)",
+            lines[0][0],
         )
     rows = [row for row in lines[1:] if set(row[1].strip()) != {"-"}]
-    values = numbers(rows, len(heading), ", ".join(name for name, _ in heading))
-    phases = [part.replace("abs", "phase") for part in _PARTS]
-    field = None
+    values = numbers(rows, len(heading), ", ".join(columns))
+    quantity, phases = _QUANTITIES[total[4:6]], [part.replace("abs", "phase") for part in _PARTS]
+    if quantity == "field" and units[total].startswith("db"):  # over whatever, such as 1 V/m
+        of_field = [i for name, i in columns.items() if name in (total, *_PARTS)]
+        values[:, of_field] -= np.max(values[:, columns[total]])
+    power = {
+        name: _power(values[:, columns[name]], units[name], quantity, lines[0][0])
+        for name in (total, *_PARTS)
+        if name in columns
+    }
+    field, notes = None, tuple[str, ...]()
     if columns.keys() >= {*_PARTS, *phases}:
-        powers = np.stack([_power(values, heading, columns[part]) for part in _PARTS], axis=1)
-        field = np.sqrt(powers) * np.exp(1j * np.radians(values[:, [columns[phase] for phase in phases]]))
+        parts = np.stack([power[part] for part in _PARTS], axis=1)
+        if np.mean(np.abs(np.sum(parts, axis=1) - power[total]) > SAME_FIELD * power[total]) > 0.5:
+            notes = (_OTHER_PARTS,)
+        else:
+            field = np.sqrt(parts) * np.exp(1j * np.radians(values[:, [columns[phase] for phase in phases]]))
     yield Block(
         theta_deg=values[:, columns["theta"]],
         phi_deg=values[:, columns["phi"]],
-        gain=_power(values, heading, columns[total]),
+        gain=power[total],
         field=field,
         lines=[line for line, _ in rows],
-        quantity={"d": "directivity", "e": "directivity", "r": "realised gain"}.get(total[4], "gain"),
+        quantity=quantity,
+        notes=notes,
     )
 
 
-def _power(values: FloatArray, heading: list[tuple[str, str]], column: int) -> FloatArray:
-    """Return a column in decibels, in V/m or linear as linear power."""
-    unit = heading[column][1]
-    if unit.startswith("db"):
-        return from_db(values[:, column])
-    return np.abs(values[:, column]) ** (2 if "v" in unit else 1)
+def _power(values: FloatArray, unit: str, quantity: str, line: int) -> FloatArray:
+    """Return a column in decibels, as an amplitude of a field, or linear, as linear power."""
+    if quantity == "field":
+        return from_db(values) if unit.startswith("db") else values**2
+    if unit in _DECIBELS:
+        return from_db(values + _DECIBELS[unit])
+    if unit not in _LINEAR:
+        refuse(
+            f"got a {quantity} in [{unit}], must be in one of [{'], ['.join(_DECIBELS)}] or linear, []", line
+        )
+    return values

@@ -1,20 +1,32 @@
-"""Comma-separated tables: gains, or complex fields, over directions; and profiles."""
+"""Comma-separated tables: gains, or complex fields, over directions, also reports of HFSS; and profiles."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
 from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse
 
-_GAIN = ("theta_deg", "phi_deg", "gain_dbi")
-_FIELD = ("theta_deg", "phi_deg", "re_theta", "im_theta", "re_phi", "im_phi")
 _PROFILE = ("angle_deg", "gain_dbi")
+_FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))
+_IN_DB = ("db(", "gain_dbi")
+_GAINS = {"gain_dbi": "gain"} | {
+    name: quantity
+    for total, quantity in (("gain", "gain"), ("realizedgain", "realised gain"), ("dir", "directivity"))
+    for name in (f"db({total}total)", f"{total}total")
+}
+_ALLOWED = (
+    "theta_deg,phi_deg and gain_dbi or re_theta,im_theta,re_phi,im_phi; or of a report of HFSS Theta [deg], "
+    "Phi [deg] and dB(GainTotal), dB(RealizedGainTotal), dB(DirTotal), or these without dB"
+)
+_UNITS = {"hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9}
 
 
 def read_csv(lines: Lines) -> Iterator[Block]:
-    """Yield the one pattern of a table.
+    """Yield the patterns of a table: one for each frequency.
 
     Args:
         lines: of the file.
@@ -22,15 +34,30 @@ def read_csv(lines: Lines) -> Iterator[Block]:
     Raises:
         ScenarioError: the table is faulty.
     """
-    values = _columns(lines, (_FIELD, _GAIN))
-    has_field = values.shape[1] == len(_FIELD)
-    yield Block(
-        theta_deg=values[:, 0],
-        phi_deg=values[:, 1],
-        gain=None if has_field else from_db(values[:, 2]),
-        field=values[:, 2::2] + 1j * values[:, 3::2] if has_field else None,
-        lines=[line for line, _ in lines[1:]],
-    )
+    header, values = _table(lines)
+    names = [re.sub(r"\[deg\]$", "_deg", re.sub(r"\[(dbi?)?\]$", "", name)) for name in header]
+    columns = dict(zip(names, values.T, strict=True))
+    total = next((name for name in _GAINS if name in columns), "")
+    if not columns.keys() >= {"theta_deg", "phi_deg", *([total] if total else chain(*_FIELDS))}:
+        refuse(f"got the header {lines[0][1].strip()[:60]!r}, must have {_ALLOWED}", lines[0][0])
+    if len(columns) < len(names):
+        refuse(f"a column is given twice: {', '.join(names)}; keep one", lines[0][0])
+    each_hz = [_UNITS[unit] * columns[f"freq[{unit}]"] for unit in _UNITS if f"freq[{unit}]" in columns]
+    of_hz = each_hz[0] if each_hz else np.zeros(len(values))
+    for frequency_hz in np.unique(of_hz):
+        rows = np.flatnonzero(of_hz == frequency_hz)
+        part = {name: column[rows] for name, column in columns.items()}
+        gain = from_db(part[total]) if total.startswith(_IN_DB) else part.get(total)
+        fields = [] if total else [part[real] + 1j * part[imaginary] for real, imaginary in _FIELDS]
+        yield Block(
+            theta_deg=part["theta_deg"],
+            phi_deg=part["phi_deg"],
+            gain=gain,
+            field=np.stack(fields, axis=1) if fields else None,
+            lines=[lines[1 + row][0] for row in rows.tolist()],
+            frequency_hz=float(frequency_hz),
+            quantity=_GAINS.get(total, "gain"),
+        )
 
 
 def profile_of(lines: Lines) -> tuple[FloatArray, FloatArray]:
@@ -42,21 +69,20 @@ def profile_of(lines: Lines) -> tuple[FloatArray, FloatArray]:
     Raises:
         ScenarioError: the table is faulty, or does not span the angles.
     """
-    values = _columns(lines, (_PROFILE,))
-    values = values[np.argsort(values[:, 0])]
-    angle = values[:, 0]
+    header, values = _table(lines)
+    if not {*_PROFILE} <= {*header}:
+        refuse(f"got the header {lines[0][1].strip()[:60]!r}, must have {','.join(_PROFILE)}", lines[0][0])
+    values = values[:, [header.index(name) for name in _PROFILE]]
+    angle, gain_dbi = values[np.argsort(values[:, 0])].T
     if len(angle) < 2 or angle[0] != 0.0 or angle[-1] != 180.0 or not np.all(np.diff(angle) > 0.0):
-        told = ", ".join(f"{x:g}" for x in (*angle[:2], angle[-1]))
-        refuse(f"angles are {told} degrees (first two, last), must go from 0 to 180, each given once")
-    return angle, from_db(values[:, 1])
+        first = ", ".join(f"{x:g}" for x in (*angle[:2], angle[-1]))
+        refuse(f"angles are {first} degrees (first two, last), must go from 0 to 180, each given once")
+    return angle, from_db(gain_dbi)
 
 
-def _columns(lines: Lines, kinds: Sequence[tuple[str, ...]]) -> FloatArray:
-    """Return the columns of the first kind that the header has, (n, columns)."""
-    header = [word.strip().strip('"').lower() for word in lines[0][1].split(",")]
-    wanted = next((kind for kind in kinds if set(kind) <= set(header)), None)
-    if wanted is None:
-        allowed = " or ".join(",".join(kind) for kind in kinds)
-        refuse(f"got the header {lines[0][1].strip()[:60]!r}, must have {allowed}", lines[0][0])
-    values = numbers(lines[1:], len(header), ",".join(header))
-    return values[:, [header.index(name) for name in wanted]]
+def _table(lines: Lines) -> tuple[list[str], FloatArray]:
+    """Return a table's header, without quotes and blanks, in lower case, and its numbers, (n, columns)."""
+    text = lines[0][1]
+    separator = next((mark for mark in "\t;" if mark in text), ",")
+    header = [re.sub(r"[\s\"]", "", name).lower() for name in text.split(separator)]
+    return header, numbers(lines[1:], len(header), ",".join(header), separator)

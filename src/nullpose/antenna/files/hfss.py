@@ -2,43 +2,61 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, numbers, rows_of
+from nullpose.antenna.files.block import Block, Lines, numbers, refuse, rows_of
 
-_NOTE = "The file has no power: its fields are scaled to an average of 1, which is directivity."
+_MOST_ANGLES = 3601  # steps of .1 degrees
 
 
 def read_ffd(lines: Lines) -> Iterator[Block]:
     """Yield the patterns of a file, polar angles in the outer loop.
 
     Args:
-        lines: of the file: first, last and count of polar angles, the same of azimuths, then frequencies.
+        lines: of the file: first, last and count of polar angles, the same of azimuths, then the frequencies,
+            which older files leave out where there is one.
 
     Raises:
-        ScenarioError: a table is faulty.
+        ScenarioError: a table is faulty, or there are fewer than announced.
     """
     ranges = numbers(lines[:2], 3, "an angle's first, last and count")
-    count, frequency_hz, at = ranges[0, 2] * ranges[1, 2], None, 2
+    for (line, _), steps in zip(lines, ranges[:, 2], strict=False):
+        if not 1.0 <= steps <= _MOST_ANGLES or steps % 1.0:
+            refuse(f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}", line)
+    angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
+    theta, phi = np.meshgrid(*angles, indexing="ij")
+    at, found, announced, frequency_hz = 2, 0, None, None
     while at < len(lines):
-        number, text = lines[at]
-        if text.lstrip().lower().startswith("freq"):  # "Frequencies n", "Freq n", "Frequency f"
-            words = text.split()
-            frequency_hz = float(numbers([(number, " ".join(words[1:]))], 1, "a frequency in Hz")[0, 0])
+        if heading := _frequency(lines, at):
+            word, number = heading
             at += 1
-            continue
-        values = rows_of(lines, at, count, 4, "real and imaginary part of the fields along theta and phi")
-        angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
-        theta, phi = np.meshgrid(*angles, indexing="ij")
+            if word == "frequencies" or _frequency(lines, at):
+                announced = number
+                continue
+            frequency_hz = number
+        values = rows_of(
+            lines, at, theta.size, 4, "real and imaginary part of the fields along theta and phi"
+        )
         yield Block(
             theta_deg=theta.ravel(),
             phi_deg=phi.ravel(),
             field=values[:, ::2] + 1j * values[:, 1::2],
             lines=[line for line, _ in lines[at : at + len(values)]],
             frequency_hz=frequency_hz,
-            quantity="directivity",
-            notes=(_NOTE,),
+            quantity="field",
         )
-        at += len(values)
+        at, found = at + len(values), found + 1
+    if announced not in (None, found):
+        refuse(f"{announced:g} frequencies are announced and {found} follow; must be the same")
+
+
+def _frequency(lines: Lines, at: int) -> tuple[str, float] | None:
+    """Return the word and the number of a line such as "Frequencies 3" or "Frequency 2.4e9", or None."""
+    line, text = lines[at] if at < len(lines) else (0, "")
+    word, _, rest = text.strip().partition(" ")
+    if not re.match("freq", word, re.IGNORECASE):
+        return None
+    return word.lower(), float(numbers([(line, rest)], 1, "a count of frequencies, or one in Hz")[0, 0])

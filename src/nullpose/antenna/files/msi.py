@@ -1,75 +1,122 @@
-"""Two cuts from a planning tool: .msi, .pln."""
+"""Two cuts from a planning tool: .msi, .pln, .prn."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from contextlib import suppress
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
+from nullpose.antenna.files.block import DBD, Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
 
-_DBD = 2.15  # dB: a half-wave dipole over an isotropic antenna
-_FLAT_DB = 0.5
-_WEAK_DB = 20.0  # below the peak; what is weaker may differ from side to side
+_CUTS = ("HORIZONTAL", "VERTICAL")
+_KEYS = ("GAIN", "FREQUENCY", *_CUTS)
+_OMNI_DB = 1.5  # peak to peak of the horizontal cut
+_CROSSING_DB = 1.0
+_WEAK_DB = 20.0  # below the peak; what is weaker may differ
+_WIDEST_DEG = 10.0  # between two rows of a cut
+_NEGATIVE_DB = 0.05
 _CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
-_ALL_ROUND = "Two cuts, and the horizontal one is flat: read as the same all round the z axis."
 _DOUBT = (
-    "it is not the same all round: its cuts change by {:.1f} dB from side to side; two cuts do not tell what "
-    "is between them, and an estimate is off by 4 to 18 dB. Ask the maker for the whole pattern"
+    "it is an estimate by the sum of losses: its horizontal cut changes by {:.1f} dB, and two cuts do not "
+    "tell what is between them"
 )
 
 
 def read_msi(lines: Lines) -> Iterator[Block]:
-    """Yield the pattern of an antenna that is the same all round, or an estimate of another one's.
+    """Yield the profile of an antenna that is the same all round, or an estimate of another one's pattern.
 
-    Losses are positive; the vertical angle grows downwards from ahead, and behind is 180 degrees.
+    Losses are positive; the vertical angle grows downwards from ahead, and behind is 180 degrees. The
+    estimate is the sum of losses ``L(theta, phi) = H(phi) + w V(theta, ahead) + (1 - w) max(0, V(theta,
+    behind) - V(90, behind))`` with ``w = (1 + cos phi) / 2``: both cuts are met if nothing is lost ahead.
+
+    Source: 3GPP TR 38.901, table 7.3-1, for the sum; Gil et al., VTC 1999, for the weights of both halves.
 
     Args:
         lines: of the file.
 
     Raises:
-        ScenarioError: a cut or the gain is missing or faulty.
+        ScenarioError: a cut or the gain is missing or faulty, or the cuts contradict each other.
     """
-    keys = {text.split()[0].upper(): (i, text.split(None, 1)[-1]) for i, (_, text) in enumerate(lines)}
-    across, down = (_loss_db(lines, keys, name) for name in ("HORIZONTAL", "VERTICAL"))
-    at, gain = keys.get("GAIN", (0, ""))
-    amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", gain.strip(), flags=re.IGNORECASE))]
+    keys: dict[str, tuple[int, str]] = {}
+    for i, (line, text) in enumerate(lines):
+        key = text.split()[0].upper()
+        if key in keys and key in _KEYS:
+            refuse(f"{key} is given twice; keep one antenna in a file", line)
+        keys[key] = i, text.split(None, 1)[-1]
+    for name in _CUTS:
+        if name not in keys:
+            refuse(f"the cut {name} is missing; both must be there. Is the file cut short?")
+    across, down = (_loss_db(lines, keys, name) for name in _CUTS)
+    for at_deg, where in ((0, "ahead"), (180, "behind")):
+        both_db = across[at_deg], down[at_deg]
+        if min(both_db) < _WEAK_DB and abs(both_db[0] - both_db[1]) > _CROSSING_DB:
+            refuse(
+                f"{where}, where its cuts cross, the horizontal one has a loss of {both_db[0]:g} dB and the "
+                f"vertical one {both_db[1]:g} dB; must be the same. Is the vertical angle measured from the "
+                "zenith? It must be 0 ahead and 90 below"
+            )
+    at, text = keys.get("GAIN", (0, ""))
+    amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
     gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
-    stated = "dBi" if "dbi" in gain.lower() else "dBd"
+    stated, more_db = ("dBi", 0.0) if "dbi" in text.lower() else ("dBd", DBD)
+    notes = [f"Its gain is read as {stated}."]
     theta, phi = np.meshgrid(np.arange(181), np.arange(360), indexing="ij")
-    front, back = down[(theta - 90) % 360], down[(270 - theta) % 360]
-    strong = np.minimum(front, back) < np.min(down) + _WEAK_DB
-    uneven_db = max(float(np.ptp(across)), float(np.max(np.abs(front - back)[strong])))
-    # between the cuts: the vertical one by its weight ahead, and what the horizontal one adds at the equator
-    ahead = 0.5 + 0.5 * np.cos(np.radians(phi))
-    added = across[-phi % 360] - ahead * across[0] - (1.0 - ahead) * across[180]
-    loss = ahead * front + (1.0 - ahead) * back + added * np.sin(np.radians(theta))
-    loss = np.maximum(loss, min(np.min(across), np.min(down)))
-    frequency_hz = None
-    with suppress(KeyError, ValueError):  # a range of frequencies is none
-        frequency_hz = 1e6 * float(keys["FREQUENCY"][1])
+    front_db, back_db = down[(theta - 90) % 360], down[(270 - theta) % 360]
+    ripple_db, doubt = float(np.ptp(across)), ""
+    if ripple_db <= _OMNI_DB:
+        gain = 0.5 * (from_db(-front_db) + from_db(-back_db))
+        strong = np.minimum(front_db, back_db) < _WEAK_DB
+        apart_db = float(np.max(np.abs(front_db - back_db)[strong], initial=0.0))
+        notes.append(
+            "Read as the same all round, by the mean of the vertical cut's halves. Not modelled: the "
+            f"horizontal cut's ripple of {ripple_db:.1f} dB, and {apart_db:.1f} dB between the halves."
+        )
+    else:
+        ahead = 0.5 + 0.5 * np.cos(np.radians(phi))
+        behind_db = np.maximum(0.0, back_db - down[180])
+        gain = from_db(-(across[-phi % 360] + ahead * front_db + (1.0 - ahead) * behind_db))
+        gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
+        doubt = _DOUBT.format(ripple_db)
+        notes.append(_CLOCKWISE)
     yield Block(
         theta_deg=theta.ravel().astype(float),
         phi_deg=phi.ravel().astype(float),
-        gain=from_db(gain_dbi + (_DBD if stated == "dBd" else 0.0) - loss).ravel(),
-        frequency_hz=frequency_hz,
-        notes=(
-            f"Its gain is read as {stated}.",
-            _CLOCKWISE,
-            *([_ALL_ROUND] if uneven_db <= _FLAT_DB else []),
-        ),
-        doubt=_DOUBT.format(uneven_db) if uneven_db > _FLAT_DB else "",
+        gain=(gain * from_db(gain_dbi + more_db)).ravel(),
+        frequency_hz=_frequency_hz(keys.get("FREQUENCY", (0, ""))[1], notes),
+        notes=tuple(notes),
+        doubt=doubt,
     )
+
+
+def _frequency_hz(text: str, notes: list[str]) -> float | None:
+    """Return the frequency that a file states, with a note on how it is read; None for a range or none."""
+    try:
+        frequency_hz = 1e6 * float(re.sub(r"MHz$", "", text.strip(), flags=re.IGNORECASE))
+    except ValueError:
+        notes.append(f"Its FREQUENCY, {text.strip()[:40]!r}, is not one number in MHz: not known.")
+        return None
+    notes.append(f"Its FREQUENCY, {text.strip()}, is read in MHz.")
+    return frequency_hz
 
 
 def _loss_db(lines: Lines, keys: dict[str, tuple[int, str]], name: str) -> FloatArray:
     """Return a cut's loss at every whole degree, (360,)."""
-    if name not in keys:
-        refuse(f"the cut {name} is missing; both must be there. Is the file cut short?")
     at, count = keys[name]
     rows = numbers([(lines[at][0], count)], 1, f"how many rows the cut {name} has")[0, 0]
     values = rows_of(lines, at + 1, rows, 2, "an angle and a loss in dB")
-    angle, order = np.unique(values[:, 0] % 360.0, return_index=True)
+    end = at + 1 + len(values)
+    if end < len(lines) and re.match(r"[-+.\d]", lines[end][1].strip()):
+        refuse(f"the cut {name} has more rows than the {rows:g} that are announced", lines[end][0])
+    angle, order, which = np.unique(np.round(values[:, 0] % 360.0, 3), return_index=True, return_inverse=True)
+    gaps = np.diff(angle, append=angle[0] + 360.0)
+    far = f"is too far from the next: rows go all round, at most {_WIDEST_DEG:g} degrees apart"
+    faults = [
+        (values[:, 1] < -_NEGATIVE_DB, "has a loss below 0; losses are positive"),
+        (values[:, 1] != values[order, 1][which], "is given twice, with other losses; keep one"),
+        (np.isin(np.arange(len(values)), order[gaps > _WIDEST_DEG]), far),
+    ]
+    for wrong, why in faults:
+        for i in np.flatnonzero(wrong)[:1]:
+            refuse(f"the cut {name} at {values[i, 0]:g} degrees {why}", lines[at + 1 + i][0])
     return np.asarray(np.interp(np.arange(360.0), angle, values[order, 1], period=360.0))

@@ -1,4 +1,4 @@
-"""Output of NEC-2: nec2c, 4nec2."""
+"""Output of NEC: nec2c, 4nec2, EZNEC."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from nullpose.antenna.files.block import Block, Lines, from_db, numbers, refuse
 
 _FREQUENCY = re.compile(r"FREQUENCY\s*[:=]\s*(\S+)\s*MHZ", re.IGNORECASE)
 _ROW = "theta, phi, three gains in dB, axial ratio, tilt, then magnitude and phase of both fields"
+_STRONG = 1e-3  # of the strongest; weaker ones have few digits
 _HEADINGS = 8  # lines, and more than there are between the title and the first row
 _SENSE = re.compile(r"\b(?:LINEAR|RIGHT|LEFT)\b")  # blank at an exact null
 
@@ -25,6 +26,11 @@ def read_nec(lines: Lines) -> Iterator[Block]:
         ScenarioError: a table is faulty.
     """
     frequency_hz = None
+    if not any("RADIATION PATTERNS" in text for _, text in lines):
+        refuse(
+            "this is output of NEC without a pattern; add an RP card to the input, such as "
+            "RP 0 37 73 1000 0 0 5 5 for the whole sphere, and run NEC again"
+        )
     for at, (line, text) in enumerate(lines):
         if found := _FREQUENCY.search(text):
             frequency_hz = 1e6 * float(numbers([(line, found[1])], 1, "a frequency in MHz")[0, 0])
@@ -36,14 +42,17 @@ def read_nec(lines: Lines) -> Iterator[Block]:
         values = numbers(rows, 11, _ROW)
         gain = from_db(values[:, 4])
         size = values[:, [7, 9]] * (gain > 0.0)[:, None]  # at a floor the field has rounding errors left
-        strength = np.sum(size**2)
-        if not strength > 0.0:
+        strength = np.sum(size**2, axis=1)
+        strong = (strength > _STRONG * np.max(strength)) & (gain > 0.0)
+        if not np.any(strong):
             refuse("the table has no field but zero, so there is no pattern", line)
+        scale = np.median(gain[strong] / strength[strong])
         heading = "".join(row for _, row in lines[at:start])
         yield Block(
             theta_deg=values[:, 0],
             phi_deg=values[:, 1],
-            field=size * np.exp(1j * np.radians(values[:, [8, 10]])) * np.sqrt(np.sum(gain) / strength),
+            gain=gain,
+            field=size * np.exp(1j * np.radians(values[:, [8, 10]])) * np.sqrt(scale),
             lines=[number for number, _ in rows],
             frequency_hz=frequency_hz,
             quantity="directivity" if "DIRECTIVE" in heading else "gain",
@@ -51,4 +60,4 @@ def read_nec(lines: Lines) -> Iterator[Block]:
 
 
 def _is_row(text: str) -> bool:
-    return re.match(r"\s*-?\d", text) is not None
+    return re.match(r"\s*-?\.?\d", text) is not None

@@ -12,28 +12,30 @@ from pathlib import Path
 import numpy as np
 
 from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse
+from nullpose.antenna.files.checks import require_antenna, require_fit, require_rows
 from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
 from nullpose.antenna.files.hfss import read_ffd
 from nullpose.antenna.files.msi import read_msi
 from nullpose.antenna.files.nec import read_nec
-from nullpose.antenna.harmonics import fit, supported_degree
-from nullpose.antenna.table import PatternTable
+from nullpose.antenna.table import PatternTable, mean_gain
 from nullpose.errors import ScenarioError
 from nullpose.files import read_bytes
 
 _MOST_BYTES = 60_000_000  # fields of several frequencies, 65,341 rows for 1 degree; compressed or not
 _SAME_FREQUENCY = 1e-3
-_OVER_FED = 10.0**0.05
-_FLOOR, _MOST_FLOOR = 1e-8, 0.01  # of the peak, and of the sphere
-_MISSED = 0.01  # root mean square that the degree which solvers take may miss, of the peak
+_MOST_NAMED = 8  # frequencies in a message
+_OFF_DB = 0.5  # of a directivity's average
+_NO_POWER = "The file has no power: its fields are scaled to an average of 1, which is directivity."
+_OTHERS = "Other tables at this frequency do not cover the sphere; they are not read."
+_TWO_CUTS = 'write two_cuts = "sum-of-losses" in [antenna] to solve with the estimate'
 
 FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
-    "nec": (r"RADIATION PATTERNS", read_nec),
+    "nec": (r"RADIATION PATTERNS|NUMERICAL ELECTROMAGNETICS CODE|STRUCTURE SPECIFICATION", read_nec),
     "ffs": (r"^//.*Re\(E_Theta\)", read_ffs),
-    "cst": (r"\A\s*Theta\s*\[", read_cst),
-    "ffd": (r"\A\s*(?:[-+\d.eE]+\s+){6}Freq", read_ffd),
-    "csv": (r"\A[^\n]*theta_deg", read_csv),
+    "cst": (r"\A\s*Theta\s*\[.*Abs\(", read_cst),
+    "ffd": (r"\A(?:[ \t]*[-+\d.eE]+){3}[ \t]*\n(?:[ \t]*[-+\d.eE]+){3}[ \t]*$", read_ffd),
+    "csv": (r"\A[^\n]*theta[^\n]*[,;\t]|\A[^\n]*[,;\t][^\n]*theta", read_csv),
     "msi": (r"^\s*(?:HORIZONTAL|VERTICAL)\s+\d+\s*$", read_msi),
 }
 """By name: what a file of the format has in it, and what reads it."""
@@ -52,8 +54,7 @@ def read_pattern(
         path: the file, which may be compressed by gzip.
         file_format: a key of ``FORMATS``; None to let the file tell it.
         frequency_hz: which of several frequencies, to a thousandth.
-        estimate: whether two cuts are read as a guess, for looking at, where they do not tell the pattern;
-            the notes then say why nothing should be solved with it.
+        estimate: whether two cuts are read as an estimate where they do not tell the pattern; a note says so.
 
     Raises:
         ScenarioError: the file cannot be read, or would mislead.
@@ -62,12 +63,13 @@ def read_pattern(
     try:
         lines = _lines(Path(source))
         name = _format_of("\n".join(text for _, text in lines), file_format)
-        block = _picked(list(FORMATS[name][1](lines)), frequency_hz)
-        table = _scaled(gridded(block, f"{Path(source).name} ({name})"))
-        doubts = [*filter(None, [block.doubt]), *_misleading(table)]
-        if doubts and not (estimate and block.doubt):
-            refuse(doubts[0])
-        return replace(table, notes=(*table.notes, *(f"Not fit for solving: {doubt}" for doubt in doubts)))
+        table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(source).name} ({name})")
+        if not table.doubt:
+            require_antenna(table := _scaled(table))
+            require_rows(table, require_fit(table))
+        elif not estimate:
+            refuse(f"{table.doubt}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+        return table
     except ScenarioError as error:
         raise ScenarioError(error.faults, source) from None
 
@@ -83,34 +85,13 @@ def read_profile(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray]:
     """
     source = os.fspath(path)
     try:
-        return profile_of(_lines(Path(source)))
+        angle_deg, gain = profile_of(_lines(Path(source)))
+        theta_deg, phi_deg = np.linspace(0.0, 180.0, 721), np.arange(0.0, 360.0, 90.0)
+        fine = np.repeat(np.interp(theta_deg, angle_deg, gain)[:, None], len(phi_deg), axis=1)
+        require_antenna(PatternTable(theta_deg=theta_deg, phi_deg=phi_deg, gain=fine))
+        return angle_deg, gain
     except ScenarioError as error:
         raise ScenarioError(error.faults, source) from None
-
-
-def solid_angles(table: PatternTable) -> FloatArray:
-    """Return each direction's share of the sphere, (t, p), for polynomials of the cosine exactly.
-
-    Source: Clenshaw and Curtis, 1960: weights for equal steps of the polar angle.
-
-    Args:
-        table: any.
-    """
-    steps = len(table.theta_deg) - 1
-    k = np.arange(1, steps // 2 + 1)
-    parts = np.where(2 * k == steps, 1.0, 2.0) / (4.0 * k**2 - 1.0)
-    bands = 1.0 - np.cos(2.0 * np.radians(np.outer(table.theta_deg, k))) @ parts
-    bands[[0, -1]] *= 0.5
-    return np.outer(bands / steps, np.full(len(table.phi_deg), 1.0 / len(table.phi_deg)))
-
-
-def mean_gain(table: PatternTable) -> float:
-    """Return a table's mean gain over the sphere: what is radiated of the power that is fed.
-
-    Args:
-        table: any.
-    """
-    return float(np.sum(solid_angles(table) * table.gain))
 
 
 def _lines(path: Path) -> Lines:
@@ -127,7 +108,8 @@ def _lines(path: Path) -> Lines:
         raise
     except (OSError, ValueError, zlib.error) as error:
         refuse(f"it cannot be read: {getattr(error, 'strerror', None) or error}")
-    text = content.decode("utf-8-sig", errors="replace")
+    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    text = content.decode(encoding, errors="replace")
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     if not lines:
         refuse("the file is empty; must hold a radiation pattern")
@@ -138,68 +120,68 @@ def _format_of(text: str, stated: str | None) -> str:
     known = ", ".join(FORMATS)
     if stated is not None and stated not in FORMATS:
         refuse(f"got the format {stated!r}, must be one of {known}")
-    told = [name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE)]
-    if stated is None and not told:
+    looks = [
+        name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
+    ]
+    if stated is None and not looks:
         refuse(
             f"it has the marks of no known format; must be one of {known}. Export the pattern in one of them"
         )
-    if stated is not None and stated not in told:
-        refuse(f"it is stated to be {stated}, and looks like {told[0] if told else f'none of {known}'}")
-    return stated or told[0]
+    if stated is not None and stated not in looks:
+        refuse(f"it is stated to be {stated}, and looks like {looks[0] if looks else f'none of {known}'}")
+    return stated or looks[0]
 
 
-def _picked(blocks: list[Block], frequency_hz: float | None) -> Block:
-    """Return the block of a frequency, or the only one."""
+def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> PatternTable:
+    """Return the table of a frequency, or of the only one."""
     if not blocks:
         refuse("there is no table of gains or fields in it; is the file cut short?")
-    known = ", ".join(f"{b.frequency_hz:.10g}" for b in blocks[:20] if b.frequency_hz) or "not told"
-    if frequency_hz is None and len(blocks) > 1:
-        refuse(
-            f"it has {len(blocks)} tables, at {known} Hz; state one frequency, by --frequency or frequency_hz"
-        )
-    if frequency_hz is None:
-        return blocks[0]
-    if not 0.0 < frequency_hz < np.inf:
+    if frequency_hz is not None and not 0.0 < frequency_hz < np.inf:
         refuse(f"got the frequency {frequency_hz:g} Hz, must be more than 0 and finite")
-    told = [replace(block, frequency_hz=block.frequency_hz or frequency_hz) for block in blocks]
-    near = [b for b in told if abs((b.frequency_hz or 0.0) - frequency_hz) <= _SAME_FREQUENCY * frequency_hz]
-    if not near:
-        refuse(f"got the frequency {frequency_hz:.10g} Hz, must be one of the file's: {known} Hz")
-    return near[0]
+    each_hz = [block.frequency_hz or frequency_hz or 0.0 for block in blocks]
+    known = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
+    more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
+    listed = f"{', '.join(known[:_MOST_NAMED])}{more} Hz" if known else "frequencies that it does not say"
+    if frequency_hz is None and len(set(each_hz)) > 1:
+        refuse(
+            f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"
+        )
+    nearest_hz = min(each_hz, key=lambda hz: abs(hz - (frequency_hz or hz)))
+    if frequency_hz is not None and abs(nearest_hz - frequency_hz) > _SAME_FREQUENCY * frequency_hz:
+        refuse(f"got the frequency {frequency_hz:.10g} Hz, must be one of the file's: {listed}")
+    whole, faults = [], []
+    for block in (block for block, hz in zip(blocks, each_hz, strict=True) if hz == nearest_hz):
+        try:
+            whole.append(gridded(replace(block, frequency_hz=nearest_hz), source))
+        except ScenarioError as error:
+            faults.append(error)
+    if not whole:
+        raise faults[0]
+    if len(whole) > 1:
+        starts = ", ".join(str(np.min(table.lines)) for table in whole if table.lines is not None)
+        refuse(f"it has {len(whole)} tables at one frequency, from the lines {starts} on; keep one of them")
+    return replace(whole[0], notes=(*whole[0].notes, *([_OTHERS] if faults else [])))
 
 
 def _scaled(table: PatternTable) -> PatternTable:
-    """Return the table, a directivity with an average of 1."""
+    """Return the table, a directivity or a field without a power with an average of 1."""
     mean = mean_gain(table)
     if not mean > 0.0:
         refuse("no direction has any gain; is a column missing?")
-    if table.quantity != "directivity":
+    if table.quantity not in ("directivity", "field"):
         return table
-    field = None if table.field is None else table.field / np.sqrt(mean)
-    return replace(table, gain=table.gain / mean, field=field)
-
-
-def _misleading(table: PatternTable) -> Iterable[str]:
-    """Yield the faults of a table that is not a valid antenna pattern."""
-    peak, mean = float(np.max(table.gain)), mean_gain(table)
-    floor = float(np.sum(solid_angles(table)[table.gain <= _FLOOR * peak]))
-    if floor > _MOST_FLOOR:
-        yield (
-            f"{100.0 * floor:.0f} % of all directions have no gain (a floor, such as -999.99 dB), and would "
-            "be taken for nulls; state what the antenna does there"
-        )
-    if mean > _OVER_FED:
-        yield (
-            f"the average gain over the sphere is {10.0 * np.log10(mean):.1f} dB: it radiates more than "
-            "it is fed; must be 0 dB at most. Is the unit right: dBi, dBd, linear?"
-        )
-    found = fit(table, supported_degree(table))
-    missed = found.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg)) - table.gain
-    part = float(np.sqrt(np.sum(solid_angles(table) * missed**2))) / peak
-    if part > _MISSED:
-        step = 180.0 / (len(table.theta_deg) - 1)
-        yield (
-            f"steps of {step:g} degrees do not follow the pattern: smoothed to the degree that they allow, "
-            f"{found.degree}, it is off by {100.0 * part:.0f} % of the peak, must be 1 % at most; export "
-            "finer steps, or fields with their phases"
-        )
+    mean_db, note = 10.0 * np.log10(mean), _NO_POWER
+    if table.quantity == "directivity":
+        note = f"Its directivity averages to {mean_db:.2f} dB over the sphere; it is scaled to 0 dB."
+        if abs(mean_db) > _OFF_DB:
+            refuse(
+                f"its directivity averages to {mean_db:.1f} dB over the sphere, must be 0 dB. Is the unit "
+                "right?"
+            )
+    return replace(
+        table,
+        gain=table.gain / mean,
+        field=None if table.field is None else table.field / np.sqrt(mean),
+        quantity="directivity",
+        notes=(*table.notes, *([note] if table.quantity == "field" or abs(mean_db) >= 0.01 else [])),
+    )

@@ -1,0 +1,99 @@
+"""Whether a table is the pattern of an antenna, and whether its rows fit each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.antenna.files.block import FloatArray, refuse
+from nullpose.antenna.harmonics import (
+    HIGHEST_DEGREE,
+    MOST_MISSED,
+    Harmonics,
+    fit,
+    missed_share,
+    supported_degree,
+)
+from nullpose.antenna.table import PatternTable, mean_gain, solid_angles
+
+_OVER_FED = 10.0**0.05
+_FLOOR, _MOST_FLOOR = 1e-8, 0.01  # of the peak, and of the sphere
+_STRONG = 1e-2  # of the peak: 20 dB below
+_APART_DB, _MEDIANS, _TIMES = 0.08, 20.0, 2.0  # how far off a lone row is, of others
+
+
+def require_antenna(table: PatternTable) -> None:
+    """Refuse gains that no antenna has.
+
+    Args:
+        table: any.
+
+    Raises:
+        ScenarioError: it radiates more than it is fed, or many directions have no gain.
+    """
+    mean = mean_gain(table)
+    floor = float(np.sum(solid_angles(table)[table.gain <= _FLOOR * np.max(table.gain)]))
+    if floor > _MOST_FLOOR:
+        refuse(
+            f"{100.0 * floor:.0f} % of all directions have no gain (a floor, such as -999.99 dB), and would "
+            "be taken for nulls; state what the antenna does there"
+        )
+    if mean > _OVER_FED:
+        refuse(
+            f"the average gain over the sphere is {10.0 * np.log10(mean):.1f} dB: it radiates more than "
+            "it is fed; must be 0 dB at most. Is the unit right: dBi, dBd, linear?"
+        )
+
+
+def require_fit(table: PatternTable) -> Harmonics:
+    """Return the harmonics of a table, which must follow it.
+
+    Args:
+        table: any.
+
+    Raises:
+        ScenarioError: its steps are too coarse, or its beam is too narrow.
+    """
+    found = fit(table, supported_degree(table))
+    part, step_deg = missed_share(table, found), 180.0 / (len(table.theta_deg) - 1)
+    if part > MOST_MISSED:
+        advice = "export finer steps, or fields with their phases"
+        if found.degree == HIGHEST_DEGREE:
+            advice = f"solvers take no degree above {HIGHEST_DEGREE}, and its beam needs a higher one"
+        refuse(
+            f"steps of {step_deg:g} degrees do not follow the pattern: smoothed to the degree that they "
+            f"allow, {found.degree}, it is off by {100.0 * part:.0f} % of the peak, must be 1 % at "
+            f"most; {advice}"
+        )
+    return found
+
+
+def require_rows(table: PatternTable, found: Harmonics) -> None:
+    """Refuse a row within 20 dB of the peak that does not fit those around it.
+
+    Args:
+        table: any.
+        found: its harmonics.
+
+    Raises:
+        ScenarioError: with the first such row.
+    """
+    smooth = found.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg))
+    gain, smooth = (np.maximum(values, _STRONG * np.max(table.gain)) for values in (table.gain, smooth))
+    apart_db = np.abs(10.0 * np.log10(gain / smooth))
+    typical_db = np.median(apart_db[gain == table.gain])
+    alone = apart_db > np.maximum(max(_APART_DB, _MEDIANS * typical_db), _TIMES * _beside(apart_db))
+    high = gain > _TIMES * _beside(gain)
+    high[[0, -1]] = False  # a beam along the axis is one direction wide
+    for row, column in np.argwhere(alone | high)[:1]:
+        refuse(
+            f"theta = {table.theta_deg[row]:g}, phi = {table.phi_deg[column]:g} degrees has a gain of "
+            f"{10.0 * np.log10(table.gain[row, column] + 1e-30):.2f} dBi, which does not fit those around "
+            "it; is it written right?",
+            0 if table.lines is None else int(table.lines[row, column]),
+        )
+
+
+def _beside(values: FloatArray) -> FloatArray:
+    """Return the larger of both neighbours along theta, (t, p), at the poles the one that there is."""
+    inside = np.pad(values, ((1, 1), (0, 0)), mode="reflect")
+    return np.asarray(np.maximum(inside[:-2], inside[2:]))

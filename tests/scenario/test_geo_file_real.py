@@ -1,0 +1,259 @@
+"""Geographic files as they are found: damaged, as large as a country, with small faults."""
+
+from __future__ import annotations
+
+import random
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pyogrio
+import pytest
+import shapely
+from geo_files import (
+    HERE,
+    SCENE,
+    WRITERS,
+    Feature,
+    in_metres,
+    kept_out,
+    kml,
+    placemark,
+    scene,
+    star,
+    write_gdal,
+    write_geojson,
+    zones_of,
+)
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import load
+
+
+@pytest.mark.parametrize("ending", [".geojson", ".kml", ".gpkg"])
+def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) -> None:
+    """300 files with a piece cut out, doubled or overwritten: no traceback, and no zone is lost in silence.
+
+    What is accepted has as many zones as its account says, and a zone that is as it was keeps out the same.
+    """
+    rng = random.Random(ending)
+    source = np.random.default_rng(5)
+    features: list[Feature] = [(star(source), {"name": f"zone {index}"}) for index in range(4)]
+    WRITERS[ending](tmp_path / f"z{ending}", features)
+    content = (tmp_path / f"z{ending}").read_bytes()
+    refused = 0
+    for _ in range(300):
+        at, size = rng.randrange(len(content)), rng.choice([1, 1, 2, 5, 20, 200])
+        middle = rng.choice(
+            [b"", content[at : at + size] * 2, bytes(rng.randrange(32, 127) for _ in range(size))]
+        )
+        (tmp_path / f"z{ending}").write_bytes(content[:at] + middle + content[at + size :])
+        try:
+            scenario, notes = zones_of(tmp_path, f"z{ending}")
+        except ScenarioError:
+            refused += 1
+            continue
+        assert f": {len(scenario.airspace.no_fly)} of " in notes[0] or "polygons" in notes[0]
+        assert kept_out(scenario).is_valid
+    assert refused > 30
+
+
+def test_a_country_loads_quickly(tmp_path: Path) -> None:
+    """5,000 polygons, of which a few dozen are near."""
+    import time
+
+    rng = np.random.default_rng(8)
+    centres = np.array(HERE) + rng.uniform([-6.0, -3.0], [6.0, 3.0], (5000, 2))
+    features = [
+        (shapely.Point(centre).buffer(0.01), {"name": f"zone {n}"}) for n, centre in enumerate(centres)
+    ]
+    write_geojson(tmp_path / "z.geojson", features)
+    began = time.process_time()
+    scenario, notes = zones_of(tmp_path, "z.geojson")
+    took_s = time.process_time() - began
+    assert "of 5000 in reach" in notes[0]
+    assert 10 < len(scenario.airspace.no_fly) < 500
+    assert took_s < 4.0
+
+
+@pytest.mark.parametrize("lat", [0.0, -50.0, 68.0, 84.0])
+def test_a_zone_may_cover_a_country(lat: float, tmp_path: Path) -> None:
+    """What lies beyond the reach of the origin is cut off, however far north a degree is narrow."""
+    country = shapely.box(HERE[0] - 40.0, lat - 5.0, HERE[0] + 40.0, lat + 5.0)
+    write_geojson(tmp_path / "z.geojson", [(country, {"name": "country"})])
+    scenario, notes = zones_of(tmp_path, "z.geojson", (HERE[0], lat))
+    assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon)"]
+    assert kept_out(scenario).contains(shapely.box(-6e4, -6e4, 6e4, 6e4))
+
+
+def test_the_edge_at_which_a_zone_is_cut_crosses_no_other(tmp_path: Path) -> None:
+    """In degrees it is straight, in metres a parallel is curved: a bay may end just short of it."""
+    x, y = HERE
+    country = shapely.box(x - 2.0, y - 2.0, x + 2.0, y + 2.0)
+    for tip in np.linspace(y - 0.556, y - 0.536, 21):
+        bay = shapely.Polygon([(x, tip), (x + 0.01, y + 2.1), (x - 0.01, y + 2.1)])
+        write_geojson(tmp_path / "z.geojson", [(country - bay, {})])
+        scenario, _ = zones_of(tmp_path, "z.geojson")
+        assert kept_out(scenario).area > 0.9 * 1.2e5**2
+
+
+def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
+    """The account says that there is none."""
+    write_geojson(tmp_path / "far.geojson", [(shapely.Point(0.0, 0.0).buffer(0.1), {})])
+    write_geojson(tmp_path / "points.geojson", [(shapely.Point(HERE), {})])
+    assert zones_of(tmp_path, "far.geojson")[1] == [
+        "far.geojson: zones: 0 of 1 in reach; are latitude and longitude exchanged?"
+    ]
+    scenario, notes = zones_of(tmp_path, "points.geojson")
+    assert notes == ["points.geojson: zones: 0 of 0 in reach; passed over: 1 point"]
+    assert not scenario.airspace.no_fly
+
+
+def test_no_node_lies_where_zones_do_not_count(tmp_path: Path) -> None:
+    """Its zones would be left out as being out of reach, and the vehicle sent among them."""
+    far = (HERE[0], HERE[1] + 0.7)
+    write_geojson(tmp_path / "z.geojson", [(shapely.Point(far).buffer(0.01), {})])
+    path = scene(tmp_path, 'altitude_m = [10.0, 120.0]\nno_fly_from = "z.geojson"')
+    text = path.read_text()
+    start = text.index("[[nodes]]")
+    path.write_text(text[:start] + text[start:].replace(f"lat_deg = {HERE[1]}", f"lat_deg = {far[1]}"))
+    with pytest.raises(
+        ScenarioError, match=r"no_fly_from: its zones count up to 60 km .* node S1 is 78 km away"
+    ):
+        load(path)
+
+
+def test_what_looks_like_a_radius_is_said(tmp_path: Path) -> None:
+    """A point that is passed over may be a zone under another key."""
+    write_geojson(tmp_path / "z.geojson", [(shapely.Point(HERE), {"Bufferzone": 150, "name": "station"})])
+    assert zones_of(tmp_path, "z.geojson")[1] == [
+        "z.geojson: zones: 0 of 0 in reach; passed over: 1 point",
+        "z.geojson: of points Bufferzone is not read; a radius is radius_m",
+    ]
+
+
+def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
+    """One line says to what, and remarks are on the zones that are left."""
+    near, far = (shapely.Point(HERE[0] + x, HERE[1]).buffer(0.01, quad_segs=1200) for x in (0.03, 0.5))
+    write_geojson(
+        tmp_path / "z.geojson", [(near, {"name": "near", "upper": 1}), (far, {"name": "far", "upper": 1})]
+    )
+    _, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == [
+        "z.geojson: zones: 1 of 2 in reach (1 polygon)",
+        "z.geojson: they are cut to x_m = [-30000.0, 30000.0] and y_m = [-30000.0, 30000.0], since all have "
+        "too many corners",
+        'z.geojson: "near" counts at all altitudes; its upper = 1 is not read',
+    ]
+
+
+def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> None:
+    """Real sets have them: a loop at a corner, a ring that runs twice around, a hole around its border."""
+    x, y = HERE
+    looped = [
+        (x, y),
+        (x + 0.02, y),
+        (x + 0.02, y + 0.02),
+        (x + 0.0001, y + 0.02),
+        (x - 0.0001, y + 0.0199),
+        (x, y + 0.0201),
+    ]
+    square = shapely.box(x + 0.03, y, x + 0.06, y + 0.03)
+    swapped = shapely.Polygon(square.buffer(-0.01).exterior, [square.exterior])
+    corners = [(x - 0.01, y), (x - 0.01, y - 0.01), (x, y - 0.01), (x, y - 0.005)]
+    twice = shapely.Polygon(corners * 2)
+    features: list[Feature] = [(shapely.Polygon(looped), {"name": "loop"}), (swapped, {}), (twice, {})]
+    write_geojson(tmp_path / "z.geojson", features)
+    scenario, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == [
+        "z.geojson: zones: 3 of 3 in reach (4 polygons); borders that cross, all inside counts: 3"
+    ]
+    rings = shapely.node(shapely.LineString([*looped, looped[0]]))
+    assert (
+        not in_metres(shapely.union_all([*shapely.get_parts(shapely.polygonize([rings])), square]))
+        .difference(kept_out(scenario).buffer(0.3))
+        .area
+    )
+    with pytest.raises(ScenarioError, match="its border crosses itself"):
+        load(scene(tmp_path, 'altitude_m = [10.0, 120.0]\ngeofence_from = "z.geojson"'))
+    bow = shapely.Polygon([(x, y), (x + 0.01, y + 0.01), (x + 0.01, y), (x, y + 0.01)])
+    write_geojson(tmp_path / "bow.geojson", [(bow, {})])
+    with pytest.raises(ScenarioError, match="its border crosses itself"):
+        zones_of(tmp_path, "bow.geojson")
+
+
+def test_shapes_of_one_place_are_walls(tmp_path: Path) -> None:
+    """As the track of a receiver that stands still; a hole of one place takes nothing away."""
+    square = shapely.Point(HERE).buffer(0.01, quad_segs=1)
+    holed = shapely.Polygon(square.exterior, [[HERE] * 4])
+    features: list[Feature] = [
+        (shapely.LineString([HERE] * 4), {}),
+        (shapely.Polygon([HERE] * 4), {}),
+        (holed, {}),
+    ]
+    write_geojson(tmp_path / "z.geojson", features)
+    scenario, notes = zones_of(tmp_path, "z.geojson")
+    assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon); passed over: 2 walls"]
+    assert kept_out(scenario).area == pytest.approx(in_metres(square).area, rel=1e-6)
+
+
+def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:
+    """The reason is the archive's own."""
+    text = kml(placemark(shapely.Point(HERE).buffer(0.01), {}))
+    for names in (["doc.kml"], ["doc.kml", "more.kml"]):
+        with zipfile.ZipFile(tmp_path / "z.kmz", "w", zipfile.ZIP_DEFLATED) as archive:
+            for name in names:
+                archive.writestr(name, text)
+        if len(names) == 1:
+            content = (tmp_path / "z.kmz").read_bytes()
+            start = 30 + len("doc.kml")  # of the packed text
+            (tmp_path / "z.kmz").write_bytes(content[:start] + b"\xff" * 9 + content[start + 9 :])
+        words = "z.kmz: this is not KMZ: Error -3" if len(names) == 1 else "z.kmz: it has 2 KML files"
+        with pytest.raises(ScenarioError, match=words):
+            zones_of(tmp_path, "z.kmz")
+
+
+def test_an_old_geopackage_keeps_its_zones(tmp_path: Path) -> None:
+    """One without the mark of a GeoPackage is one by its ending."""
+    zone = shapely.Point(HERE).buffer(0.01)
+    write_gdal(tmp_path / "z.gpkg", [(zone, {"name": "old"})])
+    content = (tmp_path / "z.gpkg").read_bytes()
+    (tmp_path / "z.gpkg").write_bytes(content[:68] + bytes(4) + content[72:])
+    scenario, _ = zones_of(tmp_path, "z.gpkg")
+    assert [zone.name for zone in scenario.airspace.no_fly] == ["old"]
+
+
+def test_styles_and_measures_are_no_faults(tmp_path: Path) -> None:
+    """Neither changes a place."""
+    zone = shapely.Point(HERE).buffer(0.01)
+    (tmp_path / "z.kml").write_text(
+        kml("<Style><LineStyle><width>2</width></LineStyle></Style>", placemark(zone, {}))
+    )
+    measured = shapely.from_wkt(
+        zone.wkt.replace("POLYGON", "POLYGON M").replace(",", " 7,").replace("))", " 7))")
+    )
+    shapes = np.array([shapely.to_wkb(measured, flavor="iso")], object)
+    pyogrio.raw.write(
+        tmp_path / "z.shp",
+        shapes,
+        [np.array(["a"], object)],
+        ["name"],
+        geometry_type="Measured Polygon",
+        crs="EPSG:4326",
+    )
+    for file in ("z.kml", "z.shp"):
+        assert len(zones_of(tmp_path, file)[0].airspace.no_fly) == 1
+
+
+def test_a_point_without_a_name_is_clamped_to_the_ground_too(tmp_path: Path) -> None:
+    """Its height of 0 is none."""
+    point = f"<Placemark><Point><coordinates>{HERE[0]},{HERE[1]},0</coordinates></Point></Placemark>"
+    (tmp_path / "n.kml").write_text(kml(point))
+    text = SCENE.format(lat=HERE[1], lon=HERE[0], airspace="altitude_m = [10.0, 120.0]").partition(
+        "[[nodes]]"
+    )[0]
+    (tmp_path / "scene.toml").write_text('nodes_from = "n.kml"\n' + text)
+    with pytest.raises(
+        ScenarioError, match=r"n.kml: Placemark\[0\].geometry.coordinates: there is no altitude"
+    ):
+        load(tmp_path / "scene.toml")
