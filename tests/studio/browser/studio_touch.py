@@ -161,6 +161,19 @@ def _luminance(colour: Any) -> Any:
     return linear @ [0.2126, 0.7152, 0.0722]
 
 
+def _label_contrasts(page: Page, ours: Any) -> dict[str, float]:
+    """Returns the contrast of each label's text to its ground, by name, in a picture of the page."""
+    picture = imread(io.BytesIO(page.locator("canvas[data-engine]").screenshot()))[..., :3]
+    eye, ratios = Eye.of(ours._client.camera), {}
+    for name, label in ours.sight.labels._all.items():
+        x, y, _ = eye.pixels(label.place_m[None])[0]
+        left, top, right, bottom = _box_px(label.handle, label.handle.anchor, x, y).astype(int)
+        if label.handle.visible:
+            seen = np.sort(_luminance(picture[top + 2 : bottom - 2, left + 4 : right - 4]).ravel())
+            ratios[name] = (np.median(seen) + 0.05) / (seen[len(seen) // 50] + 0.05)
+    return ratios
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_every_text_can_be_read(browser: Browser, alone: Studio, scheme: str) -> None:
     """A contrast of 4.5 to 1: in the panel, tab by tab, and of the labels over what is drawn behind them."""
@@ -174,14 +187,10 @@ def test_every_text_can_be_read(browser: Browser, alone: Studio, scheme: str) ->
             found = page.evaluate(script)
             assert len(found) > 30
             assert [one for one in found if one["ratio"] < 4.5] == []
-        picture = imread(io.BytesIO(page.locator("canvas[data-engine]").screenshot()))[..., :3]
-        eye, checked = Eye.of(ours._client.camera), 0
-        for name, label in ours.sight.labels._all.items():
-            x, y, _ = eye.pixels(label.place_m[None])[0]
-            left, top, right, bottom = _box_px(label.handle, label.handle.anchor, x, y).astype(int)
-            if label.handle.visible:
-                seen = np.sort(_luminance(picture[top + 2 : bottom - 2, left + 4 : right - 4]).ravel())
-                ratio = (np.median(seen) + 0.05) / (seen[len(seen) // 50] + 0.05)
-                assert ratio > 4.5, name
-                checked += 1
-        assert checked > 8
+        for _ in range(20):  # until the page has drawn what the server has placed
+            ratios = _label_contrasts(page, ours)
+            if min(ratios.values()) > 4.5:
+                break
+            page.wait_for_timeout(500)
+        assert len(ratios) > 8
+        assert {name: ratio for name, ratio in ratios.items() if ratio < 4.5} == {}
