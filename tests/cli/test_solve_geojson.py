@@ -83,6 +83,6 @@ def test_faults_of_the_nodes_file_are_told_with_their_place(run: Run, geodetic: 
     result = run("check", scene)
     assert result.exit_code == 2
     assert (
-        "  nodes.geojson: features[1].geometry.coordinates[1]: got 500.006, must be a latitude"
+        "  nodes.geojson: features[1].geometry: got longitude 14.5012 and latitude 500.006, must be"
         in result.stderr
     )

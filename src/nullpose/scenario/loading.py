@@ -60,10 +60,9 @@ def load(
     """
     source = os.fspath(path)
     origins: dict[str, str] = {}
-    changes = [each if isinstance(each, Override) else parse_override(each) for each in overrides]
     try:
         tables = tables_of(file_text(Path(source)))
-        others = [change for change in changes if not _names_a_file(tables, change)]
+        others = [change for change in overrides if not _names_a_file(tables, change)]
         tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
         airspace = tables.get("airspace")
         has_zones_from = isinstance(airspace, dict) and _ZONES_KEY in airspace
@@ -79,8 +78,12 @@ def load(
     return apply_overrides(found, others)
 
 
-def _names_a_file(tables: dict[str, Any], change: Override) -> bool:
+def _names_a_file(tables: dict[str, Any], change: str | Override) -> bool:
     """Returns whether a change names a file, which then takes the place of what the tables state."""
+    if isinstance(change, str):
+        if "_from=" not in change.replace(" ", ""):
+            return False
+        change = parse_override(change)
     table, _, key = change.path.rpartition(".")
     holder = tables.get("airspace") if table == "airspace" else tables
     replaced = {_FENCE_KEY: _FENCES, _ZONES_KEY: (), _KEY: ("nodes",)}.get(key)
