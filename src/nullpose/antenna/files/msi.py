@@ -30,7 +30,7 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     estimate is the sum of losses ``L(theta, phi) = H(phi) + w V(theta, ahead) + (1 - w) max(0, V(theta,
     behind) - V(90, behind))`` with ``w = (1 + cos phi) / 2``: both cuts are met if nothing is lost ahead.
 
-    Source: 3GPP TR 38.901, table 7.3-1, for the sum; Gil et al., VTC 1999, for the weights of both halves.
+    Source: 3GPP TR 38.901, table 7.3-1, for the sum. The weights, which join both halves smoothly, are ours.
 
     Args:
         lines: of the file.
