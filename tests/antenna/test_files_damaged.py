@@ -18,6 +18,11 @@ Field = Callable[..., np.ndarray]
 _FORMS = ("nec", "4nec2", "ffd", "old-ffd", "ffs", "cst", "cst-gains", "csv", "complex-csv", "hfss-csv")
 _FORMS += ("hfss-linear", "msi")
 _CLOSE_DB = 0.1
+_SUBTLE = (
+    571,
+    989,
+    1125,
+)  # a sign and a phase of a field are lost, the power staying; a row that few others show
 
 
 def errors_db(gain: np.ndarray, theta_deg: np.ndarray, phi_deg: np.ndarray, field: Field) -> np.ndarray:
@@ -112,7 +117,7 @@ def damaged(random: Random, text: str) -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("seed", range(300))
+@pytest.mark.parametrize("seed", [*range(300), *_SUBTLE])
 def test_damaged_files_are_refused_or_read_right(
     writers: dict[str, Callable[..., str]], patterns: dict[str, Field], tmp_path: Path, seed: int
 ) -> None:

@@ -1,6 +1,7 @@
 """Pattern files that are refused: one message each, with the file, the line and what to do."""
 
 import gzip
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -47,6 +48,17 @@ def twice(whole: str) -> str:
     return whole.replace("Frequencies 1", "Frequencies 2") + "Frequency 9e8\n" + whole.split("2.4e9\n")[1]
 
 
+def many(whole: str, count: int) -> str:
+    """Returns a .ffd file with its pattern at so many frequencies."""
+    head, _, rows = whole.replace("Frequencies 1", f"Frequencies {count}").partition("Frequency 2.4e9\n")
+    return head + "".join(f"Frequency {1e9 + i * 1e8:.0f}\n{rows}" for i in range(count))
+
+
+def named(column: str, gain: float) -> Change:
+    """Returns what puts a table of one gain, under another name, in place of a file."""
+    return lambda _: csv(lambda t, p: gain).replace("gain_dbi", column)
+
+
 def only(kept: Callable[[int], bool]) -> Change:
     """Returns what leaves those rows of both cuts whose angle is to be kept."""
 
@@ -86,6 +98,27 @@ FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
         {},
         "has a field beyond",
     ),
+    "turned": ("ffs", swap("Axis\n0 0 1", "Axis\n0 1 0"), {}, "line 16: its zaxis is 0 1 0, must be 0 0 1"),
+    "fewer than announced": ("ffs", swap("s\n1\n", "s\n2\n"), {}, "2 frequencies are announced and 1 follow"),
+    "powers": ("ffs", swap("4.000000e-01\n4.0", "4.000000e-01\n3.0"), {}, "0.4 W radiated, 0.3 W accepted"),
+    "no pattern in nec": (
+        "nec",
+        lambda text: text.replace("RADIATION PATTERNS", "NUMERICAL ELECTROMAGNETICS CODE"),
+        {},
+        "without a pattern; add an RP card to the input, such as RP 0 37 73 1000",
+    ),
+    "gain and field": ("nec", line(40, "155 0 1 1 9 1 1 .1 0 .1 0"), {}, "line 40: .* contradict each other"),
+    "unit": ("cst", swap("Abs(Dir.)[dBi", "Abs(Gain)[dBm"), {}, "line 1: got a gain in .dbm., must be in"),
+    "no directivity": (GAINS, named("dB(DirTotal)", 2.0), {}, "its directivity averages to 2.0 dB"),
+    "below 0": (GAINS, named("GainTotal", -2.0), {}, "line 2: theta = 0, phi = 0 degrees has a gain below 0"),
+    "unit of frequency": ("hfss-csv", swap("GHz", "Hz"), {}, "its frequency is 2.4 Hz, must be 1 kHz to"),
+    "decimal commas": ("cst", lambda text: text.replace(".0", ",0"), {}, "line 3: .* points in place of"),
+    "alone": (
+        GAINS,
+        lambda text: re.sub(r"\n65,45,[^\n]*", "\n65,45,-15.0", text),
+        {},
+        r"line \d+: theta = 65, phi = 45 degrees has a gain of -15.00 dBi, which does not fit",
+    ),
     "columns": (GAINS, line(7, "0,0"), {}, "line 7: got '0,0', must be 3 finite numbers"),
     "header": (GAINS, line(1, "theta_deg,phi_deg,gain"), {}, "line 1: got the header .* must have theta_deg"),
     "hole": (FIELDS, line(800, ""), {}, "no row for theta = 55, phi = 30 degrees; the grid must"),
@@ -103,6 +136,7 @@ FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
     ),
     "frequencies": ("ffd", twice, {}, "2 tables, at 2400000000, 900000000 Hz; state one frequency"),
     "frequency": ("ffd", twice, {"frequency_hz": 1e9}, "1000000000 Hz, must be one of .* 900000000 Hz"),
+    "many": ("ffd", lambda text: many(text, 10), {}, "1600000000, 1700000000 Hz and 2 more; state one"),
     "no frequency": (GAINS, str, {"frequency_hz": 0.0}, "got the frequency 0 Hz, must be more than 0"),
     "only frequency": ("nec", str, {"frequency_hz": 1e9}, "must be one of the file's: 2400000000 Hz"),
     "nothing": (GAINS, lambda _: csv(lambda t, p: -999.0), {}, "no direction has any gain"),
@@ -232,6 +266,8 @@ def test_an_estimate_is_no_way_round_other_refusals(tmp_path: Path) -> None:
         ("angle_deg,gain_dbi\n", "there is no row of angle_deg,gain_dbi"),
         ("angle_deg,gain_dbi\n0,0\n90,inf\n180,0\n", "line 3: got '90,inf'"),
         ("theta_deg,phi_deg,gain_dbi\n0,0,0\n", "line 1: got the header .* must have angle_deg,gain_dbi"),
+        ("angle_deg,gain_dbi\n0,20\n180,20\n", "average gain .* is 20.0 dB: it radiates more"),
+        ("angle_deg,gain_dbi\n0,-999.99\n60,-999.99\n61,0\n180,0\n", "25 % of all directions have no gain"),
         ("", "the file is empty"),
     ],
 )

@@ -1,5 +1,6 @@
 """Which antenna the drone carries."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -129,6 +130,45 @@ def test_another_key_at_fault_is_told_alone(tmp_path: Path, key: str, value: str
     with pytest.raises(ScenarioError) as caught:
         load(path)
     assert [fault.path for fault in caught.value.faults] == [place]
+
+
+def cuts(across_db: float) -> str:
+    """Return two cuts, of which the horizontal one changes by so many dB."""
+    losses = [across_db * (1.0 - math.cos(math.radians(at))) / 2.0 for at in range(360)]
+    across = "".join(f"{at} {loss:.3f}\n" for at, loss in enumerate(losses))
+    down = "".join(
+        f"{at} {loss + 9.0 * math.sin(math.radians(at)) ** 2:.3f}\n" for at, loss in enumerate(losses)
+    )
+    return f"FREQUENCY 2400\nGAIN 3 dBi\nHORIZONTAL 360\n{across}VERTICAL 360\n{down}"
+
+
+def scenario_of_cuts(folder: Path, across_db: float, keys: str = "") -> Scenario:
+    """Return the paper's scene with an antenna of two cuts."""
+    (folder / "cuts.msi").write_text(cuts(across_db))
+    path = folder / "scenario.toml"
+    text = Path("examples/paper.toml").read_text()
+    path.write_text(f'{text}\n[antenna]\nkind = "pattern"\nfile = "cuts.msi"\n{keys}\n')
+    return load(path)
+
+
+def test_an_estimate_says_so_everywhere(tmp_path: Path) -> None:
+    """Two cuts of a directional antenna are an estimate, only on request; name, label and copies say so."""
+    with pytest.raises(ScenarioError, match=r'horizontal cut changes by 12.0 dB.*two_cuts = "sum-of-losses"'):
+        scenario_of_cuts(tmp_path, 12.0)
+    scenario = scenario_of_cuts(tmp_path, 12.0, 'two_cuts = "sum-of-losses"')
+    said = f"{PAPER.name} (antenna: estimate from two cuts)"
+    again = Scenario.from_dict(scenario.to_dict())
+    assert scenario.name == again.name == apply_overrides(scenario, ["antenna.normalise=peak"]).name == said
+    assert scenario.antenna_record.label == "pattern of cuts.msi at 2400 MHz (estimate from two cuts)"
+
+
+def test_two_cuts_of_an_omni_are_a_profile(tmp_path: Path) -> None:
+    """An antenna that is nearly the same all round is solved as it is, and is no estimate."""
+    scenario = scenario_of_cuts(tmp_path, 1.4)
+    assert scenario.antenna_record.harmonics.is_axisymmetric
+    assert scenario.name == PAPER.name
+    with pytest.raises(ScenarioError, match="two_cuts has no meaning: the file tells the whole pattern"):
+        scenario_of_cuts(tmp_path, 1.4, 'two_cuts = "sum-of-losses"')
 
 
 def test_another_file_by_an_override_is_refused() -> None:

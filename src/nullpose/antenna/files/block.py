@@ -21,8 +21,8 @@ _FEWEST = 4  # angles
 _UNEVEN_DEG = 0.01  # angles are written with two digits
 DBD = 2.15
 """Decibels of a half-wave dipole over an isotropic antenna."""
-SAME_FIELD = 0.03
-"""How far a gain and the square of its field may be apart, of the gain: .13 dB."""
+SAME_FIELD = 0.015
+"""How far a gain and the square of its field may be apart, of the gain: .065 dB."""
 _SAME, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -164,7 +164,7 @@ def gridded(block: Block, source: str) -> PatternTable:
         field = field * np.where(back, -1.0, 1.0)[:, None]
         given, gain = gain, np.sum(np.abs(field) ** 2, axis=1)
         if given is not None:
-            apart = np.abs(gain - given) > SAME_FIELD * given + _WEAK * np.max(given)
+            apart = np.abs(gain - given) > SAME_FIELD * given + 0.1 * _WEAK * np.max(given)
             _refuse_row(block, apart, "has a gain and fields that contradict each other")
     assert gain is not None  # a block has the one or the other
     _refuse_row(block, gain < 0.0, "has a gain below 0; is a column in decibels read as linear?")

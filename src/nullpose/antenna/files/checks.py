@@ -18,7 +18,8 @@ from nullpose.antenna.table import PatternTable, mean_gain, solid_angles
 _OVER_FED = 10.0**0.05
 _FLOOR, _MOST_FLOOR = 1e-8, 0.01  # of the peak, and of the sphere
 _STRONG = 1e-2  # of the peak: 20 dB below
-_APART_DB, _MEDIANS, _TIMES = 0.08, 20.0, 2.0  # how far off a lone row is, of others
+_APART_DB, _MEDIANS, _ALONE = 0.08, 20.0, 1.5  # how far off a lone row is: at least, of others, of neighbours
+_HIGH = 2.0  # of both neighbours: a beam that the steps follow is no higher
 
 
 def require_antenna(table: PatternTable) -> None:
@@ -75,16 +76,17 @@ def require_rows(table: PatternTable, found: Harmonics) -> None:
         found: its harmonics.
 
     Raises:
-        ScenarioError: with the first such row.
+        ScenarioError: with the row that fits least.
     """
     smooth = found.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg))
     gain, smooth = (np.maximum(values, _STRONG * np.max(table.gain)) for values in (table.gain, smooth))
     apart_db = np.abs(10.0 * np.log10(gain / smooth))
     typical_db = np.median(apart_db[gain == table.gain])
-    alone = apart_db > np.maximum(max(_APART_DB, _MEDIANS * typical_db), _TIMES * _beside(apart_db))
-    high = gain > _TIMES * _beside(gain)
+    alone = apart_db > np.maximum(max(_APART_DB, _MEDIANS * typical_db), _ALONE * _beside(apart_db))
+    high = gain > _HIGH * _beside(gain)
     high[[0, -1]] = False  # a beam along the axis is one direction wide
-    for row, column in np.argwhere(alone | high)[:1]:
+    if np.any(bad := alone | high):
+        row, column = np.unravel_index(np.argmax(np.where(bad, apart_db, 0.0)), bad.shape)
         refuse(
             f"theta = {table.theta_deg[row]:g}, phi = {table.phi_deg[column]:g} degrees has a gain of "
             f"{10.0 * np.log10(table.gain[row, column] + 1e-30):.2f} dBi, which does not fit those around "

@@ -141,7 +141,7 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
     each_hz = [block.frequency_hz or frequency_hz or 0.0 for block in blocks]
     known = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
     more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
-    listed = f"{', '.join(known[:_MOST_NAMED])}{more} Hz" if known else "frequencies that it does not say"
+    listed = f"{', '.join(known[:_MOST_NAMED])} Hz{more}" if known else "frequencies that it does not say"
     if frequency_hz is None and len(set(each_hz)) > 1:
         refuse(
             f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"
