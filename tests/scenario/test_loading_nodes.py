@@ -153,6 +153,11 @@ GEOJSON_CASES = [
         "it has no point, must have one for each node; it has 1 feature without a place",
     ),
     (
+        collection({"type": "Feature", "properties": {}}),
+        "n.geojson: features[0].geometry",
+        "missing; a feature without a place states null",
+    ),
+    (
         collection(feature() | {"geometry": {"type": "Polygon"}}),
         "n.geojson: features[0].geometry",
         'got the text "Polygon"',

@@ -109,6 +109,8 @@ def test_area(vertices: list[list[float]], area: float) -> None:
         ([[0, 0], [1, 0], [1, -2e7]], "geofence_m[2][1]", "from -1e+07"),
         ([[0, 0], [4, 0], [2, 1], [0, 0], [-2, 1]], "geofence_m", "touches itself"),
         ([[0, 0], [1, 1], [2, 2]], "geofence_m", "has no area"),
+        ([[0, 0], [0, 0], [0, 0]], "geofence_m", "has no area"),
+        ([[0, 0], [1e-10, 0], [0, 1e-10]], "geofence_m", "has no area"),
         ([[0, 0], [2, 0], [1, 0], [3, 0]], "geofence_m", "has no area"),
         ([[0, 0], [4, 4], [4, 0], [0, 4]], "geofence_m", "Self-intersection[2 2]"),
         ([[0, 0], [4, 0], [4, 4], [2, 0], [0, 4]], "geofence_m", "crosses or touches itself"),

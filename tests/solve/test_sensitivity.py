@@ -111,6 +111,23 @@ def test_without_errors_nothing_is_lost(paper):
     assert found.loss_db() == pytest.approx(0.0, abs=1e-9)
 
 
+def test_a_node_at_the_arrays_height_is_no_fault():
+    """Whose direction meets no ground on which a jammer could be."""
+    point = {"power_w": 1.0}
+    scenario = Scenario.from_dict(
+        {
+            "airspace": {"altitude_m": [8.0, 8.0]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+            "array": {"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5},
+            "nodes": [{"position_m": [0.0, 0.0, 8.0]} | point, {"position_m": [50.0, 0.0, 0.0]} | point],
+            "jammers": [{"position_m": [20.0, 30.0, 1.0]} | point],
+        }
+    )
+    result, pose = nullpose.solve_array(scenario, certify=False), Pose([30.0, 0.0, 8.0], 0.0, 0.0, 0.0)
+    found = sensitivity(scenario, pose, ratios=partial(result.details.ratios_under, scenario, pose))
+    assert 0.0 < found.all <= found.jammers <= found.nominal
+
+
 def test_a_jammer_elsewhere_shows_that_a_pose_stands_on_a_null():
     """A level drone straight above the jammer's whip loses tens of dB when the jammer is 200 m away."""
     whip = {"antenna": "dipole"}

@@ -52,7 +52,7 @@ def compare(
 ) -> None:
     """Solve under the paper's four schemes, or with several vehicles."""
     scenario = read_scenario(file, overrides, allow_outside)
-    prepare_outputs(file, figure=figure, width=width)
+    prepare_outputs(file, overrides, figure=figure, width=width)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     if airframes:
         _compare_airframes(scenario, options, figure, width, json_output)

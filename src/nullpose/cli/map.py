@@ -67,7 +67,7 @@ def best_map(
     scenario = read_scenario(file, overrides, allow_outside)
     require_map(scenario, altitude, cells)
     outputs = {f"--out ({name})": out / name for name in ("map.csv", "map.png", "map.pdf")}
-    check_outputs(files_of(file), outputs)
+    check_outputs(files_of(file, overrides or ()), outputs)
     options = solve_options(gap, time_limit, node_limit, fast, seed)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         result = solve(scenario, scheme.value, on_progress=bar, **options)

@@ -97,12 +97,18 @@ def compiling_announced() -> Iterator[None]:
 
 
 def prepare_outputs(
-    file: Path, *, figure: Path | None, width: str | None = None, **others: Path | None
+    file: Path,
+    overrides: Sequence[str] | None,
+    *,
+    figure: Path | None,
+    width: str | None = None,
+    **others: Path | None,
 ) -> None:
     """Make sure, before any work, that what was asked for can be written, and takes no other file's place.
 
     Args:
         file: the scenario's.
+        overrides: its changes, or None.
         figure: where to, or None if no figure was asked for.
         width: of the figure in print, or None.
         others: further outputs by the names of their options.
@@ -120,4 +126,5 @@ def prepare_outputs(
         from nullpose.report.figures.style import prepare_figure_file
 
         prepare_figure_file(figure)
-    check_outputs(files_of(file), {f"--{name}": path for name, path in {**others, "figure": figure}.items()})
+    outputs = {f"--{name}": path for name, path in {**others, "figure": figure}.items()}
+    check_outputs(files_of(file, overrides or ()), outputs)

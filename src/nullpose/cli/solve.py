@@ -80,7 +80,7 @@ def solve(
     from nullpose.report.results import result_view
 
     scenario = read_scenario(file, overrides, allow_outside)
-    prepare_outputs(file, certificate=certificate, geojson=geojson, figure=figure, width=width)
+    prepare_outputs(file, overrides, certificate=certificate, geojson=geojson, figure=figure, width=width)
     options, sizes = solve_options(gap, time_limit, node_limit, fast, seed), error_sizes(off)
     checked = verify or certificate is not None
     of_one_dipole = {

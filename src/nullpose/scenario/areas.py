@@ -15,7 +15,7 @@ import numpy as np
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
 from nullpose.scenario.faults import refusal
-from nullpose.scenario.geo_file import Feature
+from nullpose.scenario.geo_file import NAMES, Feature
 
 _SAME_DEG = 9e-8  # corners closer than this are one: a centimetre
 _STRAIGHT_DEG = (
@@ -23,7 +23,6 @@ _STRAIGHT_DEG = (
 )
 _LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
 _CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
-_NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
 _LONGEST_NAME = 80
 _MOST_REMARKS = 5
 _LIKE_RADII = re.compile("radi|buffer|diameter", re.IGNORECASE)
@@ -309,19 +308,22 @@ def _cut(polygons: list[Any], box_deg: Rectangle) -> list[Any]:
     """Return what of polygons lies in a rectangle; those that lie in it as they are."""
     import shapely
 
-    # In metres a long edge of the box would leave the parallel, and might cross other edges
-    box, kept = shapely.segmentize(shapely.box(*box_deg), _CUT_DEG), []
+    west, south, east, north = box_deg
+    kept, box = [], None
     for polygon in polygons:
-        inside = box.contains(polygon)
-        kept += (
-            [polygon] if inside else [each for each in parts_of(polygon & box) if each.geom_type == "Polygon"]
-        )
+        low_x, low_y, high_x, high_y = polygon.bounds
+        if west <= low_x and south <= low_y and high_x <= east and high_y <= north:
+            kept.append(polygon)
+            continue
+        # In metres a long edge of the box would leave the parallel, and might cross other edges
+        box = box or shapely.segmentize(shapely.box(*box_deg), _CUT_DEG)
+        kept += [part for part in parts_of(polygon & box) if part.geom_type == "Polygon"]
     return kept
 
 
 def name_of(feature: Feature) -> str:
     """Return a feature's name on one line, however it is stated; empty without one."""
-    value = next((feature.properties[key] for key in _NAMES if key in feature.properties), "")
+    value = next((feature.properties[key] for key in NAMES if key in feature.properties), "")
     if isinstance(value, list) and value and isinstance(value[0], dict):
         value = value[0].get("text", "")  # ED-318 has one for each language
     words = " ".join(str(value).split())

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 ENDINGS = (".geojson", ".json", ".kml", ".kmz", ".gpkg", ".shp", ".gpx")
 """How the names of the files end."""
 MOST_BYTES = 60_000_000
+NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
+"""The properties that may name a feature, the first first."""
 _MOST_FAULTS = 100  # of one file
 _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a", ".kml": b"", ".gpx": b""}
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
@@ -135,6 +137,8 @@ def _features_of_member(place: str, member: Any) -> Iterator[Feature]:
     if _of(member, "type") != "Feature":
         allowed = 'must be an object with "type": "Feature"'
         raise refusal(place, f"got {described(_of(member, 'type'))}, {allowed}")
+    if "geometry" not in member:
+        raise refusal(f"{place}.geometry", "missing; a feature without a place states null")
     if not isinstance(properties, dict | None):
         raise refusal(f"{place}.properties", f"got {described(properties)}, must be an object")
     parts = _of(geometry, "geometries")
@@ -284,7 +288,10 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
         else:
             _require_wgs84(str(meta["crs"]))
         for index, shape in enumerate(shapes):
-            cells = dict(zip(meta["fields"], (_cell(column[index]) for column in columns), strict=True))
+            cells = {
+                key: _cell(column[index], key in NAMES)
+                for key, column in zip(meta["fields"], columns, strict=True)
+            }
             if is_kml:
                 cells = {key: cells[key] for key in cells.keys() - _OF_DRAWING}
             found = {key: value for key, value in cells.items() if value not in (None, "")}
@@ -294,13 +301,13 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
             yield Feature(place, _shape_of_wkb(shape, place), found)
 
 
-def _cell(value: Any) -> Any:
-    """Return a value of a table as plain data; numbers and lists in texts as such, None for none."""
+def _cell(value: Any, is_name: bool) -> Any:
+    """Return a value of a table as plain data; numbers and lists in texts as such, but in names; or None."""
     if isinstance(value, np.generic):
         value = value.item() if value.dtype.kind != "M" else None if np.isnat(value) else str(value)
     if isinstance(value, np.ndarray):
         return value.tolist()
-    if isinstance(value, str):
+    if isinstance(value, str) and not is_name:
         with suppress(ValueError, RecursionError):
             return json.loads(value)
     return None if value is None or value != value else value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path, PurePath
 from typing import Any
@@ -18,7 +19,7 @@ from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, features_of
 from nullpose.scenario.listed_nodes import ListedNode, retold
 from nullpose.scenario.nodes_csv import nodes_from_csv
 from nullpose.scenario.nodes_of_features import nodes_of_features
-from nullpose.scenario.overrides import Override, apply_overrides, parse_override
+from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, tables_of
 from nullpose.scenario.wording import described
@@ -28,6 +29,8 @@ _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
 _FENCES = ("geofence_m", "geofence_lat_lon_deg")
 _FENCE_KEY, _ZONES_KEY = "geofence_from", "no_fly_from"
+_FILE_KEYS = (_KEY, _FENCE_KEY, _ZONES_KEY)
+_EARLY = re.compile(r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b")
 _LOG = logging.getLogger("nullpose")
 
 _Note = Callable[[str], object]
@@ -45,8 +48,9 @@ def load(
     Args:
         path: the file, of 10 MB at most.
         allow_outside: whether the files that it names may be outside its folder.
-        overrides: changes such as ``jammers.M.power_w=10``; those of ``nodes_from``,
-            ``airspace.geofence_from`` and ``airspace.no_fly_from`` name files, relative to this one's folder.
+        overrides: changes such as ``jammers.M.power_w=10``. Those of ``nodes_from``,
+            ``airspace.geofence_from`` and ``airspace.no_fly_from`` name files, relative to this one's folder;
+            zones are cut to the airspace with its changes.
         on_note: is called with what became of the features of the files, a line each.
 
     Raises:
@@ -61,8 +65,7 @@ def load(
     source = os.fspath(path)
     origins: dict[str, str] = {}
     try:
-        tables = tables_of(file_text(Path(source)))
-        others = [change for change in overrides if not _names_a_file(tables, change)]
+        tables, late = _overridden_tables(Path(source), overrides)
         tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
         airspace = tables.get("airspace")
         has_zones_from = isinstance(airspace, dict) and _ZONES_KEY in airspace
@@ -74,25 +77,31 @@ def load(
         if has_zones_from:
             _require_nodes_in_reach(found)
     except ScenarioError as error:
-        raise ScenarioError([_from_file(fault, origins) for fault in error.faults], source) from None
-    return apply_overrides(found, others)
+        faults = [_from_file(fault, origins) for fault in error.faults]
+        raise ScenarioError(faults, error.source or source) from None
+    return apply_overrides(found, late)
 
 
-def _names_a_file(tables: dict[str, Any], change: str | Override) -> bool:
-    """Returns whether a change names a file, which then takes the place of what the tables state."""
-    if isinstance(change, str):
-        if "_from=" not in change.replace(" ", ""):
-            return False
-        change = parse_override(change)
-    table, _, key = change.path.rpartition(".")
-    holder = tables.get("airspace") if table == "airspace" else tables
-    replaced = {_FENCE_KEY: _FENCES, _ZONES_KEY: (), _KEY: ("nodes",)}.get(key)
-    if replaced is None or not isinstance(holder, dict) or (key == _KEY) != (table == ""):
-        return False
-    for other in replaced:
-        holder.pop(other, None)
-    holder[key] = change.value
-    return True
+def _overridden_tables(
+    path: Path, overrides: Iterable[str | Override]
+) -> tuple[dict[str, Any], list[str | Override]]:
+    """Returns a file's tables with those changes that decide which files are read and what of them counts.
+
+    Args:
+        path: of the file.
+        overrides: all changes.
+
+    Returns:
+        The tables, and the changes that are left for the scenario.
+    """
+    tables, late = tables_of(file_text(path)), list(overrides)
+    early = [change for change in late if _EARLY.match(str(change).strip())]
+    stated = tables.get("airspace")
+    holders = [tables, stated if isinstance(stated, dict) else {}]
+    named = any(key in holder for holder in holders for key in _FILE_KEYS)
+    if not early or not (named or any("_from" in str(change).split("=")[0] for change in early)):
+        return tables, late
+    return overridden(tables, early), [change for change in late if change not in early]
 
 
 def scenario_from_text(content: bytes, name: str) -> Scenario:
@@ -116,13 +125,14 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
         raise ScenarioError(error.faults, name) from None
 
 
-def files_of(path: Path) -> dict[str, Path]:
+def files_of(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Path]:
     """Returns the files that a scenario is read from, by what to call them.
 
     Args:
         path: of a scenario file that loads.
+        overrides: its changes.
     """
-    tables = tables_of(file_text(path))
+    tables, _ = _overridden_tables(path, overrides)
     named = {_KEY: tables.get(_KEY), "antenna.file": tables.get("antenna", {}).get("file")}
     named |= {f"airspace.{key}": tables["airspace"].get(key) for key in (_FENCE_KEY, _ZONES_KEY)}
     return {"the scenario": path} | {key: path.parent / file for key, file in named.items() if file}

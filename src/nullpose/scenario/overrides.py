@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
@@ -88,20 +88,46 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     """
     # tables are frozen: those that no path leads into are taken as they are
     data = {key: value for key in Scenario.model_fields if (value := getattr(scenario, key)) is not None}
-    faults: list[Fault] = []
-    given = list(overrides)
-    for override in given:
-        try:
-            _apply(parse_override(override) if isinstance(override, str) else override, data)
-        except ScenarioError as error:
-            faults += error.faults
+    changes = list(overrides)
+    faults = _applied(changes, data)
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
         faults += error.faults
     if faults:
-        raise ScenarioError(faults, f"override {listed([str(one).strip() or '(blank)' for one in given])}")
+        raise ScenarioError(faults, _source(changes))
     return changed
+
+
+def overridden(tables: Mapping[str, Any], overrides: Sequence[str | Override]) -> dict[str, Any]:
+    """Returns the tables of a scenario file with the given values in place of its own, not validated.
+
+    Args:
+        tables: of the file.
+        overrides: as for :func:`apply_overrides`.
+
+    Raises:
+        ScenarioError: with every path that does not exist.
+    """
+    data = deepcopy(dict(tables))
+    if faults := _applied(overrides, data):
+        raise ScenarioError(faults, _source(overrides))
+    return data
+
+
+def _applied(overrides: Sequence[str | Override], data: dict[str, Any]) -> list[Fault]:
+    """Sets the values in a raw scenario; returns the faults of those that cannot be set."""
+    faults: list[Fault] = []
+    for override in overrides:
+        try:
+            _apply(parse_override(override) if isinstance(override, str) else override, data)
+        except ScenarioError as error:
+            faults += error.faults
+    return faults
+
+
+def _source(overrides: Sequence[str | Override]) -> str:
+    return f"override {listed([str(override).strip() or '(blank)' for override in overrides])}"
 
 
 def _apply(override: Override, data: dict[str, Any]) -> None:
@@ -119,7 +145,7 @@ def _apply(override: Override, data: dict[str, Any]) -> None:
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "gain_dbi", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right
     if steps[0] == "origin":  # points and areas stay where they are on the Earth
-        airspace = data["airspace"]
+        airspace = data.get("airspace", {})
         points = (point for kind in POINT_LISTS for point in data.get(kind, ()))
         for table in (*points, airspace, *airspace.get("no_fly", ())):
             for key in EARTHLY_KEYS if isinstance(table, dict) else ():

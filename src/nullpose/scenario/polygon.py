@@ -74,7 +74,10 @@ def _judged(corners: tuple[tuple[float, float], ...]) -> tuple[str, tuple[tuple[
     """Returns what keeps corners from bounding one area, in shapely's words, or those not doubled."""
     import shapely
 
-    polygon = shapely.remove_repeated_points(shapely.Polygon(corners), _SAME)
+    try:
+        polygon = shapely.remove_repeated_points(shapely.Polygon(corners), _SAME)
+    except shapely.GEOSException:
+        return "all vertices are one", ()
     if polygon.is_valid and polygon.area:
         return "", tuple(polygon.exterior.coords)[:-1]
     return "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon), ()

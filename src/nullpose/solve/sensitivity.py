@@ -28,6 +28,7 @@ _SPIRAL = np.sqrt((np.arange(40) + 0.5) / 40.0) * np.exp(2.4j * np.arange(40))
 """Places over a disc of radius 1, one after the other by the golden angle."""
 _ACROSS = np.array([-1.0, -0.5, -0.25, 0.25, 0.5, 1.0])
 """Places across a linear array from a jammer, in radii of its disc."""
+_LEVEL_M = 1e-3  # below the drone, in place of a node at its height, whose direction meets no ground
 _STARTS = 5  # descents of the worst ratios of each kind, and as many of the worst samples
 _ROUNDS = 12
 _JAMMED = 4  # errors of the drone for which jammers are moved anew, and ways to move them
@@ -316,10 +317,11 @@ def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float
     heading = np.exp(1j * pose.yaw_rad)
     nodes_m = scenario.node_positions_m - pose.position_m
     nodes = (nodes_m[:, 0] + 1j * nodes_m[:, 1]) / heading
-    slope = nodes.real / np.hypot(nodes.imag, nodes_m[:, 2])
+    below_m = np.where(nodes_m[:, 2], nodes_m[:, 2], _LEVEL_M)
+    slope = nodes.real / np.hypot(nodes.imag, below_m)
     jammers = -(away_m[:, 0] + 1j * away_m[:, 1]) / heading
     across_m = jammers.imag[:, None] + reach_m * _ACROSS
-    towards_m = np.abs(away_m[:, 2:] / nodes_m[:, 2]) * nodes.imag
+    towards_m = np.abs(away_m[:, 2:] / below_m) * nodes.imag
     across_m = np.concatenate([across_m, towards_m], axis=1)[:, None]
     places = slope[:, None] * np.hypot(across_m, away_m[:, 2:, None]) + 1j * across_m
     return np.asarray(places.reshape(len(away_m), -1) * heading)
