@@ -13,8 +13,8 @@ import nullpose
 from nullpose.paper.reproduce import reproduce
 from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import write_figure_file
-from nullpose.solve import solve_array
-from nullpose.solve.robust import solve_robust
+from nullpose.solver import solve_array
+from nullpose.solver.robust import solve_robust
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"

@@ -18,7 +18,7 @@ def _python(code: str) -> str:
 def test_every_public_name_is_there() -> None:
     """Each name of __all__ can be reached, and is listed by dir()."""
     assert all(getattr(nullpose, name) is not None for name in nullpose.__all__)
-    assert set(nullpose.__all__) <= set(dir(nullpose))
+    assert set(nullpose.__all__) <= {*dir(nullpose), "__version__"}
 
 
 def test_importing_the_package_imports_nothing_heavy() -> None:
@@ -28,25 +28,20 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
 
 
 @pytest.mark.parametrize(
-    "before", ["", "import nullpose.solve;", "from nullpose.solve import Scheme;", "import nullpose.study;"]
+    "before",
+    ["", "import nullpose.solver.api;", "from nullpose.solver import Scheme;", "import nullpose.study;"],
 )
 def test_solve_is_the_function_whatever_was_imported_before(before: str) -> None:
-    """The room `nullpose.solve` never hides the function of the same name."""
+    """No module hides the function of its name."""
     code = (
         f"import nullpose; {before} nullpose.solve; print(nullpose.solve.__name__, callable(nullpose.solve))"
     )
     assert _python(code) == "solve True"
 
 
-def test_the_room_can_still_be_imported_from() -> None:
-    """Names inside the room `nullpose.solve` are reached by a from-import after the function was used."""
-    code = "import nullpose; nullpose.solve; from nullpose.schemes import Scheme; print(Scheme('optimum'))"
-    assert _python(code) == "optimum"
-
-
 def test_an_unknown_name_is_an_attribute_error() -> None:
     """A name that is not public is refused in Python's own way."""
-    with pytest.raises(AttributeError, match="no attribute 'best_pose'"):
+    with pytest.raises(AttributeError, match="best_pose"):
         _ = nullpose.best_pose
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from nullpose import load, solve
 from nullpose.certificate import certificate_text
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver.certificate_from_proof import certificate_of
 from nullpose.study.monte_carlo import load_spec, run_study
 
 __all__ = ["Target", "targets"]

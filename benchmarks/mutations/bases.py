@@ -8,8 +8,8 @@ from typing import Any
 from benchmarks.mutations.truth import Data
 from nullpose.certificate import certificate_text
 from nullpose.scenario import Scenario
-from nullpose.solve import solve
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver import solve
+from nullpose.solver.certificate_from_proof import certificate_of
 
 __all__ = ["KINDS", "bases_of", "optima_of"]
 

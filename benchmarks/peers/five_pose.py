@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.family import Family, build_family
 from nullpose.objectives import Ratios
 from nullpose.physics import Pose, min_sinr
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
-from nullpose.solve.kernels.jit import heap_kernel
-from nullpose.solve.kernels.links import derivatives, min_log_ratio
+from nullpose.solver.kernels.jit import heap_kernel
+from nullpose.solver.kernels.links import derivatives, min_log_ratio
 
 __all__ = ["DIMENSIONS", "FivePose"]
 

@@ -11,8 +11,8 @@ from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
 from nullpose.certificate import verify
 from nullpose.physics.objective import objective_value
-from nullpose.solve import Rigour, solve
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver import Rigour, solve
+from nullpose.solver.certificate_from_proof import certificate_of
 
 __all__ = ["Outcome", "check_scene"]
 

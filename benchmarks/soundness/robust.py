@@ -18,7 +18,7 @@ from rich.progress import track
 
 from benchmarks.soundness.search import feasible, nearest_in_band
 from nullpose.scenario import Scenario
-from nullpose.solve.robust import solve_robust
+from nullpose.solver.robust import solve_robust
 
 __all__ = ["Errors", "Verdict", "check_robust", "main", "make_robust_scene", "worst"]
 

@@ -14,12 +14,13 @@ from benchmarks.metric import TIMING, Direction, Metric
 from benchmarks.summaries import median
 from benchmarks.workload import Progress, Row, Section
 from benchmarks.workloads.fields.scenes import ALTITUDE_M, SIDE_M, Scene
-from nullpose.family import AxisField, build_family
-from nullpose.solve import solve
-from nullpose.solve.kernels.axis import best_axis
-from nullpose.solve.kernels.jit import heap_kernel
-from nullpose.solve.kernels.links import min_log_ratio
-from nullpose.solve.kernels.polish import polish
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.solver import solve
+from nullpose.solver.kernels.axis import best_axis
+from nullpose.solver.kernels.jit import heap_kernel
+from nullpose.solver.kernels.links import min_log_ratio
+from nullpose.solver.kernels.polish import polish
 
 __all__ = ["Kernels"]
 

@@ -17,9 +17,9 @@ from claims.study import (
     printed_apart_m,
 )
 from nullpose.physics import received_power_w, to_db
+from nullpose.problem.schemes import Scheme
 from nullpose.report.geometry import distance_m, null_angle_rad
 from nullpose.report.numbers import at_most
-from nullpose.schemes import Scheme
 
 POINTED_DEG = 1.0
 ABOVE_M = 0.1

@@ -22,8 +22,8 @@ from claims.study import (
 )
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
+from nullpose.problem.schemes import Scheme
 from nullpose.report.numbers import at_most
-from nullpose.schemes import Scheme
 
 COINCIDE_DB = 0.01
 CONSTANT_DB = 1e-6

@@ -17,8 +17,8 @@ import numpy as np
 
 import nullpose
 from nullpose.physics.types import FloatArray
-from nullpose.solve import solve_array
-from nullpose.solve.robust import guarantee, solve_robust
+from nullpose.solver import solve_array
+from nullpose.solver.robust import guarantee, solve_robust
 from nullpose.study import AIRFRAME_CASES, AirframeCase, spaced
 
 FOLDER = Path(__file__).parent

@@ -21,7 +21,7 @@ import nullpose
 from nullpose.certificate.boxes import boxes_of
 from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS, WORLD
 from nullpose.report.figures.style import GREY, INK, house_style
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver.certificate_from_proof import certificate_of
 
 DOCS = Path(__file__).parents[1]
 PICTURE = DOCS / "images" / "certificate-boxes.png"

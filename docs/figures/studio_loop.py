@@ -23,7 +23,7 @@ from benchmarks.studio.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
 from nullpose.physics import rotation_world_from_body  # noqa: E402
-from nullpose.solve.proof_steps import proof_steps  # noqa: E402
+from nullpose.solver.proof_steps import proof_steps  # noqa: E402
 from nullpose.studio.proof_bar import step_bar  # noqa: E402
 from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m  # noqa: E402
 from nullpose.studio.server import studio  # noqa: E402

@@ -20,7 +20,7 @@ from nullpose.report.figures.scene import ALONE, Stage, draw_panel
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.report.figures.value_map import draw_field
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.study import AirframeComparison, Field, SweepTable, value_map
 
 __all__ = ["comparison", "heat_map", "plan", "pose", "sweep"]

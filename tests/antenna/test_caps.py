@@ -5,7 +5,7 @@ import pytest
 
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
-from nullpose.solve.kernels.harmonics import fill_cap, fill_gains, fill_jet
+from nullpose.solver.kernels.harmonics import fill_cap, fill_gains, fill_jet
 
 STEP = 2e-3  # of differences, radians
 

@@ -8,7 +8,7 @@ from nullpose import Scenario, load, solve, solve_many, solve_robust
 from nullpose.certificate import verify
 from nullpose.physics import ErrorCase, objective_under, objective_value, rotation_between
 from nullpose.scenario import apply_overrides
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver.certificate_from_proof import certificate_of
 
 PAPER = load("examples/paper.toml")
 

@@ -25,7 +25,7 @@ from benchmarks.workloads.fields.standing import (
     standings,
 )
 
-from nullpose.solve import Status, solve
+from nullpose.solver import Status, solve
 
 A = Scene(nodes=2, jammers=1, jamming_ratio=1.0, seed=0)
 B = Scene(nodes=3, jammers=1, jamming_ratio=1.0, seed=0)

@@ -9,8 +9,7 @@ import pytest
 from benchmarks.fuzz.__main__ import main
 from benchmarks.fuzz.check import check_file, damaged, in_a_process, in_this_process
 from benchmarks.fuzz.targets import Target, targets
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 SCENE = b"[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\nreference_gain_db = 0.0\n"
 PROOF = b'{"format": "nullpose-certificate", "x": '

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from benchmarks.judges import __main__ as judges
-from benchmarks.judges import ray_tracer, wires
+from benchmarks.judges import __main__ as judges, ray_tracer, wires
 from benchmarks.judges.verdict import Verdict, page
 
 GOOD = Verdict("engine 1.0", "a link", 12, 1e-6, 1e-4)

@@ -12,13 +12,14 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.frames import Frames
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
-from nullpose.family import Family, build_family
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
-from nullpose.solve import solve
-from nullpose.solve.certificate_from_proof import certificate_of
-from nullpose.solve.leaves_from_proof import leaves_of
-from nullpose.solve.options import SolveOptions
-from nullpose.solve.solve_and_prove import solve_and_prove
+from nullpose.solver import solve
+from nullpose.solver.certificate_from_proof import certificate_of
+from nullpose.solver.leaves_from_proof import leaves_of
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.solve_and_prove import solve_and_prove
 
 Place = tuple[float, float, float]
 

@@ -5,15 +5,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link_jet
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import AFFINE
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import Exact, exact, link
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -10,7 +10,8 @@ from nullpose.certificate.affine_test import affine_holds
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import AFFINE, TOWARDS, WORLD, Leaves
 from nullpose.certificate.free_test import free_holds
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 # a notched block with a floor and a ceiling, a cylinder, and a fence with a corner that points inwards
 BLOCK = np.array([[10.0, 10.0], [40.0, 10.0], [40.0, 40.0], [25.0, 20.0], [10.0, 40.0]])

@@ -5,13 +5,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.certificate.axis_cells import cell_ends, off_band_holds, side_form
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.forms import quadratic
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.certificate.boxes import Boxes, boxes_of, parts
 from nullpose.certificate.weighted_sum import mix_slots

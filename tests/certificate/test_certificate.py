@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from nullpose.certificate import claimed_axes
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
 from nullpose.scenario import Airframe
-from nullpose.solve import Scheme
+from nullpose.solver import Scheme
 
 
 def test_each_scheme_names_its_axes(random_scene: Callable) -> None:
@@ -91,7 +91,7 @@ def test_the_verifier_needs_no_solver() -> None:
     """Importing the verifier loads neither the solver nor its compiler."""
     program = (
         "import sys, nullpose.certificate\n"
-        "others = ('nullpose.solve', 'nullpose.report', 'numba', 'scipy')\n"
+        "others = ('nullpose.solver', 'nullpose.report', 'numba', 'scipy')\n"
         "print([name for name in sys.modules if name.startswith(others)])\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

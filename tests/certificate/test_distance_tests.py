@@ -3,12 +3,11 @@
 from collections.abc import Callable
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -4,15 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.forms import COLUMN, ROW, matrices
 from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
@@ -18,7 +17,7 @@ from nullpose.certificate.free_test import (
 )
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.linear import Linear, negative_definite
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
 

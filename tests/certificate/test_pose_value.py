@@ -7,8 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.pose_value import (
     antenna_axis,
@@ -20,15 +19,16 @@ from nullpose.certificate.pose_value import (
     smallest_ratio,
     square_root,
 )
-from nullpose.family import AxisField, build_family
 from nullpose.physics import (
     Pose,
+    antenna_axis as physics_axis,
     maximum_gain_axis,
     min_sinr,
     rotation_world_from_body,
     zero_interference_axis,
 )
-from nullpose.physics import antenna_axis as physics_axis
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
 
 seeds = st.integers(0, 2**32 - 1)
 angles = st.floats(-4.0, 4.0)

@@ -15,7 +15,7 @@ from nullpose.certificate.certificate import WORLD
 from nullpose.certificate.file import certificate_text
 from nullpose.certificate.profile_test import sine_cosine
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver.certificate_from_proof import certificate_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TILTED = ["airframe.tilt_max_deg=30", "airframe.mount_deg=90"]

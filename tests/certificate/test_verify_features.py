@@ -10,7 +10,7 @@ import pytest
 
 from nullpose.certificate import Certificate, certificate_text, differences, parse_certificate, verify
 from nullpose.certificate.certificate import KEPT_OUT
-from nullpose.family import build_family
+from nullpose.problem.build import build_family
 from nullpose.scenario import Airspace, Eavesdropper, Scenario, Transmitter
 from nullpose.scenario.polygon import depth_m
 

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.constraint import Constraint
@@ -13,7 +12,9 @@ from nullpose.certificate.distance_tests import kept_out_holds
 from nullpose.certificate.interval import dot
 from nullpose.certificate.zones import forbidden, zone_alternatives
 from nullpose.errors import ScenarioError
-from nullpose.family import AxisField, Family, build_family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
 
 seeds = st.integers(0, 2**32 - 1)

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import Result
 
 from nullpose import __version__
-from nullpose.schemes import Scheme
+from nullpose.problem.schemes import Scheme
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]

@@ -14,7 +14,7 @@ from typer.testing import Result
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.progress import GapBar
-from nullpose.schemes import Scheme
+from nullpose.problem.schemes import Scheme
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]

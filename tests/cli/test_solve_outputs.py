@@ -43,7 +43,7 @@ def unsolvable(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object, **__: object) -> None:
         raise AssertionError("solved before the outputs were looked at")
 
-    monkeypatch.setattr(import_module("nullpose.solve"), "solve", fail)
+    monkeypatch.setattr(import_module("nullpose.solver"), "solve", fail)
     monkeypatch.setattr(import_module("nullpose.study"), "compare_airframes", fail)
     monkeypatch.setattr(SweepPlan, "run", fail)
 

@@ -8,7 +8,7 @@ import pytest
 
 from nullpose import Scenario, load
 from nullpose.physics import min_sinr, to_db
-from nullpose.solve import Result, solve
+from nullpose.solver import Result, solve
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "antennas.md").read_text(encoding="utf-8")

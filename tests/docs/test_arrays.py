@@ -8,7 +8,7 @@ import pytest
 
 import nullpose
 from nullpose.scenario import Array
-from nullpose.solve import Status, solve_array
+from nullpose.solver import Status, solve_array
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "arrays.md").read_text(encoding="utf-8")

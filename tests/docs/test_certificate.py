@@ -6,8 +6,8 @@ from pathlib import Path
 
 from nullpose.certificate import certificate_text, verify
 from nullpose.scenario import load
-from nullpose.solve import solve
-from nullpose.solve.certificate_from_proof import certificate_of
+from nullpose.solver import solve
+from nullpose.solver.certificate_from_proof import certificate_of
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "certificate.md").read_text(encoding="utf-8")

@@ -10,8 +10,7 @@ from claims.claim import Claim
 from claims.claims import CLAIMS
 from claims.page import check_claims, claims_page
 from claims.study import JammingStudy, at_least
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose import Scenario
 from nullpose.paper.reproduce import Reproduction
@@ -19,7 +18,7 @@ from nullpose.paper.scene import JAMMER_POWER, paper_scenario
 from nullpose.physics import maximum_gain_sinr
 from nullpose.report.certainty import Certainty
 from nullpose.scenario import Override, apply_overrides
-from nullpose.solve import Objective
+from nullpose.solver import Objective
 from nullpose.study import SweepTable
 
 PAGE = (Path(__file__).parents[2] / "docs" / "claims.md").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ import pytest
 import typer
 
 from nullpose.cli.app import app
-from nullpose.solve import Scheme
+from nullpose.solver import Scheme
 
 PAGE = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
 VERBS = typer.main.get_command(app).commands

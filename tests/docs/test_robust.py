@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import nullpose
-from nullpose.solve.robust import guarantee, solve_robust
+from nullpose.solver.robust import guarantee, solve_robust
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "robust.md").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from nullpose.paper.reproduce import Reproduction
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep
-from nullpose.solve import Objective
+from nullpose.solver import Objective
 from nullpose.study import SweepTable
 
 PRINTED_COLOUR = "#9a6060"

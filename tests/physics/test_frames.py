@@ -7,8 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pymap3d
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import (

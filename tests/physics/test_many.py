@@ -1,8 +1,7 @@
 """Many scenes at once: the same numbers as one at a time."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.physics import margin, margins_of_many
 from nullpose.scenario import Scenario

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.physics import margin, objective_value, secrecy_rate, sinr
 from nullpose.scenario import Scenario, apply_overrides

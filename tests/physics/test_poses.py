@@ -5,8 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose import NullposeError
 from nullpose.physics import Pose, Poses, evaluate, min_margin, min_secrecy_rate, min_sinr

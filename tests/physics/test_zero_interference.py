@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
 

@@ -3,13 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose import Pose, Status
 from nullpose.report.certainty import Certainty, certainty_lines
 from nullpose.report.numbers import at_most, short
-from nullpose.solve import Objective
+from nullpose.solver import Objective
 from nullpose.study import SweepRow, SweepTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)

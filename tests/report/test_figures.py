@@ -12,7 +12,7 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.report.figures.pattern import pattern_surface_m
 from nullpose.report.figures.style import CURVES
 from nullpose.report.figures.sweep import draw_sweep
-from nullpose.solve import Scheme
+from nullpose.solver import Scheme
 from nullpose.study import SweepTable, sweep
 
 

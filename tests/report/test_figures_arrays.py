@@ -10,7 +10,7 @@ from nullpose.physics.array import element_positions
 from nullpose.report.figures.pattern import beam_surface_m
 from nullpose.report.figures.poses import draw_array
 from nullpose.report.figures.style import write_figure_file
-from nullpose.solve import ArraySolution, solve_array
+from nullpose.solver import ArraySolution, solve_array
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "array.toml"
 

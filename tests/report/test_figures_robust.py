@@ -12,7 +12,7 @@ from nullpose import Scenario, load
 from nullpose.report.figures.bodies import draw_set, set_box_m
 from nullpose.report.figures.poses import draw_robust
 from nullpose.report.geometry import distance_m
-from nullpose.solve.robust import RobustSolution, solve_robust
+from nullpose.solver.robust import RobustSolution, solve_robust
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "robust.toml"
 

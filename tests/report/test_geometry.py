@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose import Pose
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad

@@ -9,7 +9,7 @@ import pytest
 from nullpose import Link, Scenario, load
 from nullpose.objectives import Quantity
 from nullpose.report.numbers import bound_text, bound_words, value_words
-from nullpose.solve import Objective
+from nullpose.solver import Objective
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from nullpose import Scenario, apply_overrides, load
 from nullpose.report.results import robust_view
 from nullpose.report.words import error_words
-from nullpose.solve.robust import solve_robust
+from nullpose.solver.robust import solve_robust
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

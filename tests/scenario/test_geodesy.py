@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pymap3d
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, ned_from_enu
 

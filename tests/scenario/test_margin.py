@@ -8,8 +8,8 @@ import pytest
 import shapely
 
 from nullpose.errors import ScenarioError
-from nullpose.family import build_family
 from nullpose.physics import Pose
+from nullpose.problem.build import build_family
 from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides
 from nullpose.scenario.margin import offset_outlines_m
 from nullpose.study.evaluation import pose_faults

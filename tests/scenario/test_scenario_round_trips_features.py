@@ -5,8 +5,7 @@ import pickle
 import tomllib
 from typing import Any
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from nullpose.scenario import Scenario, apply_overrides
 

@@ -1,8 +1,8 @@
 """The words for how far a solve has come."""
 
 from nullpose.scenario import Scenario
-from nullpose.solve import Status, solve
-from nullpose.solve.robust import solve_robust
+from nullpose.solver import Status, solve
+from nullpose.solver.robust import solve_robust
 from nullpose.studio.answer import answer_of, signed, status_words, with_errors
 from nullpose.studio.case import OPTIMUM, case_named
 

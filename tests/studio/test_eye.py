@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, seed
-from hypothesis import strategies as st
+from hypothesis import given, seed, strategies as st
 
 from nullpose.studio.eye import Eye
 

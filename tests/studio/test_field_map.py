@@ -8,7 +8,7 @@ import pytest
 from nullpose import load
 from nullpose.physics import objective_value, to_db
 from nullpose.scenario import NoFlyZone, Scenario
-from nullpose.solve import best_axis, solve
+from nullpose.solver import best_axis, solve
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, Case, case_named, cases_of
 from nullpose.studio.colours import scale_range

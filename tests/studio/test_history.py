@@ -1,7 +1,6 @@
 """Undo and redo."""
 
-from hypothesis import given, seed
-from hypothesis import strategies as st
+from hypothesis import given, seed, strategies as st
 
 from nullpose.scenario import Scenario
 from nullpose.studio.case import CASES

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, seed
-from hypothesis import strategies as st
+from hypothesis import given, seed, strategies as st
 
 from nullpose.studio.eye import Eye
 from nullpose.studio.labels import ANCHORS, Labels, Rank, _box_px

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, seed
-from hypothesis import strategies as st
+from hypothesis import given, seed, strategies as st
 
 from nullpose.antenna import SHORT_DIPOLE, PatternAntenna
 from nullpose.antenna.pattern import harmonics_of_rows

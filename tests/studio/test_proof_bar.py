@@ -7,7 +7,7 @@ import pytest
 
 from nullpose import solve
 from nullpose.scenario import Scenario
-from nullpose.solve.proof_steps import ProofStep, proof_steps
+from nullpose.solver.proof_steps import ProofStep, proof_steps
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.events import Progress

@@ -12,7 +12,7 @@ from nullpose.errors import ScenarioError
 from nullpose.report.numbers import MINUS, fixed
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.solve.robust import solve_robust
+from nullpose.solver.robust import solve_robust
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.readout import about_html, failure_html, readout_html

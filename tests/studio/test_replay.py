@@ -8,7 +8,7 @@ import pytest
 
 from nullpose import solve
 from nullpose.scenario import Scenario
-from nullpose.solve.proof_steps import ProofStep, proof_steps
+from nullpose.solver.proof_steps import ProofStep, proof_steps
 from nullpose.studio.replay import MOST_BOXES, Replay, drawn_airspace_m
 
 ROOM_M = np.array([[-50.0, -50.0, 8.0], [50.0, 50.0, 30.0]])

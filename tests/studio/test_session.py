@@ -12,7 +12,7 @@ from nullpose import load
 from nullpose.errors import ScenarioError, SolveError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.solve import Status, solve
+from nullpose.solver import Status, solve
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.events import Event, Progress

@@ -3,7 +3,7 @@
 import pytest
 
 from nullpose.scenario import Scenario
-from nullpose.solve import Status, solve
+from nullpose.solver import Status, solve
 from nullpose.studio.case import cases_of
 from nullpose.studio.steps import power_curves, quick_answers
 from nullpose.studio.view import View

@@ -7,7 +7,7 @@ import pytest
 from nullpose import Scenario, load
 from nullpose.errors import UsageError
 from nullpose.physics import min_sinr
-from nullpose.solve import solve
+from nullpose.solver import solve
 from nullpose.study import AntennaComparison, compare_antennas
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

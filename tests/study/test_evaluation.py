@@ -8,7 +8,7 @@ import pytest
 from nullpose.errors import UsageError
 from nullpose.physics import Pose, Poses, min_sinr
 from nullpose.scenario import Airframe, Scenario, apply_overrides
-from nullpose.solve import solve
+from nullpose.solver import solve
 from nullpose.study import evaluate_against
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nullpose import Link, Pose, Status
-from nullpose.solve import Objective
+from nullpose.solver import Objective
 from nullpose.study import SweepRow, SweepTable
 
 

@@ -10,7 +10,7 @@ import pytest
 from nullpose.errors import UsageError
 from nullpose.physics import objective_value, to_db
 from nullpose.scenario import Airframe, Scenario, apply_overrides
-from nullpose.solve import best_axis, solve
+from nullpose.solver import best_axis, solve
 from nullpose.study import value_map
 
 

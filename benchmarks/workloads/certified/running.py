@@ -17,10 +17,10 @@ from benchmarks.summaries import median
 from benchmarks.workloads.certified.record import Record
 from nullpose.physics import Pose, min_sinr
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solve import solve
+from nullpose.solver import solve
 
 if TYPE_CHECKING:
-    from nullpose.solve import Solution
+    from nullpose.solver import Solution
 
 __all__ = ["GAP", "NULLPOSE", "certify", "missing", "paper_scene", "run_nullpose", "run_prover"]
 

@@ -16,7 +16,7 @@ from benchmarks.workload import Progress, Row
 from benchmarks.workloads.certified_fields.record import Memory, Purpose, Record, to_row
 from benchmarks.workloads.fields.scenes import Scene
 from nullpose.physics import min_sinr
-from nullpose.solve import solve
+from nullpose.solver import solve
 
 __all__ = ["FULL", "QUICK", "Plan", "measure_apart", "run_all"]
 

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from benchmarks.peers import Budget, FivePose, Peer
 from benchmarks.workloads.fields.record import Record
 from benchmarks.workloads.fields.scenes import Scene
-from nullpose.family import AxisField, build_family
 from nullpose.physics import Pose, min_sinr
-from nullpose.solve import Status, solve
-from nullpose.solve.multistart import SearchSettings, multistart
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.solver import Status, solve
+from nullpose.solver.multistart import SearchSettings, multistart
 
 __all__ = [
     "FULL",

@@ -28,7 +28,8 @@ from nullpose.certificate.forms import (
 )
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.weighted_sum import weighted_sum
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 _SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
 _UNIT = Interval(np.eye(3)[:, :, None])

@@ -12,7 +12,7 @@ from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.constraint import Constraint
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import zone_alternatives
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 # Constraints with a multiplier, not negative, for each box.
 Weighted: TypeAlias = list[tuple[FloatArray, Constraint]]

@@ -8,7 +8,8 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.forms import PLACE
 from nullpose.certificate.interval import Interval
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 
 def cell_ends(cell: IntArray, side: int) -> tuple[FloatArray, FloatArray]:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from nullpose.antenna import PatternAntenna
 from nullpose.certificate.profile import ProfileField
-from nullpose.family import AxisField
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario
-from nullpose.schemes import RECORDS
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]

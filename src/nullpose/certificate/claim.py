@@ -20,8 +20,9 @@ from nullpose.certificate.pose_value import (
     smallest_ratio,
 )
 from nullpose.certificate.profile import profiles_of
-from nullpose.family import AxisField, Family
 from nullpose.objectives import Quantity
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 from nullpose.scenario import Airframe, Scenario
 
 # The stated value may differ from the pose's by so much: it was rounded.

@@ -17,7 +17,7 @@ from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITY, PLACE, ROW, ma
 from nullpose.certificate.interval import Interval, dot, stack, where
 from nullpose.certificate.linear import Linear
 from nullpose.certificate.weighted_sum import Multiple, weighted_sum
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 # The derivatives of a link vector along a unit direction, times powers of the distance; and of its square.
 _UP = 1.0 + 1e-9

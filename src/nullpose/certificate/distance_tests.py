@@ -8,7 +8,8 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, Leaves
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 
 def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:

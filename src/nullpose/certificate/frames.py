@@ -16,7 +16,7 @@ from nullpose.certificate.certificate import TOWARDS, IntArray, Leaves
 from nullpose.certificate.forms import COLUMN, PLACE, ROW, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.linear import Linear
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 # Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up.
 SWING = (1.0 + np.sqrt(2.0)) * (1.0 + 1e-12)

@@ -17,7 +17,8 @@ from nullpose.certificate.frames import SWING, Frames, anchor_shape, constant, e
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.linear import Linear
 from nullpose.certificate.weighted_sum import weighted_sum
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 _LARGEST_ETA = 0.5
 _SWERVE = (2.0 + 2.0 / np.sqrt(3.0)) * (1.0 + 1e-12)  # see "Near a null", rounded up

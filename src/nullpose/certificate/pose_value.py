@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 if TYPE_CHECKING:
     from nullpose.certificate.profile import Profile

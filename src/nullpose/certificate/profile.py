@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from nullpose.antenna import PatternAntenna
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import sine_cosine
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 
 FloatArray: TypeAlias = NDArray[np.float64]

@@ -27,7 +27,8 @@ from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.jets import PAIRS, Jet, flat, largest
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.weighted_sum import weighted_sum
-from nullpose.family import AxisField, Family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
 
 _ROUNDS = 60  # of halving what is not excluded
 _MOST = (

@@ -8,7 +8,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
 from nullpose.objectives import Quantity
-from nullpose.schemes import RECORDS
+from nullpose.problem.schemes import RECORDS
 
 
 def sentence(certificate: Certificate, leaves: int) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.file import scenario_digest
-from nullpose.family import build_family
+from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 
 

@@ -31,7 +31,9 @@ from nullpose.certificate.free_test import free_holds
 from nullpose.certificate.profile import ProfileField, loudest
 from nullpose.certificate.profile_test import profile_holds
 from nullpose.certificate.sentence import sentence
-from nullpose.family import AxisField, Family, build_family
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
 
 _CHUNK = 4096
 _CUT_AT_ONCE = 128

@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval, where
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 # A ground point for each box, and by what its form is multiplied: exactly zero where it does not count.
 Multiple: TypeAlias = tuple[IntArray, Interval]

@@ -15,7 +15,7 @@ from nullpose.certificate.certificate import FloatArray, IntArray
 from nullpose.certificate.constraint import Constraint
 from nullpose.certificate.interval import Interval, stack
 from nullpose.certificate.outline import Outline, may_meet
-from nullpose.family import Family
+from nullpose.problem.family import Family
 
 _CYLINDER, _FENCE = 1, 2
 _FLAT = np.array([1.0, 1.0, 0.0])

@@ -82,8 +82,8 @@ def evaluate(
     from nullpose.physics import Pose, Poses
     from nullpose.report.evaluation import evaluation_view
     from nullpose.scenario.plausibility import close_to_degrees
-    from nullpose.solve import solve
-    from nullpose.solve.options import SolveOptions
+    from nullpose.solver import solve
+    from nullpose.solver.options import SolveOptions
     from nullpose.study import evaluate_against, poses_from_csv
 
     if [pose, pose_lat_lon, poses].count(None) != 2 or (poses is not None and attitude is not None):

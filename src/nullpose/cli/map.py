@@ -23,7 +23,7 @@ from nullpose.cli.options import (
 )
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import GapBar
-from nullpose.schemes import Scheme
+from nullpose.problem.schemes import Scheme
 
 
 def best_map(
@@ -60,8 +60,8 @@ def best_map(
     from nullpose.files import check_outputs, prepare_folder
     from nullpose.report.value_map import map_view, write_map
     from nullpose.scenario.loading import files_of
-    from nullpose.solve import solve
-    from nullpose.solve.options import SolveOptions
+    from nullpose.solver import solve
+    from nullpose.solver.options import SolveOptions
     from nullpose.study.value_map import require_map, value_map
 
     scenario = read_scenario(file, overrides, allow_outside)

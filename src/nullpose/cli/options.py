@@ -12,7 +12,7 @@ from nullpose.cli.printing import say
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
-    from nullpose.solve import ErrorSizes
+    from nullpose.solver import ErrorSizes
 
 
 class FigureWidth(StrEnum):
@@ -177,7 +177,7 @@ def error_sizes(text: str | None) -> ErrorSizes:
     from dataclasses import fields
 
     from nullpose.errors import UsageError
-    from nullpose.solve.sensitivity import ErrorSizes
+    from nullpose.solver.sensitivity import ErrorSizes
 
     names = [field.name for field in fields(ErrorSizes)]
     sizes: dict[str, float] = {}

@@ -88,8 +88,8 @@ def show_json(value: object) -> None:
 @contextmanager
 def compiling_announced() -> Iterator[None]:
     """Let Python run kernels until other processes have compiled them; say so where that is waited for."""
-    from nullpose.solve.background_compiler import BackgroundCompiler
-    from nullpose.solve.compiling import announce_compiling
+    from nullpose.solver.background_compiler import BackgroundCompiler
+    from nullpose.solver.compiling import announce_compiling
 
     announce = cache(partial(say, _COMPILING, err=True))
     with BackgroundCompiler(announce).in_use(), announce_compiling(announce):

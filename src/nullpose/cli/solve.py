@@ -34,11 +34,11 @@ from nullpose.cli.options import (
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import GapBar, Ticker
-from nullpose.schemes import Scheme
+from nullpose.problem.schemes import Scheme
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
-    from nullpose.solve import ErrorSizes, Result
+    from nullpose.solver import ErrorSizes, Result
 
 _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
 
@@ -98,7 +98,7 @@ def solve(
         found = _solve_robustly(scenario, sizes, options)
     elif scenario.array is not None:
         refuse("for a scenario with an [array]", geojson=geojson, **of_one_dipole)
-        from nullpose.solve import solve_array
+        from nullpose.solver import solve_array
 
         with compiling_announced():
             found = solve_array(scenario, **{name: options[name] for name in ("gap", "certify", "seed")})
@@ -115,8 +115,8 @@ def solve(
 def _solve_robustly(scenario: Scenario, sizes: ErrorSizes, options: dict[str, Any]) -> Result:
     """Return the pose that guarantees most under the scenario's errors, or those of the sizes."""
     from nullpose.scenario.overrides import Override, apply_overrides
-    from nullpose.solve.options import SolveOptions
-    from nullpose.solve.robust import ROBUST_GAP, solve_robust
+    from nullpose.solver.options import SolveOptions
+    from nullpose.solver.robust import ROBUST_GAP, solve_robust
 
     note, disc_m = "", [sizes.jammers_m, sizes.jammers_m, 0.0]
     if not scenario.is_uncertain:
@@ -146,11 +146,11 @@ def _solve_dipole(
     Raises:
         UsageError: before any work, there is no proof that could be checked.
     """
-    from nullpose.solve import solve as solve_scenario
-    from nullpose.solve.options import SolveOptions
+    from nullpose.solver import solve as solve_scenario
+    from nullpose.solver.options import SolveOptions
 
     if checked:
-        from nullpose.solve.certificate_from_proof import require_certificate, verified
+        from nullpose.solver.certificate_from_proof import require_certificate, verified
 
         require_certificate(scenario, scheme.value, null_jammer)
     target = SolveOptions(**options).of(scenario).target
@@ -172,7 +172,7 @@ def _write(
     """Return the files that were asked for after writing them."""
     if certificate is not None:
         from nullpose.certificate import write_certificate
-        from nullpose.solve.certificate_from_proof import certificate_of
+        from nullpose.solver.certificate_from_proof import certificate_of
 
         write_certificate(certificate_of(solution), certificate)
     if geojson is not None:

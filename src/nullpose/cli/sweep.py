@@ -22,7 +22,7 @@ from nullpose.cli.options import (
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.printing import say
 from nullpose.cli.progress import Ticker
-from nullpose.schemes import Scheme
+from nullpose.problem.schemes import Scheme
 
 
 def sweep(

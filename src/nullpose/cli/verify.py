@@ -34,8 +34,7 @@ def verify(
 
     The check uses interval arithmetic and imports nothing from the solver.
     """
-    from nullpose.certificate import differences, read_certificate, subject
-    from nullpose.certificate import verify as verify_certificate
+    from nullpose.certificate import differences, read_certificate, subject, verify as verify_certificate
     from nullpose.report.scenario import scenario_view
     from nullpose.scenario import load
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from nullpose.paper.printed import PrintedPoint
+from nullpose.problem.schemes import Curve, Scheme
 from nullpose.report.certainty import labelled_certainty
 from nullpose.report.document import grouped
 from nullpose.report.figures.style import CURVES, draw_curve, house_style
 from nullpose.report.figures.sweep import draw_caption, draw_curves
 from nullpose.report.numbers import MINUS, begun
-from nullpose.schemes import Curve, Scheme
 from nullpose.study import SweepTable
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.family import build_family
 from nullpose.paper.scene import JAMMER_POWER
 from nullpose.physics import to_db
 from nullpose.physics.maximum_gain import direction_product
 from nullpose.physics.types import FloatArray
+from nullpose.problem.build import build_family
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.solve.position_search import search_positions
+from nullpose.solver.position_search import search_positions
 
 
 class PrintedPoint(NamedTuple):

@@ -16,11 +16,11 @@ from nullpose.paper.scene import (
     PRINTED_LEVELS,
     paper_scenario,
 )
+from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import Certainty
 from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
-from nullpose.schemes import Scheme
 from nullpose.study import SweepTable, sweep
 
 _FILES = ("figure2.png", "figure2.svg", "figure2.csv", "figure2-printed.csv", "poses.png", "poses.svg")

@@ -12,7 +12,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, document, grouped, head, rows, table
 from nullpose.report.numbers import begun, bound_text, fixed, less_or_more, percent, short
-from nullpose.solve import Status
+from nullpose.solver import Status
 from nullpose.study import AirframeComparison, AirframeResult
 from nullpose.study.airframe_comparison import TOLERANCE
 

@@ -12,7 +12,7 @@ from nullpose.report.document import View, beside, document, grouped, head, rows
 from nullpose.report.geometry import tilt_rad
 from nullpose.report.numbers import begun, bound_text, degrees_text, fixed, with_unit
 from nullpose.report.results import azimuth_text
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.study import AntennaComparison
 
 

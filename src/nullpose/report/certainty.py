@@ -6,10 +6,10 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from nullpose.problem.schemes import Scheme
 from nullpose.report.document import grouped
 from nullpose.report.numbers import begun, short
-from nullpose.schemes import Scheme
-from nullpose.solve import Rigour, Status
+from nullpose.solver import Rigour, Status
 from nullpose.study import SweepRow, SweepTable
 
 

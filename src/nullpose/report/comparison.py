@@ -9,6 +9,7 @@ from typing import Any
 
 from nullpose.notebook import html_table
 from nullpose.objectives import Quantity
+from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, table
 from nullpose.report.geometry import null_angle_rad, tilt_rad
@@ -16,8 +17,7 @@ from nullpose.report.numbers import bound_text, degrees_text, fixed
 from nullpose.report.results import azimuth_text, binding_nodes, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
-from nullpose.schemes import Scheme
-from nullpose.solve import Result, compare
+from nullpose.solver import Result, compare
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -69,7 +69,7 @@ def compare_all(scenario: Scenario, **options: Any) -> Comparison:
 
     Args:
         scenario: nodes, jammers, receiver and airspace.
-        options: of :func:`nullpose.solve.compare`.
+        options: of :func:`nullpose.solver.compare`.
     """
     reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in Scheme]
     left_out = tuple((scheme, reason) for scheme, reason in reasons if reason is not None)

@@ -20,8 +20,8 @@ from nullpose.report.plain import json_text
 from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
-from nullpose.solve import Result
-from nullpose.solve.robust import RobustDetails
+from nullpose.solver import Result
+from nullpose.solver.robust import RobustDetails
 
 _Feature = dict[str, object]
 

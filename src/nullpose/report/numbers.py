@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from nullpose.objectives import Quantity
 
 if TYPE_CHECKING:
-    from nullpose.solve import Objective
+    from nullpose.solver import Objective
 
 MINUS = "\N{MINUS SIGN}"
 _UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degrees", "m2": "per m²"}

@@ -30,9 +30,9 @@ from nullpose.report.numbers import (
 from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
-from nullpose.solve import Objective, Result, Rigour
-from nullpose.solve.array import ArrayDetails
-from nullpose.solve.robust import GuardedPose, RobustDetails
+from nullpose.solver import Objective, Result, Rigour
+from nullpose.solver.array import ArrayDetails
+from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.study.evaluation import GivenDetails
 
 BINDING_RTOL = 1e-6

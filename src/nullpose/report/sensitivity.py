@@ -8,8 +8,8 @@ from nullpose.antenna import PatternAntenna
 from nullpose.physics import interferer_gains
 from nullpose.report.document import View, document, rows, table
 from nullpose.report.numbers import number, with_unit
-from nullpose.solve import ErrorSizes, Result
-from nullpose.solve.robust import RobustDetails
+from nullpose.solver import ErrorSizes, Result
+from nullpose.solver.robust import RobustDetails
 
 NULL_LOSS_DB = 3.0
 """A pose that loses more than this is said to depend on the errors."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.document import View, document, grouped, table
 from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.numbers import begun, bound_text
-from nullpose.schemes import Scheme
-from nullpose.solve import Status
+from nullpose.solver import Status
 from nullpose.study import SweepRow, SweepTable
 
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file

@@ -8,7 +8,7 @@ from nullpose.report.document import View, head
 from nullpose.report.figures.style import write_figure
 from nullpose.report.figures.value_map import draw_value_map
 from nullpose.report.numbers import bound_words, count_of, fixed, value_words
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.study import Field
 
 

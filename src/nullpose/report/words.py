@@ -7,7 +7,7 @@ import math
 from nullpose.physics import Geodetic
 from nullpose.report.numbers import count_of
 from nullpose.scenario import Airframe, Array, Eavesdropper, Jammer, Origin, Scenario
-from nullpose.solve import Result
+from nullpose.solver import Result
 
 
 def airframe_words(airframe: Airframe, tilt_rad: float | None = None) -> str:

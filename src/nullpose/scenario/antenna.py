@@ -9,8 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from nullpose.antenna import Antenna as AnyAntenna
-from nullpose.antenna import PatternAntenna, short_dipole
+from nullpose.antenna import Antenna as AnyAntenna, PatternAntenna, short_dipole
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.antenna.pattern import (
     half_wave_harmonics,

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
-from nullpose.antenna import SHORT_DIPOLE, GroundAntennas, unit_axis
-from nullpose.antenna import Antenna as AnyAntenna
+from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna, GroundAntennas, unit_axis
 from nullpose.errors import WrongTypeError
 from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from nullpose.report.numbers import MINUS, fixed, short
 from nullpose.report.results import binding_nodes
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
-from nullpose.solve import Result, Status
-from nullpose.solve.robust import GuardedPose, RobustDetails
+from nullpose.solver import Result, Status
+from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
 
 

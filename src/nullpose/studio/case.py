@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
-from nullpose.solve import Scheme
+from nullpose.solver import Scheme
 from nullpose.study import AIRFRAME_CASES, AirframeCase
 
 

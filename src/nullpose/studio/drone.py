@@ -12,7 +12,7 @@ from nullpose.antenna import Antenna, PatternAntenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import fixed
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import scale_colours
 from nullpose.studio.drawing import add_coloured_mesh, add_lines, add_mesh, put

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.studio.colours import linear_colours, scale_colours
 from nullpose.studio.drawing import add_lines, add_mesh, put
 from nullpose.studio.look import Look

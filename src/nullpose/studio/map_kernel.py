@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from nullpose.family import build_family
-from nullpose.solve.background_compiler import BackgroundCompiler
+from nullpose.problem.build import build_family
+from nullpose.solver.background_compiler import BackgroundCompiler
 from nullpose.studio.edits import new_scenario
 
 _asking = threading.Lock()
@@ -23,7 +23,7 @@ def map_kernel_is_ready() -> bool:
 @cache
 def _compiler() -> BackgroundCompiler:
     """Return what compiles the kernel, after one call that asks for it."""
-    from nullpose.solve.kernels.axis import best_axis
+    from nullpose.solver.kernels.axis import best_axis
 
     compiler = BackgroundCompiler()
     with compiler.in_use():

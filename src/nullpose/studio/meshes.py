@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import Antenna, PatternAntenna
-from nullpose.family.convex import convex_parts
 from nullpose.physics import Pose
+from nullpose.problem.convex import convex_parts
 
 
 class Mesh(NamedTuple):

@@ -6,8 +6,8 @@ import math
 from html import escape
 
 from nullpose.report.numbers import fixed, short
-from nullpose.solve import Result
-from nullpose.solve.proof_steps import ProofStep
+from nullpose.solver import Result
+from nullpose.solver.proof_steps import ProofStep
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css
 from nullpose.studio.events import Progress

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 from viser import ClientHandle
 
-from nullpose.solve import Result
-from nullpose.solve.proof_steps import ProofStep, has_proof_steps, proof_steps
+from nullpose.solver import Result
+from nullpose.solver.proof_steps import ProofStep, has_proof_steps, proof_steps
 from nullpose.studio.answer import Answer
 from nullpose.studio.panel import Panel
 from nullpose.studio.proof_bar import OPEN_BAR, answer_bar, progress_bar, step_bar

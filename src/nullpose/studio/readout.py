@@ -10,8 +10,8 @@ import numpy as np
 from nullpose.antenna import PatternAntenna
 from nullpose.errors import ScenarioError
 from nullpose.report.geometry import null_angle_rad
-from nullpose.solve import Result
-from nullpose.solve.robust import GuardedPose
+from nullpose.solver import Result
+from nullpose.solver.robust import GuardedPose
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css
 from nullpose.studio.look import DARK, LIGHT, either

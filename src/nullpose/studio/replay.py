@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.scenario import Scenario
-from nullpose.solve.proof_steps import ProofStep
+from nullpose.solver.proof_steps import ProofStep
 from nullpose.studio.drawing import FLAT, put
 from nullpose.studio.meshes import Mesh
 from nullpose.studio.scene import ground_m

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, require_scenario
-from nullpose.solve import Result, Scheme, solve
-from nullpose.solve.robust import RobustDetails
+from nullpose.solver import Result, Scheme, solve
+from nullpose.solver.robust import RobustDetails
 from nullpose.studio.answer import answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.exports import scene_html

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve import Result, Rigour, Scheme, Status, default_gap_of, solve
-from nullpose.solve.robust import ROBUST_GAP, solve_robust
+from nullpose.solver import Result, Rigour, Scheme, Status, default_gap_of, solve
+from nullpose.solver.robust import ROBUST_GAP, solve_robust
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve

@@ -11,7 +11,7 @@ from functools import partial
 from typing import TypeVar
 
 from nullpose.errors import NullposeError
-from nullpose.solve import announce_compiling
+from nullpose.solver import announce_compiling
 from nullpose.studio.answer import Answer, with_errors
 from nullpose.studio.case import Case
 from nullpose.studio.events import Event, Notice, Progress

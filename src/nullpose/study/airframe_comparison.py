@@ -11,14 +11,14 @@ from nullpose.errors import SolveError
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solve import (
+from nullpose.solver import (
     TIME_LIMIT_S,
     Result,
     SolveKeywords,
     SolveOptions,
 )
-from nullpose.solve.provenance import provenance
-from nullpose.solve.robust import guarantee, solve_robust
+from nullpose.solver.provenance import provenance
+from nullpose.solver.robust import guarantee, solve_robust
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
 from nullpose.study.grid import solved_case, solved_grid
 

@@ -11,9 +11,9 @@ from nullpose.errors import UsageError
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Antenna, Scenario
-from nullpose.solve import Result, solve
-from nullpose.solve.options import SolveKeywords, SolveOptions
-from nullpose.solve.provenance import provenance
+from nullpose.solver import Result, solve
+from nullpose.solver.options import SolveKeywords, SolveOptions
+from nullpose.solver.provenance import provenance
 
 _POINTS = ("nodes", "jammers", "eavesdroppers")
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from typing import Any, TypeVar, Unpack
 
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
-from nullpose.schemes import Scheme
-from nullpose.solve import Result, SolveKeywords, solve, solve_array
-from nullpose.solve.robust import solve_robust
+from nullpose.solver import Result, SolveKeywords, solve, solve_array
+from nullpose.solver.robust import solve_robust
 
 Row = TypeVar("Row")
 

@@ -10,8 +10,8 @@ from dataclasses import replace
 from nullpose.objectives import Quantity
 from nullpose.physics import evaluate
 from nullpose.scenario import Scenario
-from nullpose.solve import Result, Rigour, SolveOptions, Status
-from nullpose.solve.result import Stats, objective_of, status_of
+from nullpose.solver import Result, Rigour, SolveOptions, Status
+from nullpose.solver.result import Stats, objective_of, status_of
 
 _FREER = {
     r"airframe\.tilt_max_(deg|rad)": 1.0,

@@ -9,9 +9,9 @@ from types import MappingProxyType
 from typing import Unpack
 
 from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
-from nullpose.schemes import Scheme
-from nullpose.solve import Result, SolveKeywords, SolveOptions, solve
+from nullpose.solver import Result, SolveKeywords, SolveOptions, solve
 from nullpose.study.grid import solved_grid
 from nullpose.study.neighbours import freedom, from_freer
 from nullpose.study.spacing import spaced

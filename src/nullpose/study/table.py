@@ -12,7 +12,7 @@ from typing import Any
 from nullpose.files import write_csv
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL, Quantity
-from nullpose.solve import Result
+from nullpose.solver import Result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
-from nullpose.family import build_family
 from nullpose.files import write_csv
 from nullpose.notebook import imported
 from nullpose.physics import link_gain, objective_value, to_db
+from nullpose.problem.build import build_family
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.scenario.airspace import BORDER_M
-from nullpose.schemes import Scheme
-from nullpose.solve import Result
+from nullpose.solver import Result
 
 FloatArray = NDArray[np.float64]
 
@@ -260,7 +260,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
 
 
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
-    from nullpose.solve.kernels.axis import best_axis
+    from nullpose.solver.kernels.axis import best_axis
 
     arrays = build_family(scenario).arrays
     axes = np.empty_like(positions_m)

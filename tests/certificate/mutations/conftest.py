@@ -15,7 +15,7 @@ from benchmarks.mutations.truth import Data, Problem, allowed_axes, claim_fault
 from nullpose.certificate.file import scenario_digest
 from nullpose.errors import ScenarioError, SolveError, UsageError
 from nullpose.scenario import Scenario
-from nullpose.solve import solve
+from nullpose.solver import solve
 
 CORNERS = np.array([[1.0 if c >> i & 1 else -1.0 for i in range(3)] for c in range(8)])
 

@@ -6,13 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, seed
-from hypothesis import strategies as st
+from hypothesis import given, seed, strategies as st
 from viser.transforms import SO3
 
 from nullpose import Pose, load, solve
 from nullpose.physics import rotation_world_from_body
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.drone import Drone

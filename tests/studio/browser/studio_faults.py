@@ -306,7 +306,7 @@ def test_a_file_that_names_others_is_refused_in_words(page: Page, session: Sessi
 _FIRST_RUN = """
 import threading
 from nullpose import load
-from nullpose.solve.kernels.branch import branch
+from nullpose.solver.kernels.branch import branch
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
 found = threading.Event()

@@ -16,7 +16,7 @@ from playwright.sync_api import Page
 from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
-from nullpose.solve import Scheme
+from nullpose.solver import Scheme
 from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose import Pose, Scenario, evaluate, solve_robust
-from nullpose.solve import solve, solve_array
+from nullpose.solver import solve, solve_array
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.monte_carlo import StudySpec
 from nullpose.study.monte_carlo.draw import Draws

@@ -8,7 +8,7 @@ import pytest
 
 from nullpose.physics import Pose, antenna_gain
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.solve import solve_many
+from nullpose.solver import solve_many
 from nullpose.study.monte_carlo import StudySpec, solving
 from nullpose.study.monte_carlo.chunk import rows_of
 from nullpose.study.monte_carlo.draw import Draws

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from nullpose.report.comparison import Comparison
 from nullpose.report.figures.style import CURVES, INK, house_style, inches
 from nullpose.report.numbers import begun, number
-from nullpose.solve import Result
+from nullpose.solver import Result
 
 _ROW_INCH = 0.36
 _ROOM = 0.3  # beside the longest bar, for its number, of the width drawn

@@ -35,9 +35,9 @@ from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
 from nullpose.report.words import error_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
-from nullpose.solve import Objective, Result
-from nullpose.solve.array import ArrayDetails
-from nullpose.solve.robust import RobustDetails
+from nullpose.solver import Objective, Result
+from nullpose.solver.array import ArrayDetails
+from nullpose.solver.robust import RobustDetails
 from nullpose.study import SweepRow
 
 _LETTERS = 100  # in a line of a title

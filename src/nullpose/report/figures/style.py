@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing
 from nullpose.physics.types import FloatArray
-from nullpose.schemes import Curve, Scheme
+from nullpose.problem.schemes import Curve, Scheme
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

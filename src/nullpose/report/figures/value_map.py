@@ -12,7 +12,7 @@ from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.scene import ALONE, Stage
 from nullpose.report.figures.style import house_style, inches
 from nullpose.report.numbers import MINUS, begun
-from nullpose.solve import Result
+from nullpose.solver import Result
 from nullpose.study import Field
 
 _MOST_SPAN = 30.0  # of the colours: what is farther below the best is as dark as it gets

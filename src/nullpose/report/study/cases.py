@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from nullpose.errors import UsageError
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Airframe
-from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
 from nullpose.study.monte_carlo import StudyCase, StudySpec
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, TypeAdapter
 
 from nullpose.physics import Pose
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
@@ -21,7 +22,6 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import AttitudeDegrees, Position
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
-from nullpose.schemes import Scheme
 from nullpose.study.airframe_cases import AIRFRAME_CASES
 from nullpose.study.evaluation import pose_faults
 

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import ClusterError
-from nullpose.solve.worker_pool import processors
+from nullpose.solver.worker_pool import processors
 
 if TYPE_CHECKING:
     from distributed import Client

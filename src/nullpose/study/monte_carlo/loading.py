@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.faults import path_of
 from nullpose.scenario.loading import inside
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
-from nullpose.schemes import Scheme
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
 from nullpose.notebook import html_table
-from nullpose.solve import Rigour
+from nullpose.solver import Rigour
 from nullpose.study.monte_carlo.chunk import Part
 from nullpose.study.monte_carlo.extra import require_extra
 from nullpose.study.monte_carlo.lock import holder

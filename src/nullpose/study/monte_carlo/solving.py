@@ -13,16 +13,16 @@ import numpy as np
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate, interferer_gains
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Airframe, Scenario
-from nullpose.schemes import Scheme
-from nullpose.solve import (
+from nullpose.solver import (
     NODE_LIMIT,
     ManySolutions,
     SolveKeywords,
     Status,
     solve_many,
 )
-from nullpose.solve.proof import INTERRUPT
+from nullpose.solver.proof import INTERRUPT
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.grid import solved_case
 from nullpose.study.monte_carlo.case import StudyCase

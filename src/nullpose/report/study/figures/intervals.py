@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from nullpose.problem.schemes import Curve
 from nullpose.report.figures.style import INK
 from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
@@ -22,7 +23,6 @@ from nullpose.report.study.figures.panels import (
 )
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import Summary, three_of
-from nullpose.schemes import Curve
 
 _ROW = 0.27  # inches
 _CONFIDENT = f"{percent(CONFIDENCE)} confidence"

@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from nullpose.problem.schemes import Curve
 from nullpose.report.figures.style import GREY, VEHICLES, house_style, line_style
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.summary import Summary
-from nullpose.schemes import Curve
 
 QUARTERS = ([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])  # ticks of an axis of shares
 

@@ -1,0 +1,73 @@
+# The public interface: each name stands here once, and is imported at its first use.
+
+from . import plot as plot
+from .certificate.verify import verify as verify
+from .errors import (
+    Fault as Fault,
+    NullposeError as NullposeError,
+    OutputError as OutputError,
+    ScenarioError as ScenarioError,
+    SolveError as SolveError,
+    UsageError as UsageError,
+    WrongTypeError as WrongTypeError,
+)
+from .physics import (
+    Link as Link,
+    Pose as Pose,
+    Poses as Poses,
+    evaluate as evaluate,
+    min_margin as min_margin,
+    min_secrecy_rate as min_secrecy_rate,
+    min_sinr as min_sinr,
+    pose_frames as pose_frames,
+)
+from .scenario import (
+    Airframe as Airframe,
+    Airspace as Airspace,
+    Antenna as Antenna,
+    Array as Array,
+    Eavesdropper as Eavesdropper,
+    Jammer as Jammer,
+    Node as Node,
+    NoFlyZone as NoFlyZone,
+    Origin as Origin,
+    Receiver as Receiver,
+    Scenario as Scenario,
+    Transmitter as Transmitter,
+    apply_overrides as apply_overrides,
+    json_schema as json_schema,
+    load as load,
+)
+from .solver import (
+    ArraySolution as ArraySolution,
+    ErrorSizes as ErrorSizes,
+    ManySolutions as ManySolutions,
+    Scheme as Scheme,
+    Solution as Solution,
+    Status as Status,
+    compare as compare,
+    sensitivity as sensitivity,
+    solve as solve,
+    solve_array as solve_array,
+    solve_many as solve_many,
+)
+from .solver.certificate_from_proof import certificate_of as certificate_of
+from .solver.robust import (
+    RobustSolution as RobustSolution,
+    guarantee as guarantee,
+    solve_robust as solve_robust,
+)
+from .studio.show import (
+    show as show,
+)
+from .study import (
+    AirframeComparison as AirframeComparison,
+    SweepTable as SweepTable,
+    compare_airframes as compare_airframes,
+    evaluate_against as evaluate_against,
+    poses_from_csv as poses_from_csv,
+    sweep as sweep,
+    value_map as value_map,
+)
+
+__version__: str

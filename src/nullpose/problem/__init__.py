@@ -1,0 +1,1 @@
+"""From a scenario to numbers: ratios, their domain, the axes of each scheme."""

@@ -1,0 +1,99 @@
+"""From a scenario to its family: where names and units end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.objectives import FloatArray
+from nullpose.problem.airspace import airspace_zones
+from nullpose.problem.family import Family
+from nullpose.scenario import Scenario
+
+LOUDEST = 1e16
+"""The largest ratio of an interferer's power to the noise, without a null, that is solved."""
+
+
+def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
+    """Return the family whose smallest ratio is what the scenario asks to be maximised.
+
+    The objective's record says which ratios these are (:mod:`nullpose.objectives`).
+
+    Args:
+        scenario: what is stated.
+        any_antenna: whether the caller brings the gain of an antenna that is no dipole.
+
+    Raises:
+        UsageError: the antenna is no dipole.
+        ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
+    """
+    if isinstance(scenario.antenna_record, PatternAntenna) and not any_antenna:
+        raise UsageError(
+            f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
+            "there are solve, evaluate and antenna compare"
+        )
+    ratios = scenario.objective_record.ratios(scenario)
+    ratios = ratios._replace(leak=scenario.antenna_record.leak)
+    family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
+    _refuse_the_loudest(scenario, family)
+    return family
+
+
+def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
+    """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
+    if not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():  # wherever they are
+        return
+    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
+    over_noise = family.denominator_weight / np.maximum(distance_m, family.keep_out_m) ** 2
+    if not (over_noise > LOUDEST).any():
+        return
+    index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)
+    record = scenario.objective_record
+    path = f"{record.interferers}[{index}]"
+    if not record.transmits:
+        key = "power_w" if scenario.jammers[index].power_w is not None else "power_dbm"
+        path = f"{path}.{key}"
+    message = (
+        f"got a signal {10.0 * np.log10(over_noise[index]):.0f} dB over the noise at the closest allowed "
+        f"position, must be at most {10.0 * np.log10(LOUDEST):.0f} dB: beyond that rounding fills the null; "
+        "make the transmit power smaller, the noise greater or the distance longer"
+    )
+    raise ScenarioError([Fault(path, message)])
+
+
+def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
+    """Return the fields of a family that say where its positions may be.
+
+    Args:
+        scenario: with its airspace.
+        points_m: the points that are to be kept clear of, (m, 3), metres.
+    """
+    airspace = scenario.airspace.inner
+    low_m, high_m = airspace.lower_m, airspace.upper_m
+    outline = airspace.geofence_outline_m
+    if len(outline):
+        low_m = np.array([*np.maximum(low_m[:2], outline.min(axis=0)), low_m[2]])
+        high_m = np.array([*np.minimum(high_m[:2], outline.max(axis=0)), high_m[2]])
+    return {
+        "low_m": low_m,
+        "high_m": high_m,
+        # of the points those whose ball reaches into the airspace
+        "keep_out_points_m": points_m[distances_m(points_m, low_m, high_m) < airspace.keep_out_m],
+        "keep_out_m": float(airspace.keep_out_m),
+        **airspace_zones(airspace),
+    }
+
+
+def distances_m(points_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> FloatArray:
+    """Return how far each point is from a box, (m,), metres.
+
+    Args:
+        points_m: (m, 3).
+        low_m: (3,) lowest corner of the box.
+        high_m: (3,) highest corner.
+    """
+    outside = points_m - np.minimum(np.maximum(points_m, low_m), high_m)
+    return np.asarray(np.sqrt(np.einsum("ij,ij->i", outside, outside)))

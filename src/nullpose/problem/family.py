@@ -1,0 +1,95 @@
+"""A family: the ratios of which the smallest is maximised, and the positions that it is asked about."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from nullpose.objectives import FloatArray, Ratios
+from nullpose.problem.records import Domain
+
+
+class Family:
+    """Ratios over the link forms of points, and their domain. Every array of either is read on it too.
+
+    Args:
+        fields: those of :class:`nullpose.objectives.Ratios` and of :class:`Domain`; arrays that could be
+            written to are copied, and the copies cannot.
+    """
+
+    __slots__ = ("arrays", "domain")
+
+    arrays: Ratios
+    domain: Domain
+
+    def __init__(self, **fields: Any) -> None:
+        kept = DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
+        object.__setattr__(self, "arrays", Ratios(*map(kept.pop, Ratios._fields)))
+        object.__setattr__(self, "domain", Domain(**kept))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a family is frozen; use changed({name}=...)")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(Family, **self.fields), ()
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an array of the ratios or of the domain."""
+        if name in Ratios._fields:
+            return getattr(self.arrays, name)
+        if name in Domain._fields:
+            return getattr(self.domain, name)
+        raise AttributeError(f"a family has no {name!r}")
+
+    def changed(self, **fields: Any) -> Family:
+        """Return a family with other values in some fields.
+
+        Args:
+            fields: the new values by name.
+        """
+        return Family(**self.fields | fields)
+
+    def at(self, position_m: FloatArray) -> Family:
+        """Return the family at one position, whatever the airspace says of it.
+
+        Args:
+            position_m: (3,), metres.
+        """
+        here = Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)
+        return Family(**self.arrays._asdict(), **here._asdict())
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Every array by name, and the keep-out radius."""
+        return self.arrays._asdict() | self.domain._asdict()
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of every number in the family: two families with the same digest are the same problem."""
+        sha = hashlib.sha256()
+        for name, value in sorted(self.fields.items()):
+            if value is None:
+                continue
+            array = np.ascontiguousarray(value)
+            sha.update(f"{name}:{array.dtype.str}:{array.shape};".encode())
+            sha.update(array.tobytes())
+        return sha.hexdigest()
+
+
+def _read_only(value: Any) -> Any:
+    if not isinstance(value, np.ndarray):
+        return value
+    if value.flags.writeable or not value.flags.c_contiguous or value.dtype not in _KINDS:
+        value = np.array(value, dtype=_KINDS[value.dtype.kind in "iu"], order="C")
+        value.flags.writeable = False
+    return value
+
+
+_KINDS = np.dtype(np.float64), np.dtype(np.int64)  # those that kernels are compiled for
+DEFAULTS = {
+    name: _read_only(value) for name, value in (Ratios._field_defaults | Domain._field_defaults).items()
+}
+"""The arrays of a family that are not stated, read-only."""

@@ -1,0 +1,121 @@
+"""The family of a scenario under finitely many error cases: an upper bound on what can be guaranteed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from nullpose.objectives import FloatArray
+from nullpose.physics.error_case import ErrorCase
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.scenario import Scenario
+
+
+class BindingCase(NamedTuple):
+    """An error case and the one ratio of the nominal family that it is bad for."""
+
+    ratio: int  # its index in the nominal family
+    case: ErrorCase
+
+    def is_same(self, other: BindingCase) -> bool:
+        """Return whether another is the same case of the same ratio, to the last bit.
+
+        Args:
+            other: the other.
+        """
+        return self.ratio == other.ratio and self.case.is_same(other.case)
+
+
+def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Family:
+    """Return the family with one ratio for each case: the nominal ratio when the case comes true.
+
+    Moving the drone by d moves all points by -d, and turning its axis by R is the turn that the points see,
+    so ratio s is that of ``points - d_s + offsets_s`` with the turn ``R_s``. Ratios share a denominator if
+    they do in the nominal family and their errors are the same. Any pose's smallest ratio here is at least
+    its guaranteed one; keep-outs and airspace are the nominal ones.
+
+    Args:
+        scenario: nodes, jammers or eavesdroppers, receiver and airspace.
+        cases: one or more.
+    """
+    nominal, moved = build_family(scenario), interferer_field(scenario, "offsets")
+    copies: dict[bytes, tuple[FloatArray, FloatArray, int]] = {}  # each moved point with its rotation once
+    places: dict[bytes, int] = {}
+
+    def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
+        """Return the index of a copy, new or not."""
+        key = point_m.tobytes() + rotation.tobytes()
+        copies.setdefault(key, (point_m, rotation, point))
+        return places.setdefault(key, len(places))
+
+    groups: dict[tuple[int, bytes], int] = {}
+    numerator_point, denominator_of, of_group = [], [], []
+    entries: list[int] = []
+    weights: list[FloatArray] = []
+    start = [0]
+    for each in cases:
+        offsets_m = _of_points(nominal, scenario, getattr(each.case, moved))
+        moved_m = nominal.points_m - each.case.position_offset_m + offsets_m
+        rotation = each.case.rotation_world
+        point = int(nominal.numerator_point[each.ratio])
+        numerator_point.append(copied(point, moved_m[point], rotation))
+        group = int(nominal.denominator_of[each.ratio])
+        bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
+        disturbers = nominal.denominator_point[bounds]
+        disturbers_m = moved_m[disturbers]
+        key = (group, disturbers_m.tobytes() + rotation.tobytes())
+        if key not in groups:
+            groups[key] = len(groups)
+            of_group.append(group)
+            pairs = zip(disturbers.tolist(), disturbers_m, strict=True)
+            entries += [copied(point, point_m, rotation) for point, point_m in pairs]
+            weights.append(nominal.denominator_weight[bounds])
+            start.append(len(entries))
+        denominator_of.append(groups[key])
+    ratios = np.array([each.ratio for each in cases], dtype=np.int64)
+    points_m, rotations, originals = (np.array(each) for each in zip(*copies.values(), strict=True))
+    return nominal.changed(
+        ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
+        ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
+        points_m=points_m,
+        turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
+        numerator_isotropic=nominal.numerator_isotropic[ratios],
+        numerator_weight=nominal.numerator_weight[ratios],
+        numerator_point=np.array(numerator_point, dtype=np.int64),
+        denominator_of=np.array(denominator_of, dtype=np.int64),
+        denominator_isotropic=nominal.denominator_isotropic[of_group],
+        denominator_start=np.array(start, dtype=np.int64),
+        denominator_point=np.array(entries, dtype=np.int64),
+        denominator_weight=np.concatenate(weights),
+    )
+
+
+def point_uncertainty_m(scenario: Scenario) -> FloatArray:
+    """Return the matrices of the sets in which each point of the nominal family may be, (m, 3, 3), metres.
+
+    Args:
+        scenario: nodes, which are known, and jammers or eavesdroppers.
+    """
+    sets_m = getattr(scenario, interferer_field(scenario, "uncertainty"))
+    return _of_points(build_family(scenario), scenario, sets_m)
+
+
+def interferer_field(scenario: Scenario, what: str) -> str:
+    """Return the name of a field about those in the denominators, as in ``"jammer_offsets_m"``.
+
+    Args:
+        scenario: its objective says who they are.
+        what: offsets or uncertainty.
+    """
+    return f"{scenario.objective_record.interferers.removesuffix('s')}_{what}_m"
+
+
+def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:
+    """Return what belongs to the points in the denominators, with zeros for nodes and for all others."""
+    first = len(scenario.nodes)
+    everyone = np.zeros((len(nominal.points_m), *of_interferers.shape[1:]))
+    everyone[first : first + len(of_interferers)] = of_interferers
+    return everyone

@@ -1,0 +1,82 @@
+"""The schemes, one file each: the paper's four cases.
+
+Nothing heavy is imported here: the command line reads the names for its help.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from nullpose.errors import UsageError
+from nullpose.problem.schemes.maximum_gain import MAXIMUM_GAIN
+from nullpose.problem.schemes.optimum import OPTIMUM
+from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.vertical import VERTICAL
+from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
+
+if TYPE_CHECKING:
+    from nullpose.scenario import Scenario
+
+__all__ = ["Curve", "Scheme", "SchemeRecord", "as_scheme"]
+
+RECORDS = {record.name: record for record in (OPTIMUM, ZERO_INTERFERENCE, MAXIMUM_GAIN, VERTICAL)}
+
+
+class Scheme(StrEnum):
+    """How the pose is chosen (paper section 4). A new scheme is a record in a file, and a line here."""
+
+    OPTIMUM = OPTIMUM.name
+    ZERO_INTERFERENCE = ZERO_INTERFERENCE.name
+    MAXIMUM_GAIN = MAXIMUM_GAIN.name
+    VERTICAL = VERTICAL.name
+
+    @property
+    def record(self) -> SchemeRecord:
+        """What the scheme states of itself."""
+        return RECORDS[self.value]
+
+    @property
+    def label(self) -> str:
+        """The scheme's name for tables and figures."""
+        return self.record.label
+
+    def not_applicable(self, scenario: Scenario) -> str | None:
+        """Return why the scheme has no meaning for a scenario, or None if it has.
+
+        Args:
+            scenario: any.
+        """
+        return self.record.not_applicable(scenario)
+
+    def require_applicable(self, scenario: Scenario) -> None:
+        """Do nothing if the scheme has a meaning for a scenario.
+
+        Args:
+            scenario: any.
+
+        Raises:
+            UsageError: it has none.
+        """
+        reason = self.not_applicable(scenario)
+        if reason is not None:
+            raise UsageError(f"scheme {self.value}: {reason}; try another scheme")
+
+
+def as_scheme(name: str) -> Scheme:
+    """Return the scheme of a name.
+
+    Args:
+        name: as in ``maximum-gain``.
+
+    Raises:
+        UsageError: there is no such scheme.
+    """
+    try:
+        return Scheme(name)
+    except ValueError:
+        from nullpose.scenario.wording import nearest  # here, for it loads numpy
+
+        guess = nearest(name, list(Scheme)) if isinstance(name, str) else ""
+        meant = f"; did you mean {str(guess)!r}?" if guess else ""
+        raise UsageError(f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{meant}") from None

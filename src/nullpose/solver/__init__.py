@@ -1,0 +1,54 @@
+"""From a scenario to a solution: the paper's four cases."""
+
+from nullpose.problem.schemes import Scheme, as_scheme
+from nullpose.solver.api import best_axis, compare, solve
+from nullpose.solver.array import ArrayDetails, solve_array
+from nullpose.solver.compiling import announce_compiling
+from nullpose.solver.many import ManySolutions, solve_many
+from nullpose.solver.options import (
+    NODE_LIMIT,
+    TIME_LIMIT_S,
+    SolveKeywords,
+    SolveOptions,
+    default_gap,
+    default_gap_of,
+)
+from nullpose.solver.result import Objective, Result, Results, Stats, Status
+from nullpose.solver.rigour import Rigour
+from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
+
+Solution = Result
+"""An older name of what a solve returns."""
+
+ArraySolution = Result
+"""Likewise, of an array."""
+
+__all__ = [
+    "NODE_LIMIT",
+    "TIME_LIMIT_S",
+    "ArrayDetails",
+    "ArraySolution",
+    "ErrorSizes",
+    "ManySolutions",
+    "Objective",
+    "Result",
+    "Results",
+    "Rigour",
+    "Scheme",
+    "Sensitivity",
+    "Solution",
+    "SolveKeywords",
+    "SolveOptions",
+    "Stats",
+    "Status",
+    "announce_compiling",
+    "as_scheme",
+    "best_axis",
+    "compare",
+    "default_gap",
+    "default_gap_of",
+    "sensitivity",
+    "solve",
+    "solve_array",
+    "solve_many",
+]

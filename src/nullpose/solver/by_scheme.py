@@ -1,0 +1,73 @@
+"""The search and the proof that a scheme asks for: over its axis fields, or by values alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import UsageError
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.problem.schemes import SchemeRecord
+from nullpose.scenario import Scenario
+from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.position_search import search_positions
+from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
+
+
+def solve_scheme(
+    scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None
+) -> tuple[Outcome, Mapping[str, AxisField] | None]:
+    """Return the best pose under a scheme, with a proof if one is asked for, and the fields it is over.
+
+    Args:
+        scenario: what to solve; one in which the scheme has a meaning.
+        record: what the scheme states of itself.
+        options: what is asked for.
+        null_jammer: for a scheme that nulls a jammer: which; without it each is tried and the best kept.
+
+    Raises:
+        UsageError: no jammer has that name.
+        SolveError: no pose reaches every node.
+    """
+    known = scenario.jammer_names
+    if null_jammer is not None and null_jammer not in known:
+        raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
+    if isinstance(scenario.antenna_record, PatternAntenna):
+        from nullpose.solver.pattern import solve_pattern  # and SciPy's optimisers with it
+
+        return solve_pattern(scenario, options), {}
+    family, fields = build_family(scenario), record.fields(scenario, null_jammer)
+    if fields is None:
+        return _by_values(record, family, options), None
+    return solve_and_prove(family, list(fields.values()), options), fields
+
+
+def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> Outcome:
+    """Return what a search by values finds, the axis serving the nodes best, and the bound of a free axis."""
+    from nullpose.solver.kernels.maximum_gain import maximum_gain_value
+
+    axis = np.empty(3)
+    position_m, value, starts, evaluations = search_positions(
+        lambda at_m: float(maximum_gain_value(family.arrays, at_m, axis)), family, seed=options.seed
+    )
+    maximum_gain_value(family.arrays, position_m, axis)
+    ratios = len(family.numerator_point)
+    found = Incumbent(
+        position_m=position_m,
+        axis=axis,
+        log_value=value,
+        multipliers=np.full(ratios, 1.0 / ratios),
+        starts=starts,
+        evaluations=evaluations,
+    )
+    if not options.certify:
+        return Outcome(incumbent=found)
+    relaxed = solve_and_prove(family, [AxisField.free()], options)
+    reason = relaxed.reason or record.unproved  # an interrupt or a limit comes first
+    return replace(relaxed, incumbent=found, reason=reason)

@@ -1,0 +1,355 @@
+"""Branch and bound: boxes of positions, and where multipliers alone cannot decide, cells of axes.
+
+Depth first at one fixed level: a node is excluded (see ``exclusion`` and ``curved``), or its box is halved,
+or, where the gap between the dual and what one axis reaches outweighs the size of the box, it is split into
+cells of axes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.problem.records import Axes
+from nullpose.solver.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
+from nullpose.solver.kernels.denominators import expand_denominator
+from nullpose.solver.kernels.domain import contains
+from nullpose.solver.kernels.enclosure import JET, axis_clearance
+from nullpose.solver.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
+from nullpose.solver.kernels.expansion import frame_at, min_distance, min_square
+from nullpose.solver.kernels.forms import add_denominator
+from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.links import isotropic_share, min_log_ratio
+from nullpose.solver.kernels.multipliers import free_multipliers
+from nullpose.solver.kernels.node import (
+    AFFINE,
+    ANCHOR,
+    BALL,
+    BAND,
+    CELL,
+    CENTRE,
+    COLUMNS,
+    COUNT,
+    FACE,
+    HALF,
+    INDEX,
+    KIND,
+    LEVEL,
+    OFF_BAND,
+    WEIGHT,
+    longest_side,
+    off_band,
+    split_axis,
+    split_position,
+)
+from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD, Workspace
+from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.symmetric import copy_into
+from nullpose.solver.kernels.vectors import cross, minus, norm, row as row_of
+
+DONE = 0
+LIMIT = 1
+FULL = 2
+BETTER = 3
+
+EARLY = 0.0
+"""Split axes wherever there is a duality gap that outweighs the box."""
+LATE = 1.0
+"""Split axes only where no multipliers exclude even the box's centre: mostly far fewer nodes, or far more."""
+
+_EXCLUDED = 0
+_BY_POSITION = 1
+_BY_AXIS = 2
+_BETTER = 3
+_FORESEEN = 4
+_HALVINGS = 3
+
+_COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
+_CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
+_CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
+_BEATS = 1e-9
+
+
+@inner_kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
+    strongest = 0.0
+    anchor = -1
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        d = 0.0
+        for i in range(3):
+            d += (family.points_m[j, i] - centre[i]) ** 2
+        if weight > strongest * d:
+            strongest, anchor = weight / d, j
+    return anchor
+
+
+@inner_kernel
+def own_sine(axes, j, away):
+    """Return the sine of the angle between point j's dipole and a direction."""
+    if axes is not None:
+        return norm(cross(axes[j], away)) / norm(away)
+    return 1.0
+
+
+@inner_kernel
+def best_frame(family, axis_field, row):
+    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+
+    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
+    larger: worth it where one interferer outweighs the rest.
+    """
+    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
+    anchor = strongest_point(family, centre)
+    if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
+        return WORLD, anchor
+    rho = min_distance(points, anchor, centre, half)
+    if (
+        isotropic_share(family.ground_leaks, anchor) < 1.0
+    ):  # the nearer to its own null, the faster its form turns
+        rho *= own_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
+        if not rho > 0.0:
+            return WORLD, anchor
+    still = turning = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        square = min_square(points, family.numerator_point[k], centre, half)
+        a = math.sqrt(square)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
+        still += 6.0 * scale
+        turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
+    for e in range(family.denominator_weight.shape[0]):
+        a = min_distance(points, family.denominator_point[e], centre, half)
+        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
+        still += 4.0 * scale
+        if family.denominator_point[e] != anchor:
+            turning += scale * (4.0 + a / rho * (12.0 + 6.31 * a / rho))
+    return (TOWARDS_POINT if turning < still else WORLD), anchor
+
+
+@inner_kernel
+def examine(family, domain, axis_field, goal, row, workspace, axis):
+    """Return (what becomes of a node, the side to split, whether multipliers were sought).
+
+    Fills the node's kind, its multipliers, and an axis if it beats the best.
+    """
+    side = longest_side(row)
+    kind = out_of_reach(family, domain, row)
+    if kind >= 0:
+        row[KIND] = kind
+        return _EXCLUDED, side, 0
+    half = row[HALF:LEVEL]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    nearest = math.inf
+    for j in range(family.points_m.shape[0]):
+        nearest = min(nearest, min_square(family.points_m, j, row[CENTRE:HALF], half))
+    nearest = math.sqrt(nearest)
+    if not nearest > _CLOSE * radius:
+        return _BY_POSITION, side, 0
+    if axis_field.kind == 1:
+        length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
+        if length > _CLEAR * change:  # where it may vanish any axis is allowed for
+            return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
+    if axis_field.kind >= 2 and off_band(axis_field.offset, row):
+        row[KIND] = OFF_BAND
+        return _EXCLUDED, side, 0
+    verdict, sought = examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis)
+    return verdict, side, sought
+
+
+@inner_kernel
+def same_multipliers(row, other):
+    """Return whether two rows have the same multipliers."""
+    same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
+    for s in range(int(row[COUNT])):
+        same = same and row[INDEX + s] == other[INDEX + s] and row[WEIGHT + s] == other[WEIGHT + s]
+    return same
+
+
+@inner_kernel
+def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
+    """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    basis = scratch(3, 3)
+    is_free, is_band = axis_field.kind != 1, axis_field.kind >= 2
+    if not is_free:  # an affine axis that may vanish in the box
+        axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
+    kind, anchor = best_frame(family, axis_field, row)
+    frame = frame_at(family, kind, anchor, centre, half, basis)
+    denominator, slopes = zeroed(6), zeroed(3, 6)
+    rests = (0.0, 0.0)
+    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes is not None:
+        add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
+    elif family.denominator_isotropic.shape[0] == 1:
+        first = np.int64(0)
+        rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
+    row[KIND], row[ANCHOR] = kind, anchor
+    below = (denominator, slopes, rests)
+    if excludes(family, domain, axis_field, frame, row, below, workspace):
+        return _EXCLUDED, 0
+    if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
+        copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
+        if excludes(family, domain, axis_field, frame, row, below, workspace):
+            return _EXCLUDED, 0
+    coarseness = _COARSENESS * radius / nearest
+    primal, reached, followed = free_multipliers(
+        family, axis_field, basis, row, denominator, coarseness, workspace, axis
+    )
+    if is_free and followed and contains(domain, centre):
+        value = reached * row[LEVEL]
+        if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
+            value = math.exp(
+                min_log_ratio(family, centre, axis, workspace.log_denominators, workspace.values)
+            )
+        if value > goal.best * (1.0 + _BEATS):
+            return _BETTER, 1
+    if primal == math.inf:  # no axis was met that is inside both cell and band
+        wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
+        return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
+    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
+        return _EXCLUDED, 1
+    # two forms have no duality gap (Brickman), unless a cell or a band is in force
+    split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
+    split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = split_axes or radius == 0.0  # one position has no halves
+    if split_axes and is_free:
+        return _BY_AXIS, 1
+    if primal >= 1.0:
+        workspace.rest[0] = math.inf
+    return _FORESEEN, 1
+
+
+@inner_kernel
+def lone_ratio(family, row, below):
+    """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
+    for k in range(family.numerator_weight.shape[0]):
+        square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
+        most = family.numerator_isotropic[k] + family.numerator_weight[k] / square
+        if most < -below[family.denominator_of[k], 17] * (1.0 - 1e-13):
+            row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
+            return True
+    return False
+
+
+@inner_kernel
+def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
+    """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
+    half = row[HALF:LEVEL]
+    jet, below, total = scratch(JET), workspace.jets, scratch(JET)
+    denominator_jet(family, axis_field, row, jet, below)
+    row[KIND] = AFFINE
+    if lone_ratio(family, row, below):
+        return _EXCLUDED, 0, 0
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return _EXCLUDED, 0, 0
+    copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return _EXCLUDED, 0, 0
+    reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
+    if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
+        for m in range(3):
+            axis[m] = axis_field.offset[m]
+            for i in range(3):
+                axis[m] += axis_field.matrix[m, i] * row[CENTRE + i]
+        return _BETTER, 0, 1
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return _EXCLUDED, 0, 1
+    return _BY_POSITION, impact(total, half), 1
+
+
+@inner_heap_kernel
+def workspace_of(family):
+    """Return scratch space for a family."""
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
+    return Workspace(
+        np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
+        np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
+        np.empty(6), np.empty((3, 6)), np.empty(6),
+    )  # fmt: skip
+
+
+@inner_kernel
+def split_foreseen(row, side, forecast, level_axes, stack, top):
+    """Push the parts of a box; halves of which it is foreseen that they fail are halved again unseen."""
+    halvings, place = scratch_int(9), top
+    top = split_position(row, side, stack, top)
+    halvings[0] = halvings[1] = 1
+    first = place
+    while place < top:
+        done = halvings[place - first]
+        if done < _HALVINGS and will_fail(forecast, row, stack[place], level_axes):
+            halve(stack, place, top)
+            halvings[place - first] = halvings[top - first] = done + 1
+            top += 1
+        else:
+            place += 1
+    return top
+
+
+@inner_kernel
+def halve(stack, place, top):
+    """Halve a box of the stack across its longest side: one half in its place, the other on the top."""
+    side = longest_side(stack[place])
+    copy_into(stack[place], stack[top])
+    half = 0.5 * stack[place, HALF + side]
+    stack[place, HALF + side] = stack[top, HALF + side] = half
+    stack[place, CENTRE + side] -= half
+    stack[top, CENTRE + side] += half
+
+
+@heap_kernel
+def branch(
+    family, domain, axis_field, level, goal, stack, top, leaves, filled, most, better_p, better_u
+):  # fmt: skip
+    """Work off the stack at one level until it is empty or a limit is met.
+
+    Args:
+        family: the ratios.
+        domain: the positions.
+        axis_field: the axes.
+        level: the ratio to exclude.
+        goal: what the run is after.
+        stack: (s, COLUMNS) boxes still to do.
+        top: how many there are.
+        leaves: (l, COLUMNS) output, excluded boxes.
+        filled: how many leaves there are already.
+        most: boxes to work off at most.
+        better_p: output, (3,): position of a pose that beats the incumbent, or of the last box at the limit.
+        better_u: output, (3,): its axis; zero if there is none, or the position is not allowed.
+
+    Returns:
+        (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
+    """
+    workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
+    boxes = sought = 0
+    while top > 0:
+        if boxes >= most:
+            copy_into(row[CENTRE:HALF], better_p)
+            for m in range(3):
+                better_u[m] = axis[m] if contains(domain, better_p) else 0.0
+            return LIMIT, top, filled, boxes, sought
+        if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
+            return FULL, top, filled, boxes, sought
+        boxes += 1
+        top -= 1
+        copy_into(stack[top], row)
+        row[LEVEL] = level
+        verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
+        sought += new
+        if verdict == _EXCLUDED:
+            copy_into(row, leaves[filled])
+            filled += 1
+        elif verdict == _BETTER:
+            copy_into(row[CENTRE:HALF], better_p)
+            copy_into(axis, better_u)
+            return BETTER, top + 1, filled, boxes, sought
+        elif verdict == _BY_AXIS:
+            top = split_axis(row, is_level(axis_field), stack, top)
+        elif verdict == _FORESEEN:
+            top = split_foreseen(row, side, workspace, is_level(axis_field), stack, top)
+        else:
+            top = split_position(row, side, stack, top)
+    return DONE, top, filled, boxes, sought

@@ -1,0 +1,349 @@
+"""The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
+
+Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell, one for the band)
+exclude a box at a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for
+every position p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its
+first-order expansion at the eight corners plus a second-order remainder, with a margin for rounding. Where
+all axes are level, it only needs to be negative definite in the level plane.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solver.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.denominators import (
+    ROUNDING,
+    add_mixed_denominators,
+    add_scaled as add_with_slopes,
+    sharpen,
+)
+from nullpose.solver.kernels.dipoles import add_constant, add_links, centre_form
+from nullpose.solver.kernels.expansion import expand_point, min_square
+from nullpose.solver.kernels.forms import congruence, form_value
+from nullpose.solver.kernels.jit import inner_kernel
+from nullpose.solver.kernels.link_vectors import Shear, shear_at
+from nullpose.solver.kernels.node import (
+    ANCHOR,
+    BALL,
+    BAND,
+    CELL,
+    CENTRE,
+    COUNT,
+    FACE,
+    FAR,
+    HALF,
+    INDEX,
+    KEPT_OUT,
+    LEVEL,
+    NU,
+    SIDE,
+    WEIGHT,
+    cell_side,
+)
+from nullpose.solver.kernels.records import WORLD
+from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.symmetric import add_scaled, copy_into, copy_table, top_eigenvector
+from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
+
+_HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
+_DEFINITE = 1e-13  # minors, relative to the products that they are made of
+
+
+@inner_kernel
+def is_level(axis_field):
+    """Return whether an axis field holds the level axes only."""
+    return axis_field.kind == 3 and axis_field.offset[1] == 0.0
+
+
+@inner_kernel
+def negative_at(matrix, slopes, x, y, z, level_axes):
+    """Return whether the linear matrix is negative definite at a step from the centre."""
+    a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
+    a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
+    a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+    minor = a0 * a1 - a3 * a3
+    if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
+        return False
+    if level_axes:
+        return True
+    a2 = matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2]
+    a4 = matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4]
+    a5 = matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5]
+    det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
+    return det > -_DEFINITE * a0 * a1 * a2
+
+
+@inner_kernel
+def failing_corner(matrix, slopes, middle, half, level_axes):
+    """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
+    for corner in range(8):
+        x = middle[0] + (half[0] if corner & 1 else -half[0])
+        y = middle[1] + (half[1] if corner & 2 else -half[1])
+        z = middle[2] + (half[2] if corner & 4 else -half[2])
+        if not negative_at(matrix, slopes, x, y, z, level_axes):
+            return corner
+    return -1
+
+
+@inner_kernel
+def mended(matrix, slopes, half, corner, most, level_axes):
+    """Return whether a failing corner is negative once so much is taken off the diagonal."""
+    less = scratch(6)
+    copy_into(matrix, less)
+    for m in range(3):
+        less[m] -= most
+    x = half[0] if corner & 1 else -half[0]
+    y = half[1] if corner & 2 else -half[1]
+    z = half[2] if corner & 4 else -half[2]
+    return negative_at(less, slopes, x, y, z, level_axes)
+
+
+@inner_kernel
+def will_fail(forecast, row, part, level_axes):
+    """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
+    middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
+    if forecast.rest[0] == math.inf:
+        return True
+    whole = square = 0.0
+    for i in range(3):
+        middle[i] = part[CENTRE + i] - row[CENTRE + i]
+        whole += row[HALF + i] ** 2
+        square += half[i] ** 2
+    share = _HOPED * square / whole
+    copy_into(forecast.matrix, matrix)
+    add_scaled(share, forecast.rest, matrix)
+    return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
+
+
+@inner_kernel
+def add_side(form, weight, frame, matrix, matrix_slopes):
+    """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
+    q, basis = scratch(6), frame.basis
+    congruence(form, basis, q)
+    for m in range(6):
+        matrix[m] += weight * q[m]
+    if frame.kind == WORLD:
+        return 0.0
+    for i in range(3):
+        x, y = basis[i, 0] / frame.radius_m, basis[i, 1] / frame.radius_m
+        matrix_slopes[i, 0] += weight * 2.0 * x * q[4]
+        matrix_slopes[i, 1] += weight * 2.0 * y * q[5]
+        matrix_slopes[i, 2] -= weight * 2.0 * (x * q[4] + y * q[5])
+        matrix_slopes[i, 3] += weight * (y * q[4] + x * q[5])
+        matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
+        matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
+    size = q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2)
+    return weight * 2.4143 * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
+
+
+@inner_kernel
+def add_band(axis_field, frame, row, matrix, slopes):
+    """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
+    weight = row[BAND]
+    if axis_field.kind < 2 or weight == 0.0 or is_level(axis_field):
+        return 0.0
+    form = zeroed(6)
+    form[2] = -1.0 if weight > 0.0 else 1.0
+    end = axis_field.offset[1] if weight > 0.0 else axis_field.offset[0]
+    for m in range(3):
+        matrix[m] += weight * end
+    return add_side(form, abs(weight), frame, matrix, slopes)
+
+
+@inner_kernel
+def add_numerators(family, axis_field, frame, row, matrix, slopes):
+    """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    form, form_slopes = scratch(6), scratch(3, 6)
+    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    everywhere = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        weight = row[WEIGHT + s]
+        isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
+        j = family.numerator_point[k]
+        up, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
+        add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
+        for m in range(3):
+            matrix[m] += weight * isotropic
+        size = isotropic + strength * (form[0] + form[1] + form[2])
+        everywhere += weight * (radius * strength * up + ROUNDING * size)
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if row[SIDE + side] > 0.0:
+                cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
+                everywhere += radius * add_side(form, row[SIDE + side], frame, matrix, slopes)
+                everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
+    everywhere += radius * add_band(axis_field, frame, row, matrix, slopes)
+    return everywhere + 4.0 * ROUNDING * abs(row[BAND])
+
+
+@inner_kernel
+def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest; return how much of the rest is the denominators'."""
+    copy_into(below[0], matrix)
+    copy_table(below[1], slopes)
+    below_rest, across = below[2]
+    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
+        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
+    rest[:] = 0.0
+    rest[0] = rest[1] = everywhere + across
+    rest[2] = everywhere
+    return below_rest
+
+
+@inner_kernel
+def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest where points have dipoles."""
+    if axes is not None:
+        v, q, turned = scratch(3), scratch(6), scratch(6)
+        shear = shear_at(
+            family, frame, row[CENTRE:HALF], row[HALF:LEVEL],
+            Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
+        )  # fmt: skip
+        matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
+        jamming = centre_form(family, frame, row, matrix)
+        half = row[HALF:LEVEL]
+        for constraint in range(3):
+            weight = constraint_of(axis_field, row, constraint, q)
+            if weight > 0.0:
+                congruence(q, frame.basis, turned)
+                add_scaled(weight, turned, matrix)
+        top_eigenvector(matrix, v)
+        matrix[:] = 0.0
+        for constraint in range(3):
+            weight = constraint_of(axis_field, row, constraint, q)
+            if weight > 0.0:
+                congruence(q, frame.basis, turned)
+                add_constant(shear, half, weight, turned, matrix, slopes, rest)
+        add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
+
+
+@inner_kernel
+def constraint_of(axis_field, row, number, form):
+    """Fill the form of a cell's side (0 or 1) or of the band (2); return its multiplier, or zero."""
+    if number < 2:
+        if row[FACE] < 0.0 or not row[SIDE + number] > 0.0:
+            return 0.0
+        cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
+        return row[SIDE + number]
+    if axis_field.kind < 2 or is_level(axis_field):
+        return 0.0
+    upper = row[BAND] > 0.0
+    end = axis_field.offset[1] if upper else -axis_field.offset[0]
+    form[:] = 0.0
+    form[0] = form[1] = form[2] = end
+    form[2] += -1.0 if upper else 1.0
+    return abs(row[BAND])
+
+
+@inner_kernel
+def excludes(family, domain, axis_field, frame, row, below, forecast):
+    """Return whether the row's multipliers exclude its box and cell.
+
+    Args:
+        family: arrays of the family.
+        domain: box, keep-out balls, forbidden pieces and zones.
+        axis_field: kind, offset and matrix; a free axis, perhaps within a band.
+        frame: at the box's centre.
+        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
+        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
+            denominator for all.
+        forecast: output: the sum, its slopes and its remainders, for ``will_fail``.
+    """
+    if not row[COUNT] > 0.0:
+        return False
+    matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
+    dipoles = family.ground_axes is not None
+    row[NU] = below_rest = 0.0
+    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
+    if dipoles:
+        add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
+    else:
+        below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):
+        forecast.rest[0] = math.inf
+        return False
+    copy_into(matrix, forecast.matrix)
+    add_scaled(1.0, forecast.rest, matrix)
+    corner = failing_corner(matrix, slopes, still, half, level_axes)
+    if corner < 0:
+        return True
+    if not dipoles and mended(matrix, slopes, half, corner, below_rest, level_axes):
+        if level_axes:  # what is off the level plane does not count
+            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+            matrix[4] = matrix[5] = 0.0
+        slopes = scratch(3, 6)
+        copy_table(forecast.slopes, slopes)
+        sharpen(family, frame, row, matrix, slopes)
+        if failing_corner(matrix, slopes, still, half, level_axes) < 0:
+            return True
+    return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
+
+
+@inner_kernel
+def excludes_allowed(domain, row, matrix, slopes, level_axes):
+    """Return whether the matrix is negative wherever a border allows positions; fill its multiplier."""
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
+    alternatives = borders(domain, row, sides, counts)
+    if alternatives == 0:
+        return False
+    v, gradient, nu, ways = scratch(3), scratch(3), scratch(2), scratch(2, 3)
+    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
+    half, row[NU] = row[HALF:LEVEL], 0.0
+    if level_axes:
+        matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
+    top_eigenvector(matrix, v)
+    for i in range(3):
+        gradient[i] = form_value(slopes, i, v)
+    bent, bent_slopes = scratch(6), scratch(3, 6)
+    for a in range(alternatives):
+        for c in range(counts[a]):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
+        if not border_multipliers(ways, counts[a], gradient, nu):
+            return False
+        copy_into(matrix, bent)
+        copy_table(slopes, bent_slopes)
+        for c in range(counts[a]):
+            rest = values[c]
+            for i in range(axes[c]):
+                rest += 0.5 * bends[c] * half[i] ** 2
+            for m in range(3):
+                bent[m] += nu[c] * rest
+                for i in range(3):
+                    bent_slopes[i, m] += nu[c] * ways[c, i]
+        if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
+            return False
+        row[NU] = nu[0]
+    if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by the verifier
+    return True
+
+
+@inner_kernel
+def out_of_reach(family, domain, row):
+    """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
+    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    for k in range(family.numerator_weight.shape[0]):
+        square = min_square(family.points_m, family.numerator_point[k], centre, half)
+        least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
+        if (family.numerator_isotropic[k] - least) * square + family.numerator_weight[k] < 0.0:
+            row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
+            return FAR
+    for q in range(keep_points.shape[0]):
+        d = 0.0
+        for i in range(3):
+            d += (abs(keep_points[q, i] - centre[i]) + half[i]) ** 2
+        if d < keep_radius * keep_radius:
+            row[ANCHOR] = q
+            return KEPT_OUT
+    zone = choose_border(domain, row)
+    if zone >= 0:
+        row[ANCHOR] = zone
+        return KEPT_OUT
+    return -1

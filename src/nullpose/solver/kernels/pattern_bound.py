@@ -1,0 +1,331 @@
+"""Whether no pose of a cell reaches a level, for an antenna with any pattern.
+
+The ratios ``N_k / D_k`` are all below t wherever ``F = sum_k l_k (N_k - t D_k)`` is negative for
+multipliers l of sum one. F is a weighted sum of ``g(b_j) / |r_j|^2`` over the ground points: expanded
+to second order about the cell's middle with a bound on the third, and maximised over the cell coordinate
+by coordinate.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.solver.kernels.attitude import (
+    ANCHOR,
+    CHART,
+    FACE,
+    HALF,
+    WARM,
+    cyclic,
+    direction_rate,
+    fill_frame,
+    in_body,
+    move,
+    rates,
+    third,
+)
+from nullpose.solver.kernels.harmonics import cap_bounds, gain_at, gain_jet
+from nullpose.solver.kernels.jit import inner_kernel
+from nullpose.solver.kernels.vectors import dot, over, row as row_of, scaled, unit
+
+_WIDEST = 1.0  # radians: directions in wider caps are not expanded
+_HALVINGS = 14
+_PACE = 2.0
+_STEPS = 40
+
+
+@inner_kernel
+def square_range(point, row):
+    """Return the least and the largest squared distance of a point from a cell."""
+    least = most = 0.0
+    for i in range(3):
+        away = abs(point[i] - row[i])
+        least += max(0.0, away - row[HALF + i]) ** 2
+        most += (away + row[HALF + i]) ** 2
+    return least, most
+
+
+@inner_kernel
+def way_to(points, j, row):
+    """Return the way from a cell's middle to a point, in the chart's order."""
+    first = int(row[CHART])
+    point, middle = cyclic(points[j], first), cyclic(row, first)
+    return point[0] - middle[0], point[1] - middle[1], point[2] - middle[2]
+
+
+@inner_kernel
+def fill_points(family, pattern, row, room):
+    """Fill every point's value, its bounds over the cell and how wide the cap of its directions is.
+
+    ``room.value`` holds ``g / r^2`` at the middle and ``room.wide`` its bounds: least and largest over the
+    cell, and the bound on a sixth of the third derivative. Returns how far the whole may turn, radians.
+    """
+    points = family.points_m
+    anchor = int(row[ANCHOR])
+    anchor_way = way_to(points, anchor, row)
+    fill_frame(row, anchor_way, room.frame)
+    reach = math.sqrt(row[HALF] ** 2 + row[HALF + 1] ** 2 + row[HALF + 2] ** 2)
+    near, _ = square_range(points[anchor], row)
+    held, whole = rates(row, reach, anchor_way, math.sqrt(near))
+    for j in range(points.shape[0]):
+        a = in_body(room.frame, way_to(points, j, row))
+        near, far = square_range(points[j], row)
+        e = reach / math.sqrt(near) if near > 0.0 else math.inf
+        is_anchor = j == anchor
+        width = held[0] if is_anchor else direction_rate(row, room.frame, a, whole, e)
+        cap_bounds(pattern, unit(a), min(width, math.pi), room.caps)
+        least, most = -room.caps[0], room.caps[1]
+        room.wide[j, 0] = max(0.0, least) / far if least >= 0.0 else least / near
+        room.wide[j, 1] = most / near if most >= 0.0 else most / far
+        room.wide[j, 2] = math.inf
+        if width < _WIDEST and e < 0.5:
+            turning = held if is_anchor else whole
+            g0 = max(abs(least), abs(most))
+            away = 0.0 if is_anchor else e
+            rest = third(turning, width, e, away, g0, room.caps[2], room.caps[3], room.caps[4])
+            room.wide[j, 2] = rest / near
+    return whole[0]
+
+
+@inner_kernel
+def hopeless(family, level, room):
+    """Return a ratio that stays below a level by the bounds of its points over the cell, or -1."""
+    for k in range(family.numerator_point.shape[0]):
+        g = family.denominator_of[k]
+        below = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            below += family.denominator_weight[e] * room.wide[family.denominator_point[e], 0]
+        above = family.numerator_isotropic[k]
+        above += family.numerator_weight[k] * room.wide[family.numerator_point[k], 1]
+        if above < level * below * (1.0 - 1e-12):
+            return k
+    return -1
+
+
+@inner_kernel
+def middle(family, pattern, level, row, room):
+    """Return the smallest ratio at a cell's middle, and whether it is to be expanded there.
+
+    It is if some ratio with its remainders is below the level: no multipliers would do otherwise. Fills the
+    points' values.
+    """
+    for j in range(family.points_m.shape[0]):
+        a = in_body(room.frame, way_to(family.points_m, j, row))
+        square = dot(a, a)
+        x, y, z = over(a, math.sqrt(square))
+        room.value[j] = gain_at(pattern, x, y, z) / square
+    least, promising = math.inf, False
+    for k in range(family.numerator_point.shape[0]):
+        g, j = family.denominator_of[k], family.numerator_point[k]
+        isotropic, weight = family.numerator_isotropic[k], family.numerator_weight[k]
+        above = isotropic + weight * min(room.wide[j, 1], room.value[j] + room.wide[j, 2])
+        value = isotropic + weight * room.value[j]
+        below = base = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j, weight = family.denominator_point[e], family.denominator_weight[e]
+            below += weight * max(room.wide[j, 0], room.value[j] - room.wide[j, 2])
+            base += weight * room.value[j]
+        promising = promising or above < level * below
+        least = min(least, value / base)
+    return least, promising
+
+
+@inner_kernel
+def expand(family, pattern, row, room):
+    """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
+    points, first = family.points_m, int(row[CHART])
+    for j in range(points.shape[0]):
+        a = in_body(room.frame, way_to(points, j, row))
+        square = dot(a, a)
+        length = math.sqrt(square)
+        move(room.frame, a, room.firsts, room.seconds)
+        room.value[j] = gain_jet(pattern, over(a, length), room.pull, room.stiff) / square
+        p1, p2 = 1.0 / (square * length), 1.0 / (square * square)
+        pull = (p1 * room.pull[0], p1 * room.pull[1], p1 * room.pull[2])
+        for m in range(6):
+            i, f = (first + m) % 3 if m < 3 else m, row_of(room.firsts, m)
+            room.slope[j, i] = dot(pull, f)
+            stiff = room.stiff
+            pushed = scaled(
+                p2, (dot(row_of(stiff, 0), f), dot(row_of(stiff, 1), f), dot(row_of(stiff, 2), f))
+            )
+            for n in range(m, 6):
+                k = (first + n) % 3 if n < 3 else n
+                bend = dot(pushed, row_of(room.firsts, n)) + dot(pull, row_of(room.seconds[m], n))
+                room.bend[j, i, k] = bend
+                room.bend[j, k, i] = bend
+
+
+@inner_kernel
+def add_point(room, k, j, weight):
+    """Add the constant of a point's ``g / r^2`` times a weight to that of ``N_k - t D_k``, from above.
+
+    Where the bound over the cell alone is nearer than the expansion's remainder, it takes the place of both.
+    """
+    value, limit = room.value[j], room.wide[j, 1] if weight > 0.0 else room.wide[j, 0]
+    rest = room.wide[j, 2]
+    if room.one_sided[j] and abs(limit - value) < rest:
+        rest = abs(limit - value)
+        for i in range(6):
+            room.slope[j, i] = 0.0
+            room.bend[j, i] = 0.0
+    room.f[k] += weight * value + abs(weight) * rest
+    room.rest[k] += abs(weight) * rest
+
+
+@inner_kernel
+def fill_constants(family, level, room):
+    """Fill the constants of ``N_k - t D_k`` from above, and how much of them is remainder."""
+    for k in range(family.numerator_point.shape[0]):
+        g = family.denominator_of[k]
+        room.f[k] = family.numerator_isotropic[k] - level * family.denominator_isotropic[g]
+        room.rest[k] = 0.0
+        add_point(room, k, family.numerator_point[k], family.numerator_weight[k])
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            add_point(room, k, family.denominator_point[e], -level * family.denominator_weight[e])
+
+
+@inner_kernel
+def weigh(family, level, multipliers, room):
+    """Fill every point's factor in ``sum_k l_k (N_k - t D_k)``; return the sum of the constants."""
+    room.factor[:] = 0.0
+    total = 0.0
+    for k in range(multipliers.shape[0]):
+        total += multipliers[k] * room.f[k]
+        g = family.denominator_of[k]
+        room.factor[family.numerator_point[k]] += multipliers[k] * family.numerator_weight[k]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            room.factor[family.denominator_point[e]] -= level * multipliers[k] * family.denominator_weight[e]
+    return total
+
+
+@inner_kernel
+def upper(family, level, half, multipliers, room):
+    """Return an upper bound of ``sum_k l_k (N_k - t D_k)`` over the cell, convex in l; fill its slopes by l.
+
+    With ``|x_i| <= h_i`` the Hessian's mixed terms are
+    ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``: what is left is one parabola for each
+    coordinate.
+    """
+    total = weigh(family, level, multipliers, room)
+    slope, bend, parts = room.sum_slope, room.sum_bend, room.parts
+    slope[:] = 0.0
+    bend[:] = 0.0
+    points = room.factor.shape[0]
+    for j in range(points):
+        c = room.factor[j]
+        if c != 0.0:
+            for i in range(6):
+                slope[i] += c * room.slope[j, i]
+                for n in range(i, 6):
+                    bend[i, n] += c * room.bend[j, i, n]
+    for i in range(6):
+        h, mixed = half[i], 0.0
+        if h == 0.0:
+            room.at[i] = room.score[i] = 0.0
+            continue
+        for n in range(6):
+            if n != i:
+                mixed += abs(bend[min(i, n), max(i, n)]) * half[n] / h
+        curve, x = bend[i, i] + mixed, h
+        if curve < 0.0 and abs(slope[i]) < -curve * h:
+            x = -abs(slope[i]) / curve
+        total += abs(slope[i]) * x + 0.5 * curve * x * x
+        room.score[i] = abs(slope[i]) * h + (abs(bend[i, i]) + mixed) * h * h
+        room.at[i] = math.copysign(x, slope[i])
+    # by Danskin's theorem the slopes by l are those at the maximum
+    for i in range(6):
+        for n in range(i + 1, 6):
+            share = 0.0
+            if half[i] > 0.0 and half[n] > 0.0:
+                share = 0.5 * (room.at[i] ** 2 * half[n] / half[i] + room.at[n] ** 2 * half[i] / half[n])
+            bend[n, i] = math.copysign(share, bend[i, n])
+    for j in range(points):
+        part = 0.0
+        for i in range(6):
+            part += room.slope[j, i] * room.at[i] + 0.5 * room.at[i] ** 2 * room.bend[j, i, i]
+            for n in range(i + 1, 6):
+                part += bend[n, i] * room.bend[j, i, n]
+        parts[j] = part
+    for k in range(multipliers.shape[0]):
+        g = family.denominator_of[k]
+        by = room.f[k] + family.numerator_weight[k] * parts[family.numerator_point[k]]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            by -= level * family.denominator_weight[e] * parts[family.denominator_point[e]]
+        room.by_l[k] = by
+    return total
+
+
+@inner_kernel
+def excluded_by_sum(family, level, row, multipliers, room):
+    """Return whether some multipliers keep the sum negative over the cell; leave the best that were tried."""
+    n, half = multipliers.shape[0], row[HALF:FACE]
+    for k in range(n):
+        multipliers[k] = row[WARM + k]
+    if n == 2:
+        return two_multipliers(family, level, half, multipliers, room)
+    return descended(family, level, half, multipliers, room)
+
+
+@inner_kernel
+def two_multipliers(family, level, half, multipliers, room):
+    """Return whether two multipliers keep the sum negative: tried where both sides' tangents meet."""
+    left, left_value, left_slope, right, right_value, right_slope = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0
+    for _ in range(_HALVINGS):
+        x = multipliers[0]
+        value = upper(family, level, half, multipliers, room)
+        if value < 0.0:
+            return True
+        slope = room.by_l[0] - room.by_l[1]
+        if slope < 0.0:
+            left, left_value, left_slope = x, value, slope
+        else:
+            right, right_value, right_slope = x, value, slope
+        if value + slope * ((1.0 if right_slope == 0.0 else right) - x) > 0.0 and slope < 0.0:
+            return False
+        if value + slope * ((0.0 if left_slope == 0.0 else left) - x) > 0.0 and slope >= 0.0:
+            return False
+        x = 0.5 * (left + right)
+        if left_slope < 0.0 and right_slope > 0.0:
+            step = (right_value - left_value + left_slope * left - right_slope * right) / (
+                left_slope - right_slope
+            )
+            if left_value + left_slope * (step - left) > 0.0:
+                return False  # convex: no less than where the tangents meet
+            x = min(max(step, left + 0.1 * (right - left)), right - 0.1 * (right - left))
+        elif left_slope < 0.0:
+            x = min(1.0, left - 2.0 * left_value / left_slope)
+        elif right_slope > 0.0:
+            x = max(0.0, right - 2.0 * right_value / right_slope)
+        multipliers[0], multipliers[1] = x, 1.0 - x
+    return False
+
+
+@inner_kernel
+def descended(family, level, half, multipliers, room):
+    """Return whether several multipliers keep the sum negative: mirror descent, the best of which is left."""
+    n = multipliers.shape[0]
+    least = math.inf
+    for step in range(_STEPS):
+        value = upper(family, level, half, multipliers, room)
+        if value < 0.0:
+            return True
+        low, high, mean = math.inf, -math.inf, 0.0
+        for k in range(n):
+            low, high = min(low, room.by_l[k]), max(high, room.by_l[k])
+            mean += multipliers[k] * room.by_l[k]
+        if value < least:
+            least = value
+            for k in range(n):
+                room.best[k] = multipliers[k]
+        if value + low - mean > 0.0:
+            break  # convex: no multipliers do better than this
+        size, total = _PACE / ((high - low) * math.sqrt(1.0 + step)), 0.0
+        for k in range(n):
+            multipliers[k] = max(1e-9, multipliers[k]) * math.exp(-size * (room.by_l[k] - low))
+            total += multipliers[k]
+        for k in range(n):
+            multipliers[k] /= total
+    for k in range(n):
+        multipliers[k] = room.best[k]
+    return False

@@ -1,0 +1,174 @@
+"""No-fly zones and geofences in a box of positions: which simple constraints they amount to there.
+
+Every position of the box that a zone allows meets one of a few alternatives, each of one or two constraints
+``g(p) >= 0``: beyond an edge, outside a cylinder, above or below. A box that holds more than two edges of a
+polygon has none, and is split. Constraints are rows (0, a, b) for ``a.p - b`` with a of unit length, and
+(1, x, y, 0, r) for ``|p_xy - c|^2 - r^2``.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solver.kernels.jit import inner_kernel, kernel
+from nullpose.solver.kernels.node import CENTRE, HALF
+
+OUTSIDE = -1  # the zone does not reach into the box
+UNCLEAR = -2  # it does, in a way that is not simple
+FORBIDDEN = 0  # the whole box is forbidden
+MOST_ALTERNATIVES = 4
+
+_FENCE = 2
+_CYLINDER = 1
+_HAIR = 1e-9  # relative: what an edge may miss a box by and still count as meeting it
+
+
+@kernel
+def in_polygon(edges, first, last, x, y):
+    """Return whether a point lies inside a closed chain of edges (even-odd rule)."""
+    inside = False
+    for e in range(first, last):
+        x1, y1, x2, y2 = edges[e]
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
+            inside = not inside
+    return inside
+
+
+@kernel
+def in_zone(domain, z, p):
+    """Return whether a zone forbids a position."""
+    kind, first, last, edges = (
+        domain.zone_kind[z],
+        domain.zone_start[z],
+        domain.zone_start[z + 1],
+        domain.zone_edges,
+    )
+    low, high = domain.zone_range_m[z]
+    if not low < p[2] < high:
+        return False
+    if kind == _CYLINDER:
+        return (p[0] - edges[first, 0]) ** 2 + (p[1] - edges[first, 1]) ** 2 < edges[first, 2] ** 2
+    return in_polygon(edges, first, last, p[0], p[1]) != (kind == _FENCE)
+
+
+@inner_kernel
+def meets(edge, row):
+    """Return whether a segment meets the rectangle of a row's box, or comes within a hair of it."""
+    x, y, hx, hy = row[CENTRE], row[CENTRE + 1], row[HALF], row[HALF + 1]
+    x1, y1, x2, y2 = edge[0] - x, edge[1] - y, edge[2] - x, edge[3] - y
+    slack = _HAIR * (1.0 + abs(x) + abs(y) + hx + hy)
+    if min(x1, x2) > hx + slack or max(x1, x2) < -hx - slack:
+        return False
+    if min(y1, y2) > hy + slack or max(y1, y2) < -hy - slack:
+        return False
+    nx, ny = y2 - y1, x1 - x2
+    length = math.hypot(nx, ny)
+    return abs(nx * x1 + ny * y1) <= length * slack + abs(nx) * hx + abs(ny) * hy
+
+
+@inner_kernel
+def middle_inside(edge, row):
+    """Return the middle of the part of a segment that lies in the rectangle of a row's box."""
+    low, high = 0.0, 1.0
+    for i in range(2):
+        start, way = edge[i] - row[CENTRE + i], edge[2 + i] - edge[i]
+        if way != 0.0:
+            a, b = (-row[HALF + i] - start) / way, (row[HALF + i] - start) / way
+            low, high = max(low, min(a, b)), min(high, max(a, b))
+    share = 0.5 * (low + high)
+    return edge[0] + share * (edge[2] - edge[0]), edge[1] + share * (edge[3] - edge[1])
+
+
+@inner_kernel
+def fill_side(edge, allowed_right, out):
+    """Fill the constraint of being on one side of an edge, its right or its left."""
+    nx, ny = edge[3] - edge[1], edge[0] - edge[2]
+    length = math.hypot(nx, ny) if allowed_right else -math.hypot(nx, ny)
+    out[0], out[1], out[2], out[3] = 0.0, nx / length, ny / length, 0.0
+    out[4] = out[1] * edge[0] + out[2] * edge[1]
+
+
+@inner_kernel
+def polygon_alternatives(domain, z, row, sides, counts):
+    """Fill the alternatives of a polygon seen from above; return how many, or one of the words."""
+    kind, first, last, edges = (
+        domain.zone_kind[z],
+        domain.zone_start[z],
+        domain.zone_start[z + 1],
+        domain.zone_edges,
+    )
+    fence = kind == _FENCE
+    met = 0
+    one = two = first
+    for e in range(first, last):
+        if meets(edges[e], row):
+            met += 1
+            if met > 2:
+                return UNCLEAR
+            one, two = two if met == 2 else e, e
+    if met == 0:
+        inside = in_polygon(edges, first, last, row[CENTRE], row[CENTRE + 1])
+        return OUTSIDE if inside == fence else FORBIDDEN
+    fill_side(edges[one], not fence, sides[0, 0])
+    counts[0] = 1
+    if met == 1:
+        return 1
+    fill_side(edges[two], not fence, sides[0, 1])
+    x, y = middle_inside(edges[two], row)
+    there = sides[0, 0, 1] * x + sides[0, 0, 2] * y - sides[0, 0, 4]
+    x, y = middle_inside(edges[one], row)
+    here = sides[0, 1, 1] * x + sides[0, 1, 2] * y - sides[0, 1, 4]
+    if there > 0.0 and here > 0.0:  # each edge on the other's allowed side: both constraints hold
+        counts[0] = 2
+        return 1
+    if there < 0.0 and here < 0.0:
+        for m in range(5):
+            sides[1, 0, m] = sides[0, 1, m]
+        counts[1] = 1
+        return 2
+    return UNCLEAR
+
+
+@inner_kernel
+def zone_alternatives(domain, z, row, sides, counts):
+    """Fill the alternatives of a zone in a row's box; return how many, or one of the words.
+
+    Args:
+        domain: with the zones.
+        z: which of them.
+        row: the node.
+        sides: output, (MOST_ALTERNATIVES, 2, 5): constraints.
+        counts: output, (MOST_ALTERNATIVES,): how many each alternative has.
+    """
+    low, high = domain.zone_range_m[z]
+    bottom, top = row[CENTRE + 2] - row[HALF + 2], row[CENTRE + 2] + row[HALF + 2]
+    if bottom >= high or top <= low:
+        return OUTSIDE
+    if domain.zone_kind[z] == _CYLINDER:
+        cylinder = domain.zone_edges[domain.zone_start[z]]
+        x, y, radius = cylinder[0], cylinder[1], cylinder[2]
+        far = math.hypot(abs(row[CENTRE] - x) + row[HALF], abs(row[CENTRE + 1] - y) + row[HALF + 1])
+        near_x = max(0.0, abs(row[CENTRE] - x) - row[HALF])
+        near_y = max(0.0, abs(row[CENTRE + 1] - y) - row[HALF + 1])
+        if math.hypot(near_x, near_y) >= radius:
+            return OUTSIDE
+        count = np.int64(0)
+        if not far < radius * (1.0 - 1e-12):
+            sides[0, 0, 0], sides[0, 0, 1], sides[0, 0, 2] = 1.0, x, y
+            sides[0, 0, 3], sides[0, 0, 4] = 0.0, radius
+            counts[0], count = 1, np.int64(1)
+    else:
+        count = polygon_alternatives(domain, z, row, sides, counts)
+        if count < 0:
+            return count
+    slack = _HAIR * (1.0 + abs(bottom) + abs(top))
+    for end in range(2):
+        if top > high - slack if end == 1 else bottom < low + slack:
+            sides[count, 0, :] = 0.0
+            sides[count, 0, 3] = 1.0 if end == 1 else -1.0
+            sides[count, 0, 4] = high if end == 1 else -low
+            counts[count] = 1
+            count += 1
+    return count

@@ -1,0 +1,285 @@
+"""Many scenes in one call, and arrays of results."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.errors import SolveError, UsageError
+from nullpose.notebook import html_table, imported, text_table
+from nullpose.objectives import FloatArray, IntArray
+from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many, to_db
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.scenario import Airframe, Scenario
+from nullpose.solver.options import SolveKeywords, SolveOptions
+from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.result import objective_of, status_of
+from nullpose.solver.rigour import Rigour
+from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
+
+NOWHERE = "no position was found at which every node is received"
+"""The reason of a scene without a pose."""
+
+_BLOCK = 64  # scenes between two reports
+
+
+_PRINTED = ("scene", "vehicle", "value_db", "upper_bound_db", "status", "x_m", "y_m", "z_m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ManySolutions:
+    """The answers to many scenes: arrays by scene and airframe, (s, a); printed, a line and a table in dB.
+
+    Args:
+        value: the smallest margin over the nodes, which is the smallest SINR (paper eq. 2.2) where no node
+            states a weight or a requirement, evaluated at the pose: a power ratio. Not a number where there
+            is no pose.
+        upper_bound: no pose exceeds this; infinity where nothing is proved.
+        status: how each ended, a :class:`nullpose.solver.Status`; None where there is no pose.
+        reason: what kept it from being certified; empty where it was.
+        position_m: (s, a, 3) metres.
+        roll_rad: radians, as yaw and pitch.
+        pitch_rad: likewise.
+        yaw_rad: likewise.
+        binding_node: index of the node with the smallest value.
+        boxes: boxes of positions that the proof examined; 0 where a vehicle with more freedom had shown it.
+    """
+
+    value: FloatArray
+    upper_bound: FloatArray
+    status: NDArray[np.object_]
+    reason: NDArray[np.object_]
+    position_m: FloatArray
+    roll_rad: FloatArray
+    pitch_rad: FloatArray
+    yaw_rad: FloatArray
+    binding_node: IntArray
+    boxes: IntArray
+
+    @property
+    def rigour(self) -> Rigour:
+        """How sure the bounds are: no certificates are kept of many scenes."""
+        return Rigour.FLOATING_POINT if np.any(np.isfinite(self.upper_bound)) else Rigour.NONE
+
+    @property
+    def relative_gap(self) -> FloatArray:
+        """``(upper_bound - value) / value``, (s, a)."""
+        return np.asarray((self.upper_bound - self.value) / self.value)
+
+    def __repr__(self) -> str:
+        scenes, vehicles = self.value.shape
+        counts = Counter(getattr(each, "value", "without a pose") for each in self.status.flat)
+        words = ", ".join(f"{count} {name}" for name, count in counts.items())
+        return f"ManySolutions(scenes: {scenes}, vehicles: {vehicles}; {words})"
+
+    def __str__(self) -> str:
+        return text_table(repr(self), [{name: row[name] for name in _PRINTED} for row in self._rows()])
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), self._rows())
+
+    def frame(self) -> Any:
+        """Return the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return imported("pandas").DataFrame(self._rows())
+
+    def _rows(self) -> list[dict[str, object]]:
+        """Return a row for each scene and vehicle; what is not known is not a number."""
+        columns = {
+            **dict(zip(("scene", "vehicle"), np.indices(self.value.shape), strict=True)),
+            "value_db": to_db(self.value),
+            "upper_bound_db": to_db(np.where(np.isfinite(self.upper_bound), self.upper_bound, math.nan)),
+            "status": self.status,
+            **dict(zip(("x_m", "y_m", "z_m"), np.moveaxis(self.position_m, -1, 0), strict=True)),
+            "roll_deg": np.degrees(self.roll_rad),
+            "pitch_deg": np.degrees(self.pitch_rad),
+            "yaw_deg": np.degrees(self.yaw_rad),
+            "binding_node": self.binding_node,
+            "boxes": self.boxes,
+            "reason": self.reason,
+        }
+        cells = zip(*(values.ravel().tolist() for values in columns.values()), strict=True)
+        return [dict(zip(columns, row, strict=True)) for row in cells]
+
+    @classmethod
+    def blank(cls, scenes: int, airframes: int) -> ManySolutions:
+        """Return one to be filled.
+
+        Args:
+            scenes: how many.
+            airframes: for each.
+        """
+        shape = (scenes, airframes)
+        return cls(
+            value=np.full(shape, math.nan),
+            upper_bound=np.full(shape, math.inf),
+            status=np.full(shape, None, dtype=object),
+            reason=np.full(shape, "", dtype=object),
+            position_m=np.full((*shape, 3), math.nan),
+            roll_rad=np.full(shape, math.nan),
+            pitch_rad=np.full(shape, math.nan),
+            yaw_rad=np.full(shape, math.nan),
+            binding_node=np.full(shape, -1),
+            boxes=np.zeros(shape, dtype=np.int64),
+        )
+
+
+def solve_many(
+    scenarios: Sequence[Scenario],
+    *,
+    airframes: Sequence[Airframe | None] | None = None,
+    on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> ManySolutions:
+    """Return the best poses of many scenes, each for one airframe or for several, with their bounds.
+
+    What :func:`solve` does for one scene with the scheme optimum, without what it tells of each. Airframes
+    are solved from the one with most freedom down: what bounds a vehicle bounds any that reaches fewer axes,
+    and its pose is theirs if they reach it, so that most of them need no proof of their own. Values are
+    evaluated by :mod:`nullpose.physics`.
+
+    Args:
+        scenarios: what to solve; the smallest SINR or margin, not a secrecy rate, and one dipole each.
+        airframes: the vehicles to try in every scene, None for an omnidirectional one; each scenario's own
+            without them.
+        on_progress: called now and then with how many scenes are done and how many there are.
+        options: as for :func:`solve`.
+
+    Raises:
+        UsageError: a scenario of another kind, no scenario, a bad seed or limit.
+        KeyboardInterrupt: Ctrl-C; nothing is returned.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> strong = nullpose.apply_overrides(scenario, ["jammers.M.power_w=100"])
+        >>> vehicles = [None, nullpose.Airframe(preset="level")]
+        >>> many = nullpose.solve_many([scenario, strong], airframes=vehicles)
+        >>> many.value.round(3)  # a row for each scene, a column for each vehicle
+        array([[1.254, 0.608],
+               [1.206, 0.608]])
+    """
+    asked = SolveOptions(**options)
+    _check(scenarios)
+    if airframes is not None and not len(airframes):
+        raise UsageError("airframes: given none; allowed: one or more")
+    results = ManySolutions.blank(len(scenarios), 1 if airframes is None else len(airframes))
+    for first in range(0, len(scenarios), _BLOCK):
+        block = scenarios[first : first + _BLOCK]
+        vehicles = [[scenario.airframe] if airframes is None else list(airframes) for scenario in block]
+        outcomes = [_by_vehicle(*each, asked) for each in zip(block, vehicles, strict=True)]
+        for column in range(results.value.shape[1]):
+            alike = defaultdict(list)  # what is evaluated together has so many nodes and jammers
+            for row, scenario in enumerate(block):
+                kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
+                alike[kind].append((first + row, scenario, outcomes[row][column]))
+            for (airframe, *_), answers in alike.items():
+                _fill(results, column, airframe, answers, asked)
+        if on_progress is not None:
+            on_progress(first + len(block), len(scenarios))
+    return results
+
+
+def _check(scenarios: Sequence[Scenario]) -> None:
+    if not len(scenarios):
+        raise UsageError("scenarios: given none; allowed: one or more")
+    for index, scenario in enumerate(scenarios):
+        if scenario.objective_record.transmits or scenario.array is not None:
+            kind = "an array" if scenario.array is not None else "a secrecy rate"
+            verb = "solve_array" if scenario.array is not None else "solve"
+            raise UsageError(
+                f"scenarios[{index}]: asks for {kind}; allowed: the smallest SINR or margin of one dipole; "
+                f"use {verb}"
+            )
+
+
+def _by_vehicle(
+    scenario: Scenario, vehicles: Sequence[Airframe | None], asked: SolveOptions
+) -> list[Outcome | None]:
+    """Return what each vehicle reaches, that with most freedom solved first; None where no pose was found."""
+    family, options = build_family(scenario), asked.of(scenario)
+    bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
+    solved: dict[tuple[float, float], Outcome | None] = {}
+    for band in sorted(dict.fromkeys(bands), key=lambda band: band[0] - band[1]):
+        wider = [known for (low, high), known in solved.items() if low <= band[0] and band[1] <= high]
+        solved[band] = _solve_band(family, band, [known for known in wider if known is not None], options)
+    return [solved[band] for band in bands]
+
+
+def _solve_band(
+    family: Family, band: tuple[float, float], wider: list[Outcome], options: SolveOptions
+) -> Outcome | None:
+    """Return the best pose under a band of axes, given what wider bands reach: bounds, and poses."""
+    bound = min((each.upper_bound for each in wider if each.upper_bound is not None), default=math.inf)
+    shared = [each.incumbent for each in wider if band[0] <= _upright(each.incumbent.axis) <= band[1]]
+    known = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
+    try:
+        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=known, bound=bound)
+    except SolveError:
+        return None
+    if outcome.reason == INTERRUPT:
+        raise KeyboardInterrupt
+    return replace(outcome, proofs=(), cells=outcome.nodes)  # the next takes the memory of the leaves
+
+
+def _upright(axis: FloatArray) -> float:
+    """Return ``u_z^2`` of an axis of any length."""
+    return float(axis[2] ** 2 / (axis @ axis))
+
+
+def _fill(
+    results: ManySolutions,
+    column: int,
+    airframe: Airframe | None,
+    answers: list[tuple[int, Scenario, Outcome | None]],
+    asked: SolveOptions,
+) -> None:
+    """Put one airframe's answers into the results, their values evaluated at the poses."""
+    results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
+    placed = [(row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
+    if not placed:
+        return
+    some = np.array([row for row, _, _ in placed])
+    outcomes = [outcome for _, _, outcome in placed]
+    position_m = np.array([each.incumbent.position_m for each in outcomes])
+    axes = np.array([each.incumbent.axis for each in outcomes])
+    mount_rad = 0.0 if airframe is None else airframe.mount_rad
+    if airframe is None:
+        roll, pitch = attitude_from_axis(axes)
+        yaw = np.zeros_like(roll)
+    else:
+        roll, pitch, yaw = attitude_within_tilt(axes, airframe.tilt_max_rad, mount_rad)
+    axis = antenna_axis(roll, pitch, yaw, mount_rad)
+    margins = margins_of_many([scenario for _, scenario, _ in placed], position_m, axis)
+    value = np.min(margins, axis=1)
+    ends = []
+    for least, (_, scenario, outcome) in zip(value.tolist(), placed, strict=True):
+        objective = objective_of(scenario, least, outcome.upper_bound)
+        bound = math.inf if objective.upper_bound is None else objective.upper_bound
+        ends.append((bound, *status_of(objective, asked.of(scenario).target, outcome.reason)))
+    bounds, statuses, reasons = zip(*ends, strict=True)
+    found: dict[str, ArrayLike] = {
+        "value": value,
+        "upper_bound": bounds,
+        "status": statuses,
+        "reason": reasons,
+        "position_m": position_m,
+        "roll_rad": roll,
+        "pitch_rad": pitch,
+        "yaw_rad": yaw,
+        "binding_node": np.argmin(margins, axis=1),
+        "boxes": [each.nodes for each in outcomes],
+    }
+    for name, values in found.items():
+        getattr(results, name)[some, column] = values

@@ -1,0 +1,194 @@
+"""The multistart search of a family under an axis field."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from itertools import permutations
+from typing import NamedTuple
+
+import numpy as np
+
+from nullpose.errors import SolveError
+from nullpose.objectives import FloatArray
+from nullpose.problem.airspace import loosened
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
+from nullpose.solver.incumbent import Incumbent
+
+BORDER_M = 4e-10
+"""How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
+NO_POSITION = (
+    "no position was found in what the airspace leaves, which is very small or narrow; widen the airspace or "
+    "the gaps between zones, or reduce keep_out_m"
+)
+"""What is said where no position was met."""
+NOT_RECEIVED = (
+    "no position was found at which every node is received; widen the airspace or reduce keep_out_m"
+)
+"""What is said where some were."""
+_CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
+_CLIMB_STEPS = 300
+_ALL = 1_000_000  # landmarks
+_PAIRED = 4  # interferers whose lines are looked at
+
+
+class SearchSettings(NamedTuple):
+    """How hard the multistart tries.
+
+    Args:
+        coarse: positions judged in each round.
+        polished: the best of them that are polished in each round.
+        rounds: most rounds.
+        patience: rounds without improvement after which it stops.
+        landmarks: the best landmarks that are polished before the rounds.
+    """
+
+    coarse: int = 96
+    polished: int = 24
+    rounds: int = 12
+    patience: int = 2
+    landmarks: int = _ALL
+
+
+_LIGHT = SearchSettings(coarse=8, polished=1, rounds=1, patience=1, landmarks=2)
+_NO_SEARCH = SearchSettings(coarse=0, polished=0, rounds=-1, patience=0)
+
+
+def search_settings(proof_follows: bool, field: AxisField) -> SearchSettings:
+    """Return how hard to try: lightly if a proof follows, which repairs what the search misses.
+
+    Args:
+        proof_follows: whether one does.
+        field: the axes; if a position gives the axis, the best place may be a needle over a landmark.
+    """
+    if not proof_follows:
+        return SearchSettings()
+    return _LIGHT if field.is_free else _LIGHT._replace(landmarks=_ALL)
+
+
+def landmarks(family: Family, most: int = 16) -> FloatArray:
+    """Return positions worth a start of their own, (m, 3), some of which no grid would hit.
+
+    Over the points' centre and over each interferer: the vertical case under strong jamming is a needle
+    straight
+    above the jammer, which begins at its keep-out ball. On the line of each two interferers, beside their
+    balls: there one axis has its null on both.
+
+    Args:
+        family: the ratios and their domain.
+        most: points of a kind that are taken at most.
+    """
+    ratios, floor_m, clear_m = family.arrays, family.domain.low_m[2], 1.02 * family.domain.keep_out_m
+    nodes = ratios.points_m[ratios.numerator_point]
+    interferers = ratios.points_m[sorted(set(ratios.denominator_point.tolist()))[:most]]
+    centre = nodes.sum(axis=0, keepdims=True) / len(nodes)
+    over = np.concatenate([centre, interferers, nodes[:most]])
+    over[:, 2] = np.maximum(floor_m, over[:, 2] + clear_m)
+    over[0, 2] = floor_m
+    beside = []
+    for first, second in permutations(interferers[:_PAIRED], 2):
+        apart_m = np.linalg.norm(second - first)
+        if apart_m > 0.0:  # one point may stand for several that see different axes
+            way = (second - first) / apart_m
+            beside += [first + clear_m * way, first - clear_m * way]
+    return np.vstack([over, *beside]) if beside else over
+
+
+def _corners(family: Family, most: int = 1000) -> FloatArray:
+    """Return corners of zones and fence on the lowest and the highest altitude, (m, 3)."""
+    corners = family.zone_edges[:: 1 + 2 * len(family.zone_edges) // most, :2]
+    return np.vstack([np.insert(corners, 2, end[2], axis=1) for end in (family.low_m, family.high_m)])
+
+
+@cache
+def _shift_of(seed: int) -> FloatArray:
+    """Return the offset of the low-discrepancy sequence, (3,), that a seed stands for.
+
+    Args:
+        seed: a whole number of at least 0.
+    """
+    return np.random.default_rng(seed).uniform(size=3)
+
+
+def multistart(
+    family: Family, axis_field: AxisField, *, seed: int, settings: SearchSettings | None = None
+) -> Incumbent:
+    """Return the best pose that a multistart finds: coarse positions, the promising ones polished.
+
+    Deterministic for a given seed. Not a proof: see :class:`nullpose.solver.Status`.
+
+    Args:
+        family: the ratios and their domain.
+        axis_field: which axes are allowed.
+        seed: start of the low-discrepancy sequence.
+        settings: how hard to try.
+
+    Raises:
+        SolveError: no position of the domain gave every ratio a positive value.
+    """
+    settings = settings or SearchSettings()
+    places = landmarks(family)
+    found = _run(family, axis_field, places, seed, settings)
+    if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
+        places = np.vstack([places, _corners(family)])
+        found = _run(loosened(family, BORDER_M), axis_field, places, seed, settings)
+        if not math.isfinite(found.log_value):
+            raise SolveError(NOT_RECEIVED if found.evaluations else NO_POSITION)
+    return found
+
+
+def climb(
+    family: Family, axis_field: AxisField, position_m: FloatArray, axis: FloatArray, *, mu: float, steps: int
+) -> Incumbent:
+    """Return the local maximum that a pose leads to.
+
+    Args:
+        family: the ratios and their domain.
+        axis_field: which axes are allowed.
+        position_m: (3,) metres, in the domain.
+        axis: (3,) unit axis.
+        mu: first barrier weight, in units of the log ratio.
+        steps: most steps.
+    """
+    pose = (position_m.copy(), axis.copy())
+    return _run(family, axis_field, np.empty((0, 3)), 0, _NO_SEARCH, (mu,), steps, pose)
+
+
+def _run(
+    family: Family,
+    axis_field: AxisField,
+    places: FloatArray,
+    seed: int,
+    settings: SearchSettings,
+    climbs: tuple[float, ...] = _CLIMBS,
+    steps: int = _CLIMB_STEPS,
+    pose: tuple[FloatArray, FloatArray] | None = None,
+) -> Incumbent:
+    from nullpose.solver.kernels.jit import entry_of
+    from nullpose.solver.kernels.multistart import search_and_climb
+
+    position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    ratios = family.arrays
+    multipliers = np.empty(len(ratios.numerator_point))
+    log_value, starts, evaluations = entry_of(search_and_climb, ratios)(
+        ratios,
+        family.domain,
+        axis_field.arrays,
+        places,
+        _shift_of(seed),
+        settings,
+        np.array(climbs),
+        steps,
+        position_m,
+        axis,
+        multipliers,
+    )
+    return Incumbent(
+        position_m=position_m,
+        axis=axis,
+        log_value=log_value,
+        multipliers=multipliers,
+        starts=starts,
+        evaluations=evaluations,
+    )

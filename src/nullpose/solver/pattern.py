@@ -1,0 +1,246 @@
+"""An antenna with any pattern: search and proof over positions and attitudes."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from functools import partial
+
+import numpy as np
+
+from nullpose.antenna import PatternAntenna
+from nullpose.errors import SolveError
+from nullpose.objectives import FloatArray
+from nullpose.physics.rotation import rotation_world_from_body
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.problem.records import Reach
+from nullpose.scenario import Scenario
+from nullpose.solver.compiling import limit_clock
+from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.multistart import NO_POSITION
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.pattern_search import PatternSearch
+from nullpose.solver.proof import INTERRUPT, MOST_LEAVES, Proof
+from nullpose.solver.rigour import bound_above
+from nullpose.solver.solve_and_prove import Outcome
+from nullpose.solver.worker_pool import Kernel, WorkerPool, processors
+
+_AT_ONCE = 60_000  # cells that take about as long as a thorough search
+_CHUNK = 20_000  # cells between two looks at the clock
+_DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
+_GAPS = (0.5, 0.1, 0.02)
+_CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
+_INSIDE = 1.0 - 1e-4
+_DOUBT = 1e-9  # relative: a middle that is no better is the incumbent again
+
+
+def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
+    """Return the best pose for an antenna with a pattern, with a bound if one is asked for.
+
+    A multistart search; then a branch and bound over cells of positions and attitudes, which takes up every
+    better pose that it meets. If the time does not suffice for the gap asked for, wider gaps are proved.
+
+    Args:
+        scenario: one whose antenna has a pattern.
+        options: what is asked for, its gap stated.
+
+    Raises:
+        SolveError: no pose reaches every node.
+    """
+    antenna = scenario.antenna_record
+    assert isinstance(antenna, PatternAntenna), "the caller asks"
+    run = PatternRun(build_family(scenario, any_antenna=True), antenna, reach_of(scenario, antenna), options)
+    return run.outcome()
+
+
+def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
+    """Return which attitudes of an antenna the scenario's airframe reaches.
+
+    Args:
+        scenario: with its airframe.
+        antenna: with its pattern.
+    """
+    airframe = scenario.airframe
+    tilt, mount = (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
+    up = rotation_world_from_body(0.0, mount, 0.0).T[:, 2].copy()
+    return Reach(tilt, mount, up, antenna.harmonics.is_axisymmetric, antenna.harmonics.is_even)
+
+
+class PatternRun:
+    """One search and one proof.
+
+    Args:
+        family: ratios and domain, as for an isotropic gain of 1.
+        antenna: its pattern.
+        reach: the attitudes there are.
+        options: what is asked for.
+    """
+
+    def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, options: SolveOptions) -> None:
+        self.family, self.antenna, self.reach, self.options = family, antenna, reach, options
+        self.search = PatternSearch(family, antenna, reach, options.seed)
+        self.cells = 0
+        self.doubt = _DOUBT
+        self.leaves: FloatArray | None = None
+        self.root = np.zeros((2, 3))
+
+    def outcome(self) -> Outcome:
+        """Return the best pose and what is proved of it."""
+        from nullpose.solver.kernels.pattern_branch import branch_pattern
+        from nullpose.solver.kernels.root import reach_by_distance
+
+        self.branch = branch_pattern
+        self.search.compile()  # before the clock begins
+        self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
+        began = limit_clock()
+        self.thorough = not self.search.run(light=self.options.certify)
+        if not math.isfinite(self.search.best):
+            raise SolveError(NO_POSITION)
+        reason = ""
+        if self.options.certify:
+            reason = self._proved(began)
+        position_m, rotation = self.search.pose
+        found = Incumbent(
+            position_m=position_m,
+            axis=self.search.least_tilted(rotation),
+            log_value=self.search.best,
+            multipliers=np.full(len(self.family.numerator_point), 1.0 / len(self.family.numerator_point)),
+            starts=self.search.starts,
+            evaluations=self.search.evaluations,
+        )
+        if not self.options.certify:
+            return Outcome(incumbent=found)
+        bound = float(bound_above(self.value, self.proved))
+        if self.leaves is None:
+            return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.cells)
+        proof = Proof(
+            incumbent=found,
+            upper_bound=bound,
+            root=self.root,
+            leaves=self.leaves,
+            reason=reason,
+            nodes=self.cells,
+            is_even=self.reach.even,
+        )
+        return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=(proof,))
+
+    @property
+    def value(self) -> float:
+        """The best smallest ratio so far; 1 at least if it is one of a rate, which is never below zero."""
+        return math.exp(max(self.search.best, 0.0) if self.options.of_rate else self.search.best)
+
+    def _proved(self, began: float) -> str:
+        """Close the gap asked for, or else wider ones; return why it was not closed."""
+        limits = self.options
+        whole = began + limits.time_limit_s
+        target = _INSIDE * limits.ratio_gap(self.value)
+        try:
+            if self.proved <= self.value * (1.0 + target):
+                return ""
+            until = began + _DIRECT_SHARE * limits.time_limit_s
+            reason = self._stage(target, until)
+            for gap in _GAPS if reason and self.cells < limits.node_limit else ():
+                if gap > target and self._stage(gap, whole):
+                    break
+            if reason:
+                self._search_thoroughly()
+            return reason
+        except KeyboardInterrupt:
+            return INTERRUPT
+
+    def _stage(self, gap: float, until: float) -> str:
+        """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
+        threads = self.options.threads or processors()
+        root = self.root_of(gap)
+        workers, keep = WorkerPool(self.cells_of(root), threads, orientation=(3, 3)), self.reach.spins
+        with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
+            while not workers.done:
+                if limit_clock() > until:
+                    return f"the time limit of {self.options.time_limit_s:g} s"
+                if self.cells >= self.options.node_limit:
+                    return f"the node limit of {self.options.node_limit}"
+                self.cells += workers.work(self._excluding(gap, keep), _CHUNK, pool)
+                keep = keep and workers.filled <= MOST_LEAVES
+                for position_m, rotation in workers.better():
+                    # what does not help, by rounding, must not be met again and again
+                    self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
+                if self.cells >= _AT_ONCE and not workers.done:
+                    self._search_thoroughly()
+                if self.options.on_progress is not None:
+                    self.options.on_progress(self.proved / self.value - 1.0, self.cells)
+        bound = self.value * (1.0 + gap)
+        if bound < self.proved:
+            self.proved, self.root = bound, root
+            self.leaves = workers.leaves() if keep else None
+        return ""
+
+    def _search_thoroughly(self) -> None:
+        """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
+        if not self.thorough:
+            self.thorough, light = True, self.search
+            self.search = PatternSearch(self.family, self.antenna, self.reach, self.options.seed)
+            self.search.compile()
+            self.search.run(light=False)
+            self.search.take(*light.pose)
+            self.search.starts += light.starts
+            self.search.evaluations += light.evaluations
+
+    def _excluding(self, gap: float, keep: bool) -> Kernel:
+        """Return the kernel that excludes all above ``value (1 + gap)``, and keeps the leaves if asked to."""
+        family, antenna = self.family, self.antenna
+        problem = family.arrays, family.domain, antenna.arrays, self.reach
+        return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt), keep)
+
+    def root_of(self, gap: float) -> FloatArray:
+        """Return corners, (2, 3), of a box outside which no pose reaches the best value, or a gap over it.
+
+        Args:
+            gap: relative; it counts for a rate, whose ratios tend to one far away.
+        """
+        level = math.log(self.value) + (math.log1p(gap) if self.options.of_rate else 0.0)
+        low_m, high_m = self.search.box(level)
+        return np.array([low_m, np.maximum(low_m, high_m)])
+
+    def cells_of(self, root_m: FloatArray) -> FloatArray:
+        """Return cells of positions and attitudes to begin with.
+
+        Args:
+            root_m: (2, 3) corners of the box of all positions.
+        """
+        found: list[FloatArray] = []
+        self._add_roots(root_m[0], root_m[1], found)
+        return np.array(found)
+
+    def _add_roots(self, low_m: FloatArray, high_m: FloatArray, found: list[FloatArray]) -> None:
+        middle, half = 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
+        anchor = self.search.anchor
+        clear, chart = max((self._clearance(anchor, chart, middle, half), chart) for chart in range(3))
+        if clear < _CLEAR and np.max(half) > self.family.keep_out_m:
+            side = int(np.argmax(half))
+            lower, upper = high_m.copy(), low_m.copy()
+            lower[side] = upper[side] = middle[side]
+            self._add_roots(low_m, lower, found)
+            self._add_roots(upper, high_m, found)
+            return
+        from nullpose.solver.kernels import attitude as a
+
+        for face in range(1 if self.reach.spins else 6):
+            cell = np.zeros(a.WARM + len(self.family.numerator_point))
+            cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
+            cell[a.HALF + 3 : a.HALF + 6] = math.pi / 4.0, math.pi / 4.0, math.pi
+            if self.reach.spins:  # u alone says where the anchor is: half a turn, or a quarter
+                cell[3] = cell[a.HALF + 3] = math.pi / 4.0 if self.reach.even else math.pi / 2.0
+                cell[a.HALF + 4] = 0.0
+            cell[a.FACE], cell[a.CHART], cell[a.ANCHOR] = face, chart, anchor
+            cell[a.WARM :] = 1.0 / len(self.family.numerator_point)
+            found.append(cell)
+
+    def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:
+        """Return the least cosine of the anchor's latitude over a box, in a chart."""
+        order = [(chart + i) % 3 for i in range(3)]
+        way = np.abs(self.family.points_m[anchor] - middle)[order]
+        sides = half[order]
+        level = math.hypot(max(0.0, way[0] - sides[0]), max(0.0, way[2] - sides[2]))
+        return level / math.hypot(level, way[1] + sides[1]) if level > 0.0 else 0.0

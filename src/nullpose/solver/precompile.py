@@ -1,0 +1,105 @@
+"""The kernels of search and proof made ready: loaded, or compiled by two processes at once."""
+
+from __future__ import annotations
+
+import threading
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
+from nullpose.solver.background_compiler import BackgroundCompiler
+from nullpose.solver.compiling import PREPARING
+from nullpose.solver.kernels import interpreted
+
+_ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
+
+
+def precompile(dipoles: bool) -> None:
+    """Compile search and proof if this process has not, or load them from the cache.
+
+    Two other processes compile them where a folder keeps what they make; otherwise this one does.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles, whose kernels are others.
+    """
+    from numba.core import event
+
+    from nullpose.solver.kernels.branch import branch
+
+    if _is_compiled(branch, dipoles):
+        return
+    with _ONE_AT_A_TIME, event.trigger_event(PREPARING):
+        if interpreted.compiler is None and branch.stats.cache_path is not None:
+            elsewhere = BackgroundCompiler()
+            with elsewhere.in_use():
+                compile_proof(dipoles)
+                compile_search(dipoles)
+                elsewhere.wait()
+        compile_proof(dipoles)
+        compile_search(dipoles)
+
+
+def _is_compiled(kernel: Any, dipoles: bool) -> bool:
+    """Return whether there is nothing to compile in this process: done, or told not to."""
+    return isinstance(kernel, FunctionType) or dipoles in getattr(kernel, "entries", ())
+
+
+def compile_proof(dipoles: bool) -> None:
+    """Compile the branch and bound by giving it no box to work off.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
+    from nullpose.solver.kernels import branch, node
+    from nullpose.solver.kernels.records import Goal
+
+    family, field = _smallest_family(dipoles), AxisField.free()
+    row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
+    problem = family.arrays, family.domain, field.arrays
+    branch.branch(*problem, 1.0, Goal(1.0, row, 1.0), rows, 0, rows, 0, 1, none, none)
+
+
+def compile_search(dipoles: bool) -> None:
+    """Compile what is needed beside that, by a search of no round and a climb of no step.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
+    from nullpose.solver.kernels.links import min_log_ratio
+    from nullpose.solver.kernels.multistart import search_and_climb
+    from nullpose.solver.kernels.node import COLUMNS, keep_largest
+    from nullpose.solver.kernels.root import fill_root
+    from nullpose.solver.multistart import climb
+
+    if _is_compiled(search_and_climb, dipoles):
+        return
+    family, one = _smallest_family(dipoles), np.ones(1)
+    up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
+    climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
+    fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, one, row)
+    min_log_ratio(family.arrays, high_m, up, one, one)
+    keep_largest(one, 1, row)
+
+
+def _smallest_family(dipoles: bool) -> Family:
+    """Return a family of one ratio: its arrays have the types of any other's."""
+    return Family(
+        ground_axes=np.zeros((1, 3)) if dipoles else None,
+        ground_leaks=np.zeros(1) if dipoles else None,
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=np.zeros(3),
+        high_m=np.ones(3),
+        keep_out_points_m=np.zeros((0, 3)),
+        keep_out_m=1.0,
+    )

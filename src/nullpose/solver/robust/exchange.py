@@ -1,0 +1,186 @@
+"""The exchange: error cases are added where they bind, until the finite family speaks for all of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nullpose.objectives import FloatArray
+from nullpose.physics.error_case import ErrorCase
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
+from nullpose.problem.robust import BindingCase, build_robust_family
+from nullpose.solver.compiling import limit_clock
+from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.multistart import SearchSettings, climb, multistart, search_settings
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.proof import prove
+from nullpose.solver.robust.inner import Inner
+
+_CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
+_MOST_ROUNDS = 100
+_SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
+_SAME = 1e-9
+_FINER = 0.1  # accuracy of guarantees, as a share of the gap
+_ACCURACIES = 1e-6, 3e-3
+_LEAST_GAP, _WIDEST_GAP = 1e-8, 10.0  # of a proof
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Visited:
+    """A pose and the smallest ratio of the worst cases found there.
+
+    Args:
+        position_m: (3,) metres.
+        axis: (3,) of unit length.
+        worst: that ratio.
+    """
+
+    position_m: FloatArray
+    axis: FloatArray
+    worst: float
+
+
+class Exchange:
+    """The search for the pose that guarantees most, and the bound on what any pose guarantees.
+
+    A finite family of error cases is maximised; the worst cases at its best pose join it; again, until its
+    value exceeds what the best pose so far guarantees by a share of the gap. Fewer errors than all make every
+    pose look better, so a proof for the finite family bounds what can be guaranteed.
+
+    Args:
+        inner: the scenario, prepared.
+        axis_field: the axes that the airframe reaches.
+        limits: the gap between bound and guarantee that is aimed at, and what all proofs may cost.
+        position_m: (3,) position of the pose to begin with.
+        axis: (3,) its axis, of any length.
+    """
+
+    def __init__(
+        self,
+        inner: Inner,
+        axis_field: AxisField,
+        limits: SolveOptions,
+        position_m: FloatArray,
+        axis: FloatArray,
+    ) -> None:
+        self.inner, self.axis_field, self.limits = inner, axis_field, limits
+        blank = ErrorCase.none(inner.scenario)
+        self.cases: list[BindingCase] = []
+        self.best = Visited(position_m, axis, -math.inf)
+        self.add([BindingCase(ratio, blank) for ratio in range(inner.n_ratios)])
+        self.add(self.visit(position_m, axis))
+        self.incumbent: Incumbent | None = None
+        self.starts = self.evaluations = self.boxes = 0
+        self.upper_bound: float | None = None
+        self.reason = ""
+
+    def add(self, cases: Sequence[BindingCase]) -> bool:
+        """Add cases to the finite family; return whether any was not in it.
+
+        Args:
+            cases: the cases, those already there among them.
+        """
+        new = [each for each in cases if not any(each.is_same(other) for other in self.cases)]
+        self.cases += new
+        return bool(new)
+
+    def accuracy(self) -> float:
+        """Return how close the guarantee of the best pose has to be to its worst case."""
+        finest, coarsest = _ACCURACIES
+        return min(coarsest, max(finest, _FINER * self.limits.ratio_gap(self.best.worst)))
+
+    def level(self, ratio: float, share: float = 1.0) -> float:
+        """Return the ratio that is a share of the gap above one, which counts as 1 for a rate of zero.
+
+        Args:
+            ratio: what is guaranteed.
+            share: of the gap.
+        """
+        if self.limits.of_rate:
+            ratio = max(1.0, ratio)
+        return ratio * (1.0 + replace(self.limits, gap=share * self.limits.target).ratio_gap(ratio))
+
+    @property
+    def family(self) -> Family:
+        """The finite family of the cases so far."""
+        return build_robust_family(self.inner.scenario, self.cases)
+
+    def visit(self, position_m: FloatArray, axis: FloatArray, level: float = math.inf) -> list[BindingCase]:
+        """Return the worst cases at a pose that are below a level; the pose may be the best so far.
+
+        Args:
+            position_m: (3,) the position.
+            axis: (3,) the axis, of any length.
+            level: what the finite family promises there.
+        """
+        unit = axis / np.linalg.norm(axis)
+        worst = self.inner.worst(position_m, unit)
+        value = min(one.worst for one in worst)
+        if value > self.best.worst:
+            self.best = Visited(position_m.copy(), unit, value)
+        return [one.binding for one in worst if one.worst < level * (1.0 - _SAME)]
+
+    def search(self, deadline: float) -> None:
+        """Add cases until the finite family promises little more than the best pose guarantees.
+
+        A light search leads the way; its end is confirmed by a thorough one.
+
+        Args:
+            deadline: when to stop in any case, on the clock of ``limit_clock``.
+        """
+        light, thorough = (search_settings(follows, self.axis_field) for follows in (True, False))
+        settings = light
+        for _ in range(_MOST_ROUNDS):
+            found = self._search_once(settings)
+            self.incumbent, promised = found, math.exp(found.log_value)
+            new = self.visit(found.position_m, found.axis, promised)
+            close = promised <= self.level(self.best.worst, _SHARE)
+            if limit_clock() > deadline or (close and settings is thorough):
+                return  # the family stays the one that was searched
+            if close:
+                settings = thorough
+            elif not self.add(new):
+                return
+
+    def _search_once(self, settings: SearchSettings) -> Incumbent:
+        """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
+        family, field = self.family, self.axis_field
+        with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
+            anywhere = multistart(family, field, seed=self.limits.seed, settings=settings)
+        near = climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
+        ends = anywhere, near
+        self.starts += anywhere.starts + 1
+        self.evaluations += sum(end.evaluations for end in ends)
+        return max(ends, key=lambda end: end.log_value)
+
+    def prove(self, level: float, began: float) -> bool:
+        """Bound the finite family by a level; return whether to search on, since a better pose turned up.
+
+        Args:
+            level: the ratio that no pose is to exceed.
+            began: when the clock of the limits began.
+        """
+        assert self.incumbent is not None
+        start = self.incumbent
+        if self.limits.of_rate:  # a rate is never below zero
+            start = replace(start, log_value=max(0.0, start.log_value))
+        value = math.exp(start.log_value)
+        gap = level / value - 1.0
+        if not gap > _LEAST_GAP:  # the search was cut short
+            gap = self.limits.ratio_gap(value)
+        target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
+        proof = prove(self.family, self.axis_field, start, target, began=began, nodes=self.boxes)
+        self.boxes += proof.nodes
+        bound = proof.upper_bound
+        self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
+        self.reason = proof.reason
+        if not proof.incumbent.log_value > start.log_value + _SAME:
+            return False
+        new = self.visit(
+            proof.incumbent.position_m, proof.incumbent.axis, math.exp(proof.incumbent.log_value)
+        )
+        return self.add(new) and not proof.reason

@@ -1,0 +1,113 @@
+"""Search and proof of one problem: the best pose over one axis field, or over several."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
+from nullpose.solver.compiling import limit_clock
+from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.multistart import multistart, search_settings
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.precompile import compile_search, precompile
+from nullpose.solver.proof import Proof, prove
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Outcome:
+    """The best pose over all axis fields, and what was proved about each.
+
+    Args:
+        incumbent: the best pose.
+        chosen: index of the axis field that it belongs to.
+        proofs: one for each axis field, in order; empty if none was asked for, or if one has too many leaves
+            for a certificate.
+        upper_bound: no pose under any of the fields exceeds this; None if nothing is proved.
+        reason: why the target gap was not reached, or not aimed at; empty if it was.
+        cells: what was examined by a proof that leaves no leaves.
+    """
+
+    incumbent: Incumbent
+    chosen: int = 0
+    proofs: tuple[Proof, ...] = ()
+    upper_bound: float | None = None
+    reason: str = ""
+    cells: int = 0
+
+    @property
+    def nodes(self) -> int:
+        """Nodes examined by all proofs."""
+        return self.cells + sum(proof.nodes for proof in self.proofs)
+
+
+def solve_and_prove(
+    family: Family,
+    fields: Sequence[AxisField],
+    options: SolveOptions,
+    *,
+    known: Incumbent | None = None,
+    bound: float = math.inf,
+) -> Outcome:
+    """Return the best pose over the axis fields, with a proof if one is asked for.
+
+    Every field is searched; then it is proved of each that it does not beat the best of all. The search
+    before a proof is light; where the proof does not close at once, the one without a proof is made, too.
+
+    Args:
+        family: the ratios and their domain.
+        fields: the axis fields, one or more.
+        options: what is asked for, its gap stated.
+        known: a pose under the only field, in place of a search.
+        bound: known before of more axes than the fields have.
+
+    Raises:
+        SolveError: no pose reaches every node.
+    """
+    # compiling must not count against the time limit
+    (precompile if options.certify else compile_search)(family.ground_axes is not None)
+    began = limit_clock()
+    searches: list[Incumbent] = []
+
+    def searched(field: AxisField, proof_follows: bool) -> Incumbent:
+        settings = search_settings(proof_follows, field)
+        searches.append(multistart(family, field, seed=options.seed, settings=settings))
+        return searches[-1]
+
+    each = [known or searched(one, options.certify) for one in fields]
+    chosen = max(range(len(each)), key=lambda i: each[i].log_value)
+    best = each[chosen]
+    proofs: list[Proof] = []
+    reason = ""
+    for i, field in enumerate(fields):
+        if not options.certify:
+            break
+        # the level to exclude is that of the best of all; where to look for better poses is this field's
+        least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
+        level, start = max(best.log_value, least), each[i]
+        start = start if start.log_value == level else replace(start, log_value=level)
+        nodes = sum(p.nodes for p in proofs)
+        search = partial(searched, field, False)
+        proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound, search=search)
+        proofs.append(proof)
+        reason = reason or proof.reason
+        if proof.incumbent.log_value > best.log_value:
+            best, chosen = proof.incumbent, i
+    if searches:
+        starts, evaluations = (
+            sum(found.starts for found in searches),
+            sum(found.evaluations for found in searches),
+        )
+        best = replace(best, starts=starts, evaluations=evaluations)
+    has_leaves = all(len(proof.leaves) for proof in proofs)
+    return Outcome(
+        incumbent=best,
+        chosen=chosen,
+        proofs=tuple(proofs) if has_leaves else (),
+        cells=0 if has_leaves else sum(proof.nodes for proof in proofs),
+        upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
+        reason=reason,
+    )

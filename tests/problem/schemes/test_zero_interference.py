@@ -1,0 +1,131 @@
+"""Zero interference: the null on a jammer, and which one."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.optimize import differential_evolution
+
+from nullpose.errors import UsageError
+from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
+from nullpose.scenario import Scenario
+from nullpose.solver import Scheme, solve
+from nullpose.solver.by_scheme import solve_scheme
+from nullpose.solver.options import SolveOptions
+
+
+@pytest.fixture(scope="module")
+def three_jammers(scene: Callable) -> Scenario:
+    """Returns a scene of two nodes and three jammers of unlike powers."""
+    return scene(
+        [(0, 0, 0), (0, 50, 0)],
+        [(17, 15, 4), (-25, 40, 1), (30, 30, 0)],
+        jammer_powers_w=[0.3, 5.0, 1.0],
+    )
+
+
+def test_the_field_points_at_the_jammer(paper: Callable) -> None:
+    """The affine field is the axis of eq. 3.1, its length left out."""
+    jammer = paper(1.0).jammer_positions_m[0]
+    _, offset, matrix = AxisField.towards(jammer).arrays
+    for position in np.random.default_rng(1).uniform([-30.0, 0.0, 8.0], [30.0, 50.0, 30.0], (20, 3)):
+        axis = offset + matrix @ position
+        np.testing.assert_allclose(
+            axis / np.linalg.norm(axis), zero_interference_axis(position, jammer), atol=1e-15
+        )
+
+
+def test_the_paper_by_differential_evolution(paper: Callable) -> None:
+    """Differential evolution on eq. 3.2 comes to the same value, and the null is on the jammer."""
+    one = paper(100.0)
+    solution = solve(one, Scheme.ZERO_INTERFERENCE)
+    searched = differential_evolution(
+        lambda positions: -np.min(zero_interference_sinr(one, positions.T), axis=-1),
+        [(-30.0, 30.0), (0.0, 50.0), (8.0, 30.0)],
+        seed=2,
+        vectorized=True,
+        updating="deferred",
+        maxiter=400,
+        tol=1e-12,
+    )
+    assert solution.objective.value == pytest.approx(-searched.fun, rel=1e-9)
+    assert solution.note == "null on jammer M1"
+    gain = antenna_gain(solution.pose.position_m, solution.pose.antenna_axis, one.jammer_positions_m)
+    assert gain[0] < 1e-30
+
+
+def test_each_jammer_is_tried(three_jammers: Scenario) -> None:
+    """Without a name each jammer is tried and the best kept; the note says which, the counts are of all."""
+    named = {
+        name: solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
+        for name in three_jammers.jammer_names
+    }
+    best = solve(three_jammers, Scheme.ZERO_INTERFERENCE)
+    winner = max(named, key=lambda name: named[name].objective.value)
+    assert best.objective == named[winner].objective
+    assert best.pose == named[winner].pose
+    assert best.note == f"null on jammer {winner}, the best of 3"
+    assert best.stats.starts == sum(solution.stats.starts for solution in named.values())
+    assert best.stats.evaluations == sum(solution.stats.evaluations for solution in named.values())
+    assert len({solution.objective.value for solution in named.values()}) == 3
+
+
+@pytest.mark.parametrize("name", ["M1", "M2", "M3"])
+def test_the_null_is_on_the_one_named(name: str, three_jammers: Scenario) -> None:
+    """A jammer named has the null on it, and the note names it."""
+    solution = solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
+    gains = antenna_gain(
+        solution.pose.position_m, solution.pose.antenna_axis, three_jammers.jammer_positions_m
+    )
+    index = three_jammers.jammer_names.index(name)
+    assert gains[index] < 1e-30
+    assert np.all(np.delete(gains, index) > 1e-6)
+    assert solution.note == f"null on jammer {name}"
+
+
+def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
+    """Another name is refused, with those there are."""
+    with pytest.raises(UsageError, match="given 'X'; the scenario's jammers are M1, M2, M3"):
+        solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "X")
+
+
+def test_what_is_found_is_the_family_s(three_jammers: Scenario) -> None:
+    """The field's axis at the position found is the axis found, of the length of the way to the jammer."""
+    outcome, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), "M2")
+    found = outcome.incumbent
+    np.testing.assert_allclose(found.axis, [-25.0, 40.0, 1.0] - found.position_m, atol=1e-12)
+    assert build_family(three_jammers).low_m[2] <= found.position_m[2]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_end_on_a_ball_and_the_floor_is_exact(seed: int, scene: Callable) -> None:
+    """Where the keep-out ball and the floor both hold the position, the value is the best of their circle."""
+    one = scene(
+        [(0, 0, 0)],
+        [(20, 10, 0), (0, -20, 4)],
+        jammer_powers_w=0.09331957,
+        altitude_m=(0.0, 20.0),
+        keep_out_m=0.5,
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    circle = 0.5 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)])
+    along = np.min(sinr(one, circle, zero_interference_axis(circle, one.jammer_positions_m[1])), axis=1)
+    solution = solve(one, Scheme.ZERO_INTERFERENCE, seed=seed, null_jammer="M2")
+    assert solution.objective.value == pytest.approx(along.max(), rel=1e-9)
+
+
+def test_every_jammer_s_null_is_proved(three_jammers: Scenario) -> None:
+    """With no jammer named there is a proof for each, all of the same bound: that of the best."""
+    outcome, fields = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), None)
+    assert outcome.reason == ""
+    assert len(outcome.proofs) == len(fields) == 3
+    assert outcome.nodes == sum(proof.nodes for proof in outcome.proofs)
+    value = np.exp(outcome.incumbent.log_value)
+    assert value <= outcome.upper_bound <= value * (1.0 + 1e-6)
+    alone, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(gap=1e-6), "M2")
+    assert len(alone.proofs) == 1
+    searched, _ = solve_scheme(three_jammers, ZERO_INTERFERENCE, SolveOptions(certify=False), None)
+    assert searched.upper_bound is None

@@ -1,0 +1,78 @@
+"""Axis fields: free, or affine in the position."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from nullpose.physics import maximum_gain_axis, zero_interference_axis
+from nullpose.problem.axis_field import AxisField
+
+
+def axis_at(field: AxisField, position_m: np.ndarray) -> np.ndarray:
+    """Returns the unit axis that an affine field gives at a position."""
+    kind, offset = field.arrays.kind, field.arrays.offset
+    matrix = field.arrays.matrix
+    assert kind == 1
+    axis = offset + matrix @ position_m
+    return axis / np.linalg.norm(axis)
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_paper_s_orientations_are_affine(seed: int, random_problem: Callable) -> None:
+    """Eqs. 3.1 and 3.4 are affine in the position, up to the length and the sign of the axis."""
+    rng = np.random.default_rng(seed)
+    scene = random_problem(rng, 2, 1)
+    position = rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0])
+    jammer = scene.jammer_positions_m[0]
+    first, second = scene.node_positions_m
+    null = AxisField.affine(jammer, -np.eye(3))
+    np.testing.assert_allclose(axis_at(null, position), zero_interference_axis(position, jammer), atol=1e-14)
+    # the columns of the matrix of (s2 - s1) x p are the products with the unit vectors
+    across = AxisField.affine(np.cross(first, second), np.cross(second - first, np.eye(3)).T)
+    parallel = axis_at(across, position) @ maximum_gain_axis(scene, position)
+    assert abs(parallel) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_free_field_is_zero() -> None:
+    """A free field is marked 0 and holds zeros; an affine one is marked 1."""
+    kind, offset, matrix = AxisField.free().arrays
+    assert kind == 0
+    assert AxisField.free().is_free
+    np.testing.assert_array_equal(offset, np.zeros(3))
+    np.testing.assert_array_equal(matrix, np.zeros((3, 3)))
+    vertical = AxisField.affine([0, 0, 1], np.zeros((3, 3)))
+    assert not vertical.is_free
+    assert vertical.arrays.kind == 1
+
+
+def test_a_field_is_frozen() -> None:
+    """Neither the fields nor their numbers can be set, and the arrays given stay their owner's."""
+    offset = np.array([0.0, 0.0, 1.0])
+    field = AxisField.affine(offset, np.eye(3))
+    offset[2] = 5.0
+    assert field.offset[2] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        field.offset[0] = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        field.matrix[0, 0] = 2.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        field.is_free = True
+
+
+@pytest.mark.parametrize(
+    ("offset", "matrix", "name"),
+    [
+        ([0.0, 1.0], np.eye(3), "offset"),
+        ([0.0, math.nan, 1.0], np.eye(3), "offset"),
+        ([0.0, 0.0, 1.0], np.eye(2), "matrix"),
+        ([0.0, 0.0, 1.0], np.full((3, 3), math.inf), "matrix"),
+    ],
+)
+def test_bad_arrays_are_refused(offset: list, matrix: np.ndarray, name: str) -> None:
+    """An array of the wrong shape, or not finite, is refused by name with its shape."""
+    with pytest.raises(ValueError, match=f"axis field {name} must be finite, of shape"):
+        AxisField.affine(offset, matrix)

@@ -1,0 +1,187 @@
+"""Families of secrecy rates, margins and fenced airspaces, against the physics."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from nullpose.errors import ScenarioError
+from nullpose.physics.objective import margin, objective_value
+from nullpose.physics.secrecy import secrecy_rate
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.scenario import Scenario
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def scene_of(rng: np.random.Generator, **tables: object) -> Scenario:
+    """Returns a scene of three nodes with a path gain and a noise that are not one, and what is asked for."""
+    places = rng.uniform(0.0, [100.0, 100.0, 5.0], (9, 3)).tolist()
+    plain: dict = {
+        "airspace": {"altitude_m": [10.0, 40.0]},
+        "receiver": {"noise_dbm": -60.0, "reference_gain_db": -40.0},
+        "nodes": [{"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} for at in places[:3]],
+        "jammers": [{"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} for at in places[3:5]],
+    }
+    return Scenario.from_dict(plain | tables)
+
+
+def secret_scene(rng: np.random.Generator, ears: int) -> Scenario:
+    """Returns three nodes, some with noise of their own, so many eavesdroppers, and jammers or none."""
+    tables: dict = {
+        "objective": "secrecy-rate",
+        "transmitter": {"power_w": 10.0 ** rng.uniform(-2.0, 1.0)},
+        "nodes": [{"position_m": at} for at in rng.uniform(0.0, [100.0, 100.0, 5.0], (3, 3)).tolist()],
+        "eavesdroppers": [
+            {"position_m": at, "noise_dbm": rng.uniform(-70.0, -50.0)}
+            for at in rng.uniform(0.0, [100.0, 100.0, 5.0], (ears, 3)).tolist()
+        ],
+    }
+    tables["nodes"][0]["noise_dbm"] = -55.0
+    tables["nodes"][1]["jamming_dbm"] = -58.0
+    if rng.uniform() < 0.5:
+        tables["jammers"] = []
+    return scene_of(rng, **tables)
+
+
+def ratios_at(family: Family, positions: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Returns the ratios (n, r) of a family at poses (n, 3) and (n, 3), by its definition."""
+    r = family.points_m - positions[:, None]
+    links = np.sum(np.cross(axes[:, None], r) ** 2, axis=-1) / np.sum(r**2, axis=-1) ** 2
+    entries = family.denominator_weight * links[:, family.denominator_point]
+    below = np.stack(
+        [
+            isotropic + np.sum(entries[:, start:end], axis=1)
+            for isotropic, start, end in zip(
+                family.denominator_isotropic,
+                family.denominator_start[:-1],
+                family.denominator_start[1:],
+                strict=True,
+            )
+        ],
+        axis=1,
+    )
+    above = family.numerator_isotropic + family.numerator_weight * links[:, family.numerator_point]
+    return above / below[:, family.denominator_of]
+
+
+def poses(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Returns positions above the field and unit axes."""
+    axes = rng.normal(size=(count, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    return rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0], (count, 3)), axes
+
+
+@given(seed=SEEDS, ears=st.integers(1, 4))
+def test_ratios_are_two_to_the_rate(seed: int, ears: int) -> None:
+    """The smallest ratio over a node's eavesdroppers is two to the power of its rate, where it has one."""
+    rng = np.random.default_rng(seed)
+    scene = secret_scene(rng, ears)
+    positions, axes = poses(rng, 20)
+    ratios = ratios_at(build_family(scene), positions, axes).reshape(20, 3, ears).min(axis=2)
+    np.testing.assert_allclose(
+        np.maximum(1.0, ratios), 2.0 ** secrecy_rate(scene, positions, axes), rtol=1e-12
+    )
+    value = objective_value(scene, positions, axes)
+    np.testing.assert_allclose(np.maximum(1.0, ratios.min(axis=1)), 2.0**value, rtol=1e-12)
+
+
+@given(seed=SEEDS)
+def test_a_secrecy_family_keeps_clear_of_everyone(seed: int) -> None:
+    """Nodes, eavesdroppers and jammers are its points; jammers are in no ratio but are kept clear of."""
+    scene = secret_scene(np.random.default_rng(seed), 2)
+    close = scene.model_copy(update={"airspace": scene.airspace.model_copy(update={"keep_out_m": 50.0})})
+    family = build_family(close)
+    everyone = (scene.node_positions_m, scene.eavesdropper_positions_m, scene.jammer_positions_m)
+    np.testing.assert_array_equal(family.points_m, np.vstack([points.reshape(-1, 3) for points in everyone]))
+    np.testing.assert_array_equal(family.keep_out_points_m, family.points_m)
+    assert set(family.numerator_point) == {0, 1, 2}
+    np.testing.assert_array_equal(family.denominator_point, [3, 4])
+
+
+@given(seed=SEEDS)
+def test_ratios_are_margins(seed: int) -> None:
+    """With weights and requirements the ratios are the margins: SINR over either."""
+    rng = np.random.default_rng(seed)
+    wishes: list[dict] = [{"weight": rng.uniform(0.1, 10.0)}, {"min_sinr_db": rng.uniform(-9.0, 9.0)}, {}]
+    nodes = [
+        {"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} | wish
+        for at, wish in zip(rng.uniform(0.0, [100.0, 100.0, 5.0], (3, 3)).tolist(), wishes, strict=True)
+    ]
+    scene = scene_of(rng, nodes=nodes)
+    positions, axes = poses(rng, 20)
+    ratios = ratios_at(build_family(scene), positions, axes)
+    np.testing.assert_allclose(ratios, margin(scene, positions, axes), rtol=1e-12)
+    np.testing.assert_allclose(ratios.min(axis=1), objective_value(scene, positions, axes), rtol=1e-12)
+
+
+def test_a_fence_bounds_the_box(random_problem: Callable) -> None:
+    """The box is met with the fence's own: what is unbounded becomes bounded, what is narrower stays."""
+    rng = np.random.default_rng(1)
+    fence = [(-10.0, 0.0), (70.0, -20.0), (90.0, 50.0), (0.0, 80.0)]
+    free = build_family(random_problem(rng, 2, 1, geofence_m=fence))
+    np.testing.assert_array_equal(free.low_m, [-10.0, -20.0, 10.0])
+    np.testing.assert_array_equal(free.high_m, [90.0, 80.0, 40.0])
+    boxed = build_family(random_problem(rng, 2, 1, geofence_m=fence, x_m=(5.0, 200.0)))
+    np.testing.assert_array_equal(boxed.low_m, [5.0, -20.0, 10.0])
+    np.testing.assert_array_equal(boxed.high_m, [90.0, 80.0, 40.0])
+
+
+def test_the_sense_of_rotation_does_not_matter(random_problem: Callable) -> None:
+    """A fence and a zone given clockwise have the same edges and pieces as counter-clockwise."""
+    fence = [(-10.0, 0.0), (70.0, -20.0), (60.0, 30.0), (90.0, 50.0), (0.0, 80.0)]
+    zone = [(20.0, 20.0), (40.0, 20.0), (30.0, 30.0), (35.0, 45.0)]
+    one, other = (
+        build_family(
+            random_problem(
+                np.random.default_rng(2), 2, 1, geofence_m=fence[::way], no_fly=({"polygon_m": zone[::way]},)
+            )
+        )
+        for way in (1, -1)
+    )
+    np.testing.assert_array_equal(one.zone_kind, [0, 2])
+    np.testing.assert_array_equal(other.zone_kind, [0, 2])
+    for name in ("zone_edges", "piece_sides"):
+        rows, others = (np.unique(np.round(getattr(each, name), 9), axis=0) for each in (one, other))
+        np.testing.assert_array_equal(rows, others)
+
+
+@pytest.mark.parametrize(
+    ("jammer", "path"),
+    [({"power_w": 1e18}, "jammers[1].power_w"), ({"power_dbm": 210.0}, "jammers[1].power_dbm")],
+)
+def test_jamming_beyond_arithmetic_is_refused(jammer: dict[str, float], path: str) -> None:
+    """A jammer so strong that rounding fills its null is refused by the path of its power."""
+    data = {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}],
+        "jammers": [
+            {"position_m": [30, 5, 4], "power_w": 1e15},
+            {"position_m": [17, 15, 4], **jammer},
+        ],
+    }
+    with pytest.raises(ScenarioError) as caught:
+        build_family(Scenario.from_dict(data))
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert "198 dB over the noise" in fault.message
+    assert "at most 160 dB" in fault.message
+    data["airspace"]["altitude_m"] = [3000.0, 4000.0]
+    build_family(Scenario.from_dict(data))
+
+
+def test_an_eavesdropper_beyond_arithmetic_is_refused() -> None:
+    """So is a transmitter that an eavesdropper hears so far above its noise."""
+    data = {
+        "objective": "secrecy-rate",
+        "transmitter": {"power_w": 1e10},
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [{"position_m": [0, 0, 0]}],
+        "eavesdroppers": [{"position_m": [17, 15, 4], "noise_w": 1e-30}],
+    }
+    with pytest.raises(ScenarioError, match=r"eavesdroppers\[0\]: got a signal 388 dB over the noise"):
+        build_family(Scenario.from_dict(data))

@@ -1,0 +1,143 @@
+"""Simple polygons cut into convex parts: areas add up, and every point is where it was."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from nullpose.problem.convex import convex_parts, hull_and_pockets
+from nullpose.scenario.polygon import area_m2, depth_m
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+SHAPES = {
+    "triangle": [(0, 0), (4, 0), (1, 3)],
+    "square": [(0, 0), (2, 0), (2, 2), (0, 2)],
+    "square with a vertex in each side": [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)],
+    "arrow": [(0, 0), (4, 2), (0, 4), (1, 2)],
+    "L": [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)],
+    "U": [(0, 0), (5, 0), (5, 4), (4, 4), (4, 1), (1, 1), (1, 4), (0, 4)],
+    "T with vertices in line": [(0, 0), (6, 0), (6, 1), (4, 1), (4, 4), (3, 4), (2, 4), (2, 1), (0, 1)],
+    "comb": [(0, 0), (7, 0), (7, 5), (6, 1), (5, 5), (4, 1), (3, 5), (2, 1), (1, 5), (0, 1)],
+    "spiral": [
+        *((0, 0), (7, 0), (7, 7), (1, 7), (1, 2), (5, 2), (5, 5), (3, 5)),
+        *((3, 4), (4, 4), (4, 3), (2, 3), (2, 6), (6, 6), (6, 1), (0, 1)),
+    ],
+    "sliver": [(0, 0), (100, 0), (100, 1e-3), (50, 5e-4), (0, 1e-3)],
+}
+
+
+def star(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Returns a polygon with its vertices in order around a centre, counter-clockwise, often not convex."""
+    angles = 2.0 * np.pi * (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count
+    radii = rng.uniform(2.0, 20.0, count)
+    around = radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    return rng.uniform(-50.0, 50.0, 2) + around
+
+
+def turns(polygon: np.ndarray) -> np.ndarray:
+    """Returns the cross product of each two neighbouring edges: none is negative if it is convex."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    after = np.roll(edges, -1, axis=0)
+    return edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
+
+
+def check_parts(polygon: np.ndarray, rng: np.random.Generator) -> None:
+    """Checks that the parts are convex, that their areas add up, and that they hold the same points."""
+    parts = convex_parts(polygon)
+    size = area_m2(polygon)
+    assert sum(area_m2(part) for part in parts) == pytest.approx(size, rel=1e-12)
+    corners = {tuple(corner) for corner in polygon}
+    for part in parts:
+        assert np.all(turns(part) >= -1e-12 * size)
+        assert area_m2(part) > 0.0
+        assert {tuple(corner) for corner in part} <= corners
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    points = rng.uniform(low - 1.0, high + 1.0, (400, 2))
+    points = points[np.abs(depth_m(points, polygon)) > 1e-9 * np.max(high - low)]
+    deepest = np.max([depth_m(points, part) for part in parts], axis=0)
+    inside = depth_m(points, polygon) > 0.0
+    # on a cut between two parts a point is inside neither
+    assert np.all(deepest[inside] >= -1e-9 * np.max(high - low))
+    assert np.all(deepest[~inside] <= 0.0)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_shapes_are_cut_into_convex_parts(name: str) -> None:
+    """Shapes with vertices in line, deep bays and needles, from every vertex they may begin at."""
+    polygon = np.array(SHAPES[name], dtype=float)
+    assert area_m2(polygon) > 0.0
+    rng = np.random.default_rng(3)
+    for first in range(len(polygon)):
+        check_parts(np.roll(polygon, first, axis=0), rng)
+
+
+@settings(max_examples=50)
+@given(seed=SEEDS, count=st.integers(3, 12))
+def test_stars_are_cut_into_convex_parts(seed: int, count: int) -> None:
+    """Random star-shaped polygons of up to twelve vertices."""
+    rng = np.random.default_rng(seed)
+    check_parts(star(rng, count), rng)
+
+
+def test_a_convex_polygon_is_its_only_part() -> None:
+    """What is convex is not cut, with vertices in the middle of its sides or not."""
+    for name in ("triangle", "square", "square with a vertex in each side"):
+        polygon = np.array(SHAPES[name], dtype=float)
+        (part,) = convex_parts(polygon)
+        np.testing.assert_array_equal(part, polygon)
+
+
+def check_hull(polygon: np.ndarray, rng: np.random.Generator) -> None:
+    """Checks that hull and pockets make up each other: hull = polygon + pockets, and nothing twice."""
+    hull, pockets = hull_and_pockets(polygon)
+    assert np.all(turns(hull) > 0.0)
+    areas = [area_m2(pocket) for pocket in pockets]
+    assert min(areas, default=0.0) >= 0.0
+    assert area_m2(hull) == pytest.approx(area_m2(polygon) + sum(areas), rel=1e-12)
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    points = rng.uniform(low - 1.0, high + 1.0, (400, 2))
+    borders = [polygon, hull, *pockets]
+    points = points[np.min([np.abs(depth_m(points, one)) for one in borders], axis=0) > 1e-9]
+    shares = np.sum([depth_m(points, one) > 0.0 for one in (polygon, *pockets)], axis=0)
+    np.testing.assert_array_equal(shares, depth_m(points, hull) > 0.0)
+    for corner in polygon:
+        assert depth_m(corner[None], hull)[0] >= -1e-12 * np.max(high - low)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_hull_and_pockets_of_shapes(name: str) -> None:
+    """The same shapes, from every vertex."""
+    polygon = np.array(SHAPES[name], dtype=float)
+    rng = np.random.default_rng(5)
+    for first in range(len(polygon)):
+        check_hull(np.roll(polygon, first, axis=0), rng)
+
+
+@settings(max_examples=50)
+@given(seed=SEEDS, count=st.integers(3, 12))
+def test_hull_and_pockets_of_stars(seed: int, count: int) -> None:
+    """Random polygons: the hull is the polygon and its pockets, each counter-clockwise."""
+    rng = np.random.default_rng(seed)
+    check_hull(star(rng, count), rng)
+
+
+def test_a_convex_polygon_has_no_pockets() -> None:
+    """A convex polygon is its own hull."""
+    polygon = np.array(SHAPES["triangle"], dtype=float)
+    hull, pockets = hull_and_pockets(polygon)
+    assert {tuple(corner) for corner in hull} == {tuple(corner) for corner in polygon}
+    assert pockets == []
+
+
+def test_many_vertices_are_cut_in_seconds() -> None:
+    """A comb of 1,000 vertices, is cut into triangles."""
+    x = np.linspace(-40.0, 40.0, 998)
+    teeth = np.column_stack([x, np.where(np.arange(998) % 2, 40.0, -32.0)])
+    comb = np.vstack([teeth, [(40.0, -40.0), (-40.0, -40.0)]])[::-1]
+    began = time.process_time()
+    parts = convex_parts(comb)
+    assert time.process_time() - began < 5.0
+    assert len(parts) == 998
+    np.testing.assert_allclose(sum(area_m2(part) for part in parts), area_m2(comb), rtol=1e-12)

@@ -1,0 +1,112 @@
+"""The family as a value: read-only arrays and a digest of every number."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose.objectives import Ratios
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.problem.records import Domain
+
+FIELDS = [*Ratios._fields, *Domain._fields]
+ARRAYS = [name for name in FIELDS if name not in ("keep_out_m", "leak")]
+
+
+@pytest.fixture(scope="module")
+def family(random_problem: Callable) -> Family:
+    """Returns a family of three nodes and two jammers in which every array has a number."""
+    plain = build_family(random_problem(np.random.default_rng(4), 3, 2, keep_out_m=9.0))
+    return plain.changed(
+        turn=np.tile(np.eye(3), (len(plain.points_m), 1, 1)),
+        ground_axes=np.tile([0.6, 0.0, 0.8], (len(plain.points_m), 1)),
+        ground_leaks=np.full(len(plain.points_m), 0.1),
+        piece_start=np.array([0, 1]),
+        piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
+        zone_kind=np.array([1]),
+        zone_start=np.array([0, 1]),
+        zone_edges=np.array([[3.0, 4.0, 2.0, 0.0]]),
+        zone_range_m=np.array([[-5.0, 60.0]]),
+    )
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_arrays_are_read_only(family: Family, name: str) -> None:
+    """No array of a family can be written to."""
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(family, name)[...] = 0
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_fields_cannot_be_set(family: Family, name: str) -> None:
+    """No field of a family can be replaced."""
+    with pytest.raises(AttributeError, match="frozen"):
+        setattr(family, name, getattr(family, name))
+
+
+def test_arrays_are_copies(family: Family) -> None:
+    """The arrays given stay their owner's: writing to them later changes neither family nor digest."""
+    weights = np.array(family.numerator_weight)
+    copy = family.changed(numerator_weight=weights)
+    digest = copy.digest
+    weights[0] = 99.0
+    assert copy.numerator_weight[0] == family.numerator_weight[0]
+    assert copy.digest == digest
+
+
+@pytest.mark.parametrize(("name", "given"), [("points_m", np.float32), ("numerator_point", np.int32)])
+def test_kernels_get_one_type_of_number(family: Family, name: str, given: type) -> None:
+    """Whatever the width of the numbers given, arrays have 64 bits: compiled code is entered unchecked."""
+    kept = getattr(family.changed(**{name: np.asfortranarray(getattr(family, name)).astype(given)}), name)
+    assert kept.dtype == getattr(family, name).dtype
+    assert kept.flags.c_contiguous
+
+
+def test_what_kernels_take_is_the_family(family: Family) -> None:
+    """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
+    for name, value in family.arrays._asdict().items():
+        assert value is getattr(family, name)
+        assert name not in ARRAYS or value.flags.c_contiguous
+
+
+def test_digest_is_stable(family: Family) -> None:
+    """The digest is 64 hexadecimal digits, the same on every call, for a copy and for strided input."""
+    assert len(bytes.fromhex(family.digest)) == 32
+    assert family.digest == family.digest
+    assert family.changed().digest == family.digest
+    strided = np.repeat(family.points_m, 2, axis=0)[::2]
+    assert family.changed(points_m=strided).digest == family.digest
+
+
+def test_digest_of_equal_scenes_is_equal(random_problem: Callable) -> None:
+    """Two scenes with the same numbers, built apart, are the same problem; another one is not."""
+    digests = [build_family(random_problem(np.random.default_rng(seed), 4, 1)).digest for seed in (6, 6, 7)]
+    assert digests[0] == digests[1]
+    assert digests[0] != digests[2]
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_digest_sees_every_number(family: Family, name: str) -> None:
+    """Changing any one number by its last digit changes the digest, to a different one each time."""
+    value = np.array(getattr(family, name))
+    assert value.size > 0
+    digests = {family.digest}
+    for index in np.ndindex(value.shape):
+        changed = value.copy()
+        if value.dtype.kind == "i":
+            changed[index] += 1
+        else:
+            changed[index] = np.nextafter(changed[index], 0.0) if changed[index] != 0.0 else 5e-324
+        digests.add(family.changed(**{name: changed if value.shape else float(changed)}).digest)
+    assert len(digests) == 1 + value.size
+
+
+def test_digest_sees_the_shape(family: Family) -> None:
+    """The same numbers under other bounds of the entries are another problem."""
+    split = family.changed(
+        denominator_isotropic=np.array([1.0, 1.0]),
+        denominator_start=np.array([0, 1, 2]),
+        denominator_of=np.array([0, 1, 0]),
+    )
+    assert split.digest != family.digest

@@ -1,0 +1,128 @@
+"""The family of a scenario under error cases, against the plain physics."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from scipy.spatial.transform import Rotation
+
+from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.problem.robust import BindingCase, build_robust_family, point_uncertainty_m
+from nullpose.scenario import (
+    Airspace,
+    Eavesdropper,
+    Jammer,
+    Node,
+    Receiver,
+    Scenario,
+    Transmitter,
+)
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def place(rng: np.random.Generator) -> tuple[float, ...]:
+    """Returns a place on a field of 80 m."""
+    return tuple(float(x) for x in rng.uniform([0.0, 0.0, 0.0], [80.0, 80.0, 4.0]))
+
+
+def a_scene(rng: np.random.Generator, *, secret: bool) -> Scenario:
+    """Returns three nodes and two jammers, or with them two eavesdroppers, all known to some metres."""
+    nodes = tuple(Node(position_m=place(rng), power_w=float(rng.uniform(0.5, 2.0))) for _ in range(3))
+    jammers = tuple(Jammer(position_m=place(rng), power_w=3.0, uncertainty_m=2.0) for _ in range(2))
+    ears = tuple(Eavesdropper(position_m=place(rng), uncertainty_m=float(i + 1)) for i in range(2))
+    if not secret:
+        nodes = (*nodes[:2], Node(position_m=place(rng), power_w=1.0, weight=2.5))
+    return Scenario(
+        objective="secrecy-rate" if secret else "min-sinr",
+        airspace=Airspace(altitude_m=(10.0, 40.0)),
+        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
+        transmitter=Transmitter(power_w=1.5) if secret else None,
+        nodes=nodes,
+        jammers=jammers,
+        eavesdroppers=ears if secret else (),
+    )
+
+
+def some_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
+    """Returns a case in which all is off, as no set of errors would allow either."""
+    return ErrorCase(
+        position_offset_m=0.5 * rng.normal(size=3),
+        rotation_world=Rotation.from_rotvec(0.05 * rng.normal(size=3)).as_matrix(),
+        jammer_offsets_m=rng.normal(size=(len(scene.jammers), 3)),
+        eavesdropper_offsets_m=rng.normal(size=(len(scene.eavesdroppers), 3)),
+    )
+
+
+def ratios_of(family: Family, position: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Returns the ratios of a family at a pose, by its definition, with a unit axis for every point."""
+    seen = np.broadcast_to(axis, family.points_m.shape)
+    if len(family.turn):
+        seen = family.turn @ axis
+    r = family.points_m - position
+    links = np.sum(np.cross(seen, r) ** 2, axis=1) / np.sum(r**2, axis=1) ** 2
+    weighted = family.denominator_weight * links[family.denominator_point]
+    start = family.denominator_start
+    below = family.denominator_isotropic + np.array([math.fsum(weighted[a:b]) for a, b in pairwise(start)])
+    above = family.numerator_isotropic + family.numerator_weight * links[family.numerator_point]
+    return above / below[family.denominator_of]
+
+
+@given(seed=SEEDS, secret=st.booleans())
+def test_ratios_are_those_of_the_cases(seed: int, secret: bool) -> None:
+    """At any pose, ratio s of the family is the nominal ratio when case s comes true, by the physics."""
+    rng = np.random.default_rng(seed)
+    scene = a_scene(rng, secret=secret)
+    listeners = 2 if secret else 1
+    cases = [BindingCase(int(rng.integers(3 * listeners)), some_case(rng, scene)) for _ in range(7)]
+    cases += [BindingCase(ratio, cases[0].case) for ratio in range(3 * listeners)]
+    family = build_robust_family(scene, cases)
+    position = rng.uniform([0.0, 0.0, 10.0], [80.0, 80.0, 40.0])
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    expected = [ratios_under(scene, position, axis, one.case)[divmod(one.ratio, listeners)] for one in cases]
+    np.testing.assert_allclose(ratios_of(family, position, axis), expected, rtol=1e-11)
+
+
+@pytest.mark.parametrize("secret", [False, True])
+def test_without_errors_it_is_the_nominal_family(secret: bool) -> None:
+    """With no error in any case, ratios and denominators are those of the nominal family, none twice."""
+    scene = a_scene(np.random.default_rng(1), secret=secret)
+    nominal = build_family(scene)
+    n_ratios = len(nominal.numerator_point)
+    family = build_robust_family(scene, [BindingCase(r, ErrorCase.none(scene)) for r in range(n_ratios)])
+    assert family.turn.shape == (0, 3, 3)
+    assert len(family.denominator_isotropic) == len(nominal.denominator_isotropic)
+    assert len(family.points_m) == 3 + len(nominal.denominator_point)
+    rng = np.random.default_rng(2)
+    position, axis = rng.uniform([0.0, 0.0, 10.0], [80.0, 80.0, 40.0]), np.array([0.6, 0.0, 0.8])
+    np.testing.assert_allclose(
+        ratios_of(family, position, axis), ratios_of(nominal, position, axis), rtol=1e-14
+    )
+
+
+@pytest.mark.parametrize("secret", [False, True])
+def test_the_airspace_stays_the_nominal_one(secret: bool) -> None:
+    """Errors move points, but not the keep-outs and the box that poses are sought in."""
+    rng = np.random.default_rng(5)
+    scene = a_scene(rng, secret=secret)
+    family = build_robust_family(scene, [BindingCase(0, some_case(rng, scene))])
+    nominal = build_family(scene)
+    for ours, theirs in zip(family.domain, nominal.domain, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def test_points_have_the_sets_of_whom_they_stand_for() -> None:
+    """Nodes are known; jammers, or with secrecy rates eavesdroppers, have their own matrices."""
+    for secret in (False, True):
+        scene = a_scene(np.random.default_rng(7), secret=secret)
+        sets_m = point_uncertainty_m(scene)
+        assert sets_m.shape == (*build_family(scene).points_m.shape, 3)
+        np.testing.assert_array_equal(sets_m[:3], np.zeros((3, 3, 3)))
+        radii = (1.0, 2.0) if secret else (2.0, 2.0)
+        np.testing.assert_array_equal(sets_m[3:5], [radius * np.eye(3) for radius in radii])
+        np.testing.assert_array_equal(sets_m[5:], np.zeros_like(sets_m[5:]))

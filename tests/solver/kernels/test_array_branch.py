@@ -1,0 +1,77 @@
+"""Branch and bound over an array's positions and yaws."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose.scenario import Array, Scenario
+from nullpose.solver.array_task import ArrayTask
+from nullpose.solver.kernels.array_branch import branch_array
+
+LOW, HIGH = np.array([0.0, 0.0, 8.0, -math.pi / 2]), np.array([60.0, 60.0, 12.0, math.pi / 2])
+
+
+def _branch(task: ArrayTask, target: float, most: int = 200_000) -> tuple[float, int, np.ndarray]:
+    state = np.full(4, math.nan)
+    root = np.array([0.5 * (LOW + HIGH), 0.5 * (HIGH - LOW)])
+    bound, boxes = branch_array(task.problem, task.family.domain, root, target, most, state)
+    return bound, boxes, state
+
+
+def _task(scenario: Scenario) -> ArrayTask:
+    return ArrayTask.of(scenario, Array(elements=3, layout="linear", spacing_wavelengths=0.5))
+
+
+def _sampled(task: ArrayTask, rng: np.random.Generator) -> float:
+    states = rng.uniform(LOW, HIGH, (20_000, 4))
+    states[::2, 2] = LOW[2]
+    return max(map(task.value, states[[np.all(task.walls(s[:3])[0] >= 0.0) for s in states]]))
+
+
+def test_the_bound_is_that_of_the_box(scene: Callable) -> None:
+    """No sample exceeds it, it comes close to the best sample, and so does the best centre on the way."""
+    rng = np.random.default_rng(1)
+    for _ in range(3):
+        nodes, jammers = (rng.uniform([5.0, 5.0, 0.0], [55.0, 55.0, 4.0], (2, 3)) for _ in range(2))
+        task = _task(scene(nodes, jammers, jammer_powers_w=5.0))
+        best = math.exp(_sampled(task, rng))
+        bound, boxes, state = _branch(task, 1.4 * best)
+        assert best <= bound == 1.4 * best
+        assert boxes < 200_000
+        assert math.exp(task.value(state)) > 0.5 * best
+
+
+def test_a_limit_leaves_a_bound(random_scene: Callable) -> None:
+    """Stopped early it returns a bound that holds, and more boxes never make it worse."""
+    rng = np.random.default_rng(2)
+    task = _task(random_scene(rng, 3, 2, 10.0))
+    best = math.exp(_sampled(task, rng))
+    bounds = [_branch(task, 0.0, most)[:2] for most in (10, 100, 1000, 10_000)]
+    assert all(boxes <= most for (_, boxes), most in zip(bounds, (10, 100, 1000, 10_000), strict=True))
+    assert np.all(np.diff([bound for bound, _ in bounds]) <= 0.0)
+    assert bounds[-1][0] >= best
+
+
+@pytest.mark.parametrize(
+    "shut",
+    [
+        {"no_fly": ({"x_m": (10.0, 50.0), "y_m": (-5.0, 65.0)},)},
+        {"no_fly": ({"centre_m": (30.0, 30.0), "radius_m": 25.0},)},
+        {"geofence_m": [(0.0, 0.0), (60.0, 0.0), (0.0, 20.0)]},
+        {"keep_out_m": 18.0},
+    ],
+)
+def test_what_is_forbidden_does_not_count(shut: dict, scene: Callable) -> None:
+    """With the best places forbidden the bound comes down to what is left."""
+    nodes, jammers = [(22, 30, 0), (38, 30, 0)], [(30, 12, 0)]
+    rng = np.random.default_rng(3)
+    open_task, shut_task = _task(scene(nodes, jammers)), _task(scene(nodes, jammers, **shut))
+    best, left = math.exp(_sampled(open_task, rng)), math.exp(_sampled(shut_task, rng))
+    assert left < 0.9 * best
+    target = 0.5 * (left + best)
+    bound, boxes, _ = _branch(shut_task, target)
+    assert left <= bound == target
+    assert boxes < 200_000
+    assert _branch(open_task, target, 20_000)[0] >= best

@@ -1,0 +1,123 @@
+"""Newton's method for multipliers: what it returns is the dual's optimum, and an axis that reaches it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.scenario import Scenario
+from nullpose.solver.kernels.ascent import POOL, Pool, ascend
+from nullpose.solver.kernels.dual import dual_multipliers
+from nullpose.solver.kernels.forms import congruence, fill_forms, inverse_factor
+from nullpose.solver.kernels.jit import heap_kernel
+from nullpose.solver.kernels.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
+from nullpose.solver.kernels.symmetric import top_eigenvector
+
+TOLERANCE = 1e-6
+
+
+@heap_kernel
+def ascended(family, row, mean, back, weights, v):
+    """Returns what the kernel does, which has no Python name, for a free axis in the world's frame."""
+    whitening, every = (np.zeros((1, 6)), mean, back), np.empty(family.numerator_isotropic.shape[0])
+    pool = Pool(
+        np.empty((POOL, 6)), np.empty(POOL, np.int64), np.empty(POOL), np.empty(POOL), np.empty((POOL, 2)),
+        np.empty(3), np.empty(3, np.int64),
+    )  # fmt: skip
+    top, followed, _ = ascend(family, False, np.eye(3), row, whitening, pool, 0, TOLERANCE, every, weights, v)
+    return top, followed
+
+
+def family_of(rng: np.random.Generator, nodes: int, jammers: int) -> Family:
+    """Returns the ratios of a random field."""
+    return build_family(
+        Scenario.from_dict(
+            {
+                "airspace": {"altitude_m": [8.0, 30.0]},
+                "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+                "nodes": [
+                    {"position_m": [*rng.uniform(0.0, 100.0, 2), 0.0], "power_w": 1.0} for _ in range(nodes)
+                ],
+                "jammers": [
+                    {"position_m": [*rng.uniform(0.0, 100.0, 2), 0.0], "power_w": 10.0 ** rng.uniform(-2, 2)}
+                    for _ in range(jammers)
+                ],
+            }
+        )
+    )
+
+
+def whitened(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Returns every ratio's whitened form at a position, and what whitens."""
+    ratios = len(family.numerator_point)
+    numerators, denominators = np.empty((ratios, 6)), np.empty((1, 6))
+    fill_forms(family.arrays, position_m, numerators, denominators)
+    back, forms = np.empty((3, 3)), np.empty((ratios, 6))
+    inverse_factor(denominators[0], back)
+    for k in range(ratios):
+        congruence(numerators[k], back, forms[k])
+    return forms, denominators[0], back
+
+
+def value(form: np.ndarray, v: np.ndarray) -> float:
+    """Returns a form at a vector."""
+    xx, yy, zz, xy, xz, yz = form
+    return float(v @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ v)
+
+
+@pytest.mark.parametrize("start", ["equal", "none"])
+def test_it_agrees_with_the_interior_point(start: str) -> None:
+    """Where it converges, from equal multipliers or from none: same value, reached by the axis."""
+    rng = np.random.default_rng(5)
+    converged = 0
+    for number in range(120):
+        family = family_of(rng, 2 + number % 7, 1 + number % 3)
+        ratios = len(family.numerator_point)
+        position_m = np.array([*rng.uniform(0.0, 100.0, 2), rng.uniform(8.0, 30.0)])
+        forms, mean, back = whitened(family, position_m)
+        level = float(np.max(forms[:, :3]))
+        row = np.zeros(COLUMNS)
+        if start == "equal":
+            keep_largest(np.full(ratios, 1.0 / ratios), ratios, row)
+        row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, level, -1.0
+        weights, v = np.empty(ratios + 4), np.empty(3)
+        found, followed = ascended(family.arrays, row, mean, back, weights, v)
+        best, matrix = np.empty(ratios), np.empty(6)
+        third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
+        wanted = dual_multipliers(forms, 0, ratios, level, math.inf, 1e-9, third, best, matrix)
+        if math.isfinite(found):  # multipliers, good or not, bound the dual from above
+            mix, top_axis = weights[:ratios] @ forms, np.empty(3)
+            assert math.isclose(weights[:ratios].sum(), 1.0, rel_tol=1e-9)
+            assert np.all(weights[:ratios] >= 0.0)
+            assert math.isclose(top_eigenvector(mix, top_axis), found, rel_tol=1e-9)
+            assert found >= wanted - 1e-7 * level
+        if followed:
+            converged += 1
+            assert abs(found - wanted) <= 2.0 * TOLERANCE * level
+            assert min(value(form, v) for form in forms) >= found - 1.01 * TOLERANCE * level
+    assert converged >= 60
+
+
+def test_where_there_is_a_duality_gap_it_says_so() -> None:
+    """Four nodes around the position, in directions that no axis is across of: no axis reaches the dual."""
+    places = [[10.0, 0.0, 0.0], [-5.0, 9.0, 0.0], [-5.0, -9.0, 0.0], [0.0, 0.0, -10.0]]
+    family = build_family(
+        Scenario.from_dict(
+            {
+                "airspace": {"altitude_m": [0.5, 30.0]},
+                "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+                "nodes": [{"position_m": place, "power_w": 1.0} for place in places],
+            }
+        )
+    )
+    position_m = np.array([0.0, 0.0, 0.0])
+    forms, mean, back = whitened(family, position_m)
+    row = np.zeros(COLUMNS)
+    keep_largest(np.full(4, 0.25), 4, row)
+    row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, float(np.min(forms[:, :3].sum(axis=1))) / 3.0, -1.0
+    weights, v = np.empty(8), np.empty(3)
+    found, followed = ascended(family.arrays, row, mean, back, weights, v)
+    assert not followed
+    assert found == math.inf

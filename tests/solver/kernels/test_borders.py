@@ -1,0 +1,171 @@
+"""What a box may use of a border: multipliers by least squares, and constraints as they are at its centre."""
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from scipy.optimize import nnls
+
+from nullpose.problem.airspace import airspace_zones
+from nullpose.problem.family import Family
+from nullpose.scenario import Airspace
+from nullpose.solver.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.jit import kernel
+from nullpose.solver.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL, NU
+from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+@kernel
+def multipliers_of(slopes, count, gradient, nu):
+    """Returns what the kernel does, which has no Python name of its own; so do the three after it."""
+    return border_multipliers(slopes, count, gradient, nu)
+
+
+@kernel
+def chosen_border(domain, row):
+    """Returns the zone that forbids all of a box, having filled the border that is to be used in it."""
+    return choose_border(domain, row)
+
+
+@kernel
+def borders_of(domain, row, sides, counts):
+    """Returns how many alternatives a node's border has, having filled them."""
+    return borders(domain, row, sides, counts)
+
+
+@kernel
+def slope_of(side, row, slope):
+    """Returns a constraint's value at a box's centre and its curvature, having filled its slope."""
+    return slope_and_rest(side, row, slope)
+
+
+@given(seed=SEEDS, count=st.integers(1, 2))
+def test_multipliers_solve_the_least_squares(seed: int, count: int) -> None:
+    """They are not negative and bring the gradient as near to zero as any such multipliers could."""
+    rng = np.random.default_rng(seed)
+    slopes, gradient = np.full((2, 3), np.nan), rng.normal(size=3)
+    slopes[:count] = rng.normal(size=(count, 3)) * 10.0 ** rng.uniform(-2.0, 2.0, (count, 1))
+    nu = np.full(2, np.nan)
+    helps = multipliers_of(slopes, count, gradient, nu)
+    expected, _ = nnls(slopes[:count].T, -gradient)
+    assert helps == bool(np.any(expected > 0.0))
+    assert np.all(nu >= 0.0)
+    if helps:
+        np.testing.assert_allclose(nu[:count], expected, rtol=1e-6, atol=1e-9 * expected.max())
+    np.testing.assert_array_equal(nu[count:], 0.0)
+
+
+def test_of_two_constraints_the_one_that_helps_is_taken() -> None:
+    """However steeply the other rises against the gradient."""
+    slopes, nu = np.array([[1.0, 0.0, 0.0], [3.0, -0.1, 0.0]]), np.empty(2)
+    for order in ([0, 1], [1, 0]):
+        assert multipliers_of(slopes[order].copy(), 2, np.array([0.1, 5.0, 0.0]), nu)
+        assert nu[order.index(0)] == 0.0
+        assert nu[order.index(1)] > 0.0
+    assert not multipliers_of(slopes, 2, np.array([1.0, 0.0, 0.0]), nu)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_parallel_walls(first: int) -> None:
+    """Of two walls that face each other the one that pushes the right way is taken; no slope, no push."""
+    slopes, nu = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]), np.empty(2)
+    gradient = np.array([-2.0 if first == 0 else 2.0, 0.3, 0.0])
+    assert multipliers_of(slopes, 2, gradient, nu)
+    assert nu[first] == pytest.approx(2.0)
+    assert nu[1 - first] == 0.0
+    assert not multipliers_of(np.zeros((2, 3)), 1, gradient, nu)
+
+
+def row_of(centre: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Returns a node with a box and a border that is yet to be chosen."""
+    row = np.full(COLUMNS, 7.0)
+    row[CENTRE:HALF], row[HALF:LEVEL] = centre, half
+    return row
+
+
+@given(seed=SEEDS, kind=st.sampled_from([0.0, 1.0, 2.0]))
+def test_a_constraint_at_the_centre(seed: int, kind: float) -> None:
+    """Value, slope and curvature at the centre give the constraint anywhere, a hair above it if at all."""
+    rng = np.random.default_rng(seed)
+    normal = rng.normal(size=3)
+    normal /= np.linalg.norm(normal)
+    side = np.array([kind, *(normal if kind == 0.0 else rng.uniform(-20.0, 20.0, 3)), rng.uniform(1.0, 9.0)])
+    row, slope = row_of(rng.uniform(-20.0, 20.0, 3), np.ones(3)), np.empty(3)
+    value, bend, axes = slope_of(side, row, slope)
+    for move in rng.uniform(-1.0, 1.0, (10, 3)):
+        p = row[CENTRE:HALF] + move
+        exact = p @ side[1:4] - side[4]
+        if kind > 0.0:
+            used = 2 if kind == 1.0 else 3
+            assert axes == used
+            exact = float(np.sum((p - side[1:4])[:used] ** 2)) - side[4] ** 2
+        stated = value + slope @ move + 0.5 * bend * float(np.sum(move[:axes] ** 2))
+        assert stated == pytest.approx(exact, abs=1e-9)
+    exact = row[CENTRE:HALF] @ side[1:4] - side[4] if kind == 0.0 else value
+    assert value >= exact
+
+
+def domain_of(airspace: Airspace, balls_m: np.ndarray, radius_m: float) -> tuple:
+    """Returns a domain with keep-out balls and the zones of an airspace."""
+    zones = airspace_zones(airspace)
+    return Family(
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=np.array([-99.0, -99.0, 8.0]),
+        high_m=np.array([99.0, 99.0, 40.0]),
+        keep_out_points_m=balls_m,
+        keep_out_m=radius_m,
+        **zones,
+    ).domain
+
+
+TWO_ZONES = Airspace(
+    altitude_m=(8.0, 40.0),
+    no_fly=({"centre_m": (30.0, 0.0), "radius_m": 5.0}, {"x_m": (-40.0, -20.0), "y_m": (-9.0, 9.0)}),
+)
+BALLS_M = np.array([[0.0, 30.0, 8.0], [30.0, 6.0, 10.0]])
+
+
+@pytest.mark.parametrize(
+    ("centre", "half", "border", "forbidden"),
+    [
+        ((0.0, 0.0, 20.0), 1.0, -1, -1),  # nothing near
+        ((0.0, 34.0, 9.0), 1.0, 0, -1),  # a ball reaches in
+        ((25.5, 0.0, 30.0), 1.0, 2, -1),  # the cylinder reaches in
+        ((30.0, 0.0, 30.0), 1.0, -1, 2),  # all of it in the cylinder
+        ((-20.0, 0.0, 20.0), 1.0, 3, -1),  # a wall
+        ((-30.0, 0.0, 20.0), 1.0, -1, 3),
+        ((30.0, 5.4, 10.0), 0.6, 1, -1),  # a ball and a zone, the centre outside of the zone: the ball
+        ((30.0, 4.8, 10.0), 0.6, 2, -1),  # and the centre inside of it: the zone
+    ],
+)
+def test_the_border_that_a_box_uses(centre: tuple, half: float, border: int, forbidden: int) -> None:
+    """Balls come first unless the centre lies in a zone; a zone that holds all of a box forbids it."""
+    domain = domain_of(TWO_ZONES, BALLS_M, 5.0)
+    row = row_of(np.array(centre), np.full(3, half))
+    assert chosen_border(domain, row) == forbidden
+    if forbidden < 0:
+        assert (row[BALL], row[NU]) == (border, 0.0)
+        sides, counts = np.full((MOST_ALTERNATIVES, 2, 5), np.nan), np.zeros(MOST_ALTERNATIVES, np.int64)
+        assert borders_of(domain, row, sides, counts) == (0 if border < 0 else 1)
+        if 0 <= border < 2:
+            np.testing.assert_array_equal(sides[0, 0], [2.0, *BALLS_M[border], 5.0])
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_a_zone_that_forbids_all_of_a_box_is_found_behind_others(order: list[int]) -> None:
+    """Though the box's centre lies in another zone, whose border crosses the box."""
+    tower = {"centre_m": (0.0, 0.0), "radius_m": 5.0}
+    block = {"x_m": (-10.0, 20.0), "y_m": (-10.0, 10.0)}
+    zones = tuple((tower, block)[i] for i in order)
+    domain = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=zones), np.zeros((0, 3)), 1.0)
+    row = row_of(np.array([4.5, 0.0, 20.0]), np.ones(3))
+    assert chosen_border(domain, row) == order.index(1)

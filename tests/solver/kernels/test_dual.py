@@ -1,0 +1,87 @@
+import math
+
+import numpy as np
+import pytest
+
+from nullpose.solver.kernels.axis import best_axis_of_forms
+from nullpose.solver.kernels.dual import dual_multipliers
+from nullpose.solver.kernels.symmetric import top_eigenvector
+
+ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
+
+
+def matrix_of(form: np.ndarray) -> np.ndarray:
+    """Return the 3x3 matrix of a form kept as six numbers."""
+    xx, yy, zz, xy, xz, yz = form
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def random_forms(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Return link forms of random directions and strengths, (count, 6)."""
+    away = rng.normal(size=(count, 3))
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    forms = np.eye(3) - away[:, :, None] * away[:, None, :]
+    forms *= rng.uniform(0.2, 5.0, size=count)[:, None, None]
+    return np.stack([forms[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=1)
+
+
+def dual_value(forms: np.ndarray, multipliers: np.ndarray) -> float:
+    """Return the largest eigenvalue of the weighted sum of forms."""
+    return float(np.linalg.eigvalsh(matrix_of(multipliers @ forms))[-1])
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 40])
+def test_multipliers_bound_the_best_axis(count: int) -> None:
+    """The multipliers lie in the simplex, and their bound is never below what the best axis reaches."""
+    rng = np.random.default_rng(count)
+    for _ in range(50):
+        forms = random_forms(rng, count)
+        best = best_axis_of_forms(forms, np.empty(3))
+        multipliers, matrix = np.empty(count), np.empty(6)
+        primal = dual_multipliers(forms, 0, count, best, math.inf, 1e-7, ISOTROPIC, multipliers, matrix)
+        assert np.all(multipliers >= 0.0)
+        assert np.sum(multipliers) == pytest.approx(1.0, abs=1e-12)
+        bound = dual_value(forms, multipliers)
+        assert bound >= best * (1.0 - 1e-12)
+        assert primal == pytest.approx(bound, rel=1e-5)
+        assert np.all(np.linalg.eigvalsh(matrix_of(matrix)) > 0.0)
+        assert np.sum(matrix[:3]) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_two_forms_have_no_gap() -> None:
+    """By Brickman's theorem the dual of two forms is what one axis reaches."""
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        forms = random_forms(rng, 2)
+        best = best_axis_of_forms(forms, np.empty(3))
+        multipliers, matrix = np.empty(2), np.empty(6)
+        dual_multipliers(forms, 0, 2, best, math.inf, 1e-8, ISOTROPIC, multipliers, matrix)
+        assert dual_value(forms, multipliers) == pytest.approx(best, rel=1e-6)
+
+
+def test_a_side_only_lowers_the_bound() -> None:
+    """A constraint on the axis, with its multiplier, never raises the bound."""
+    rng = np.random.default_rng(6)
+    for _ in range(50):
+        forms = random_forms(rng, 4)
+        side = np.array([-1.0, -1.0, 1.0, 0.0, 0.0, 0.0])  # within 45 degrees of the vertical
+        start = np.array([0.2, 0.2, 0.6, 0.0, 0.0, 0.0])
+        free, confined = np.empty(4), np.empty(5)
+        level = best_axis_of_forms(forms, np.empty(3))
+        arguments = (level, math.inf, 1e-7)
+        unbound = dual_multipliers(forms, 0, 4, *arguments, ISOTROPIC, free, np.empty(6))
+        both = np.vstack([side, forms])
+        bound = dual_multipliers(both, 1, 5, *arguments, start, confined, np.empty(6))
+        assert bound <= unbound * (1.0 + 1e-5)
+        assert dual_value(both, confined) == pytest.approx(bound, rel=1e-5)
+
+
+def test_top_eigenvector() -> None:
+    """The closed form's value agrees with the general solver; its vector nearly reaches it."""
+    rng = np.random.default_rng(7)
+    for form in [*random_forms(rng, 100), *rng.normal(size=(100, 6)), ISOTROPIC]:
+        v = np.empty(3)
+        top = top_eigenvector(form, v)
+        assert top == pytest.approx(np.linalg.eigvalsh(matrix_of(form))[-1], rel=1e-7, abs=1e-9)
+        assert np.linalg.norm(v) == pytest.approx(1.0, abs=1e-9)
+        assert v @ matrix_of(form) @ v == pytest.approx(top, rel=1e-3, abs=1e-4)

@@ -1,0 +1,62 @@
+"""Another numba than those that the kernels' own compiler is made for."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import nullpose
+from nullpose.solver.kernels.jit import LINKED_BEFORE, LINKED_FROM
+from nullpose.solver.kernels.notices import OTHER_NUMBA
+
+ROOT = Path(__file__).parents[3]
+SCENES = ("paper", "eavesdropper", "no-fly")
+
+OTHER = "import numba; numba.__version__ = '0.99.0'\n"
+
+SOLVE = """
+import gc
+import sys
+import nullpose
+gc.disable()  # a fifth of the time that compiling takes
+for path in sys.argv[1:]:
+    result = nullpose.solve(nullpose.load(path), certify=False)
+    print(repr(result.objective.value), result.status)
+"""
+
+
+def test_three_scenes_are_solved_with_another_numba(tmp_path: Path) -> None:
+    """Same values and statuses; standard error says once that compiling takes longer.
+
+    Without a proof, whose kernels take numba another 45 s.
+    """
+    (tmp_path / "sitecustomize.py").write_text(OTHER, encoding="utf-8")
+    paths = [str(ROOT / "examples" / f"{name}.toml") for name in SCENES]
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path]),
+        "NUMBA_CACHE_DIR": str(tmp_path / "kernels"),
+        "NUMBA_OPT": "1",  # with 0 the code has addresses, which numba warns of
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", SOLVE, *paths], env=environment, capture_output=True, text=True
+    )
+    assert done.stderr == OTHER_NUMBA.format("0.99.0") + "\n"
+    for path, line in zip(paths, done.stdout.splitlines(), strict=True):
+        value, status = line.split()
+        expected = nullpose.solve(nullpose.load(path), certify=False)
+        assert float(value) == pytest.approx(expected.objective.value, rel=1e-9)
+        assert status == str(expected.status)
+
+
+def test_the_versions_are_those_that_the_project_asks_for() -> None:
+    """What pip installs beside nullpose is what its compiler is made for."""
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        (asked,) = (one for one in tomllib.load(file)["project"]["dependencies"] if one.startswith("numba"))
+    bounds = [tuple(map(int, each.split("."))) for each in re.findall(r"[\d.]+", asked)]
+    assert bounds == [LINKED_FROM, LINKED_BEFORE]
+    last = f"{LINKED_BEFORE[0]}.{LINKED_BEFORE[1] - 1}"
+    assert "{}.{} to {}".format(*LINKED_FROM, last) in OTHER_NUMBA

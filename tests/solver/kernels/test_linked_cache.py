@@ -1,0 +1,183 @@
+"""Kernels on disk: what is damaged is compiled again, and where nothing can be kept that is said once."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+
+KERNELS = """
+from nullpose.solver.kernels.jit import kernel
+
+
+@kernel
+def twice(x):
+    return 2.0 * x
+
+
+@kernel
+def thrice(x):
+    return 3.0 * x
+"""
+
+DAMAGES = """
+import sys
+from importlib import reload
+from pathlib import Path
+
+import numpy as np
+import tiny
+
+def run():
+    reload(tiny)  # as a new process: all is loaded anew
+    assert (tiny.twice(1.0), tiny.thrice(1.0)) == (2.0, 3.0)
+    return {path: path.read_bytes() for path in folder.glob("*.nbc")}
+
+folder = Path(tiny.twice.stats.cache_path)
+rng = np.random.default_rng(14)
+sound = run()
+assert len(sound) == 2
+for damage in range(60):
+    path = list(sound)[damage % 2]
+    content = bytearray(sound[path])
+    if damage % 3 == 0:
+        content = content[: rng.integers(len(content))]
+    elif damage < 4:
+        content.clear()
+    else:
+        content[rng.integers(len(content))] ^= 1 << int(rng.integers(8))
+    path.write_bytes(content)
+    healed = run()
+    assert healed.keys() == sound.keys()
+    assert healed[path] != bytes(content)
+    compiled = tiny.twice.stats.cache_misses, tiny.thrice.stats.cache_misses
+    assert sum(map(len, compiled)) == 1
+    sound = healed
+run()
+assert not tiny.twice.stats.cache_misses
+print("sound")
+"""
+
+ONCE = "from tiny import thrice, twice; print(twice(1.0), thrice(1.0))"
+
+NO_ROOM = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
+
+
+def run(program: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Runs a program that has the kernels in a module, ``tiny``."""
+    (folder / "tiny.py").write_text(KERNELS, encoding="utf-8")
+    path = os.pathsep.join([str(folder), *sys.path])
+    environment = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(folder / "kernels")} | environment
+    return subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+
+
+def test_what_is_damaged_is_compiled_again(tmp_path: Path) -> None:
+    """Truncated, empty, or with one bit turned: never loaded, replaced by what is sound, and only that."""
+    done = run(DAMAGES, tmp_path)
+    assert (done.stdout, done.stderr) == ("sound\n", "")
+
+
+def test_a_folder_without_room_is_said_once(tmp_path: Path) -> None:
+    """Kernels run all the same, and standard error has one line that says why they are not kept."""
+    done = run(NO_ROOM + ONCE, tmp_path)
+    assert done.stdout == "2.0 3.0\n"
+    assert done.stderr.count("\n") == 1
+    assert "cannot be kept in" in done.stderr
+    assert not list((tmp_path / "kernels").rglob("*.nbc"))
+
+
+def test_a_folder_that_cannot_be_written_is_said_once(tmp_path: Path) -> None:
+    """Likewise where no folder can be made at all."""
+    (tmp_path / "file").touch()
+    done = run(
+        ONCE,
+        tmp_path,
+        NUMBA_CACHE_DIR=str(tmp_path / "file" / "kernels"),
+        NUMBA_CACHE_LOCATOR_CLASSES="UserProvidedCacheLocator",
+    )
+    assert done.stdout == "2.0 3.0\n"
+    assert done.stderr.count("\n") == 1
+    assert "NUMBA_CACHE_DIR" in done.stderr
+
+
+NO_LOCKS = """
+import errno
+import fcntl
+from nullpose.solver.background_compiler import BackgroundCompiler
+from tiny import twice
+
+def refuse(*_):
+    raise OSError(errno.ENOLCK, "No locks available")
+
+fcntl.flock = refuse
+compiler = BackgroundCompiler()
+with compiler.in_use():
+    print(twice(1.0), compiler.wait())
+"""
+
+
+def test_a_folder_without_locks_keeps_kernels(tmp_path: Path) -> None:
+    """Some network folders have no locks: kernels are compiled and kept there, and nothing is said."""
+    done = run(NO_LOCKS, tmp_path)
+    assert (done.stdout, done.stderr) == ("2.0 True\n", "")
+    assert list((tmp_path / "kernels").rglob("tiny.twice*.nbc"))
+
+
+SLOW = """
+from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel
+import numpy as np
+
+
+@inner_heap_kernel
+def one():
+    return np.ones(1)[0]
+
+
+@heap_kernel
+def count(total, n):
+    for _ in range(n):
+        total[0] += one()
+    return total[0]
+"""
+
+HANDED_OVER = """
+import time
+import numpy as np
+from nullpose.solver.background_compiler import BackgroundCompiler
+from nullpose.solver.compiling import limit_clock
+from slow import count
+
+total = np.zeros(1)
+wall_s, limit_s = time.perf_counter(), limit_clock()
+with BackgroundCompiler().in_use():
+    found = count(total, 20_000_000)
+    print(found, total[0], limit_clock() - limit_s < 0.5 * (time.perf_counter() - wall_s))
+"""
+
+
+def test_machine_code_takes_over(tmp_path: Path) -> None:
+    """What would take Python minutes ends soon after it is compiled, and nothing of it is counted twice."""
+    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    done = run(HANDED_OVER, tmp_path)
+    assert (done.stdout, done.stderr) == ("20000000.0 20000000.0 True\n", "")
+
+
+def test_an_interrupt_leaves_arrays_as_they_were() -> None:
+    """What Python has done of half a step is taken back: a proof goes on from there, or states its bound."""
+    import numpy as np
+
+    from nullpose.solver.kernels.interpreted import interpret
+    from nullpose.solver.kernels.jit import kernel
+
+    @kernel
+    def interrupted(numbers: np.ndarray) -> None:
+        numbers[0] = 2.0
+        raise KeyboardInterrupt
+
+    numbers = np.ones(3)
+    with pytest.raises(KeyboardInterrupt):
+        interpret(interrupted, (), numbers)
+    np.testing.assert_array_equal(numbers, 1.0)

@@ -1,0 +1,243 @@
+"""Ratios at a pose and their derivatives, against dense matrices and exact arithmetic."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.solver.kernels.links import derivatives, log_ratios, min_log_ratio
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def log_values(family: Family, p: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Returns the kernel's log ratios at a pose."""
+    out = np.empty(len(family.numerator_point))
+    log_ratios(family.arrays, p, u, np.empty(len(family.denominator_isotropic)), out)
+    return out
+
+
+def kernel_derivatives(
+    family: Family, p: np.ndarray, u: np.ndarray, multipliers: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Returns the kernel's log ratios, their gradients and their weighted Hessian at a pose."""
+    ratios = len(family.numerator_point)
+    f, grads, hess = np.empty(ratios), np.empty((ratios, 6)), np.empty((6, 6))
+    work = np.empty((len(family.denominator_isotropic), 50))
+    derivatives(family.arrays, p, u, multipliers, f, grads, hess, work)
+    return f, grads, hess
+
+
+def exact_forms(family: Family, pose: list[Fraction]) -> tuple[list[Fraction], list[Fraction]]:
+    """Returns every ratio's numerator and denominator at a pose (p, u), in exact rational arithmetic."""
+    p, u = pose[:3], pose[3:]
+    size = sum(x * x for x in u)
+    links = []
+    for point in family.points_m:
+        r = [Fraction(float(q)) - x for q, x in zip(point, p, strict=True)]
+        square = sum(x * x for x in r)
+        dot = sum(a * b for a, b in zip(u, r, strict=True))
+        links.append((size * square - (1 - Fraction(family.leak)) * dot**2) / square**2)
+    numerators = [
+        Fraction(float(isotropic)) * size + Fraction(float(weight)) * links[point]
+        for isotropic, weight, point in zip(
+            family.numerator_isotropic, family.numerator_weight, family.numerator_point, strict=True
+        )
+    ]
+    totals = []
+    for group, isotropic in enumerate(family.denominator_isotropic):
+        total = Fraction(float(isotropic)) * size
+        for entry in range(family.denominator_start[group], family.denominator_start[group + 1]):
+            total += (
+                Fraction(float(family.denominator_weight[entry])) * links[family.denominator_point[entry]]
+            )
+        totals.append(total)
+    return numerators, [totals[group] for group in family.denominator_of]
+
+
+def exact_derivatives(
+    family: Family, p: np.ndarray, u: np.ndarray, multipliers: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns gradients (R, 6) and weighted Hessian (6, 6) of the log ratios by exact central differences.
+
+    In rational arithmetic nothing is rounded, so the step can be as small as one likes: at 1e-25 its square,
+    the relative error of the differences, is far below a double's last digit.
+    """
+    step = Fraction(1, 10**25)
+    pose = [Fraction(float(x)) for x in (*p, *u)]
+
+    def forms(*moves: tuple[int, int]) -> list[Fraction]:
+        moved = list(pose)
+        for index, sign in moves:
+            moved[index] += sign * step
+        numerators, denominators = exact_forms(family, moved)
+        return numerators + denominators
+
+    ratios = len(family.numerator_point)
+    middle = forms()
+    up, down = ([forms((i, sign)) for i in range(6)] for sign in (1, -1))
+    first = [[(up[i][k] - down[i][k]) / (2 * step) for i in range(6)] for k in range(2 * ratios)]
+    logs = [[slope / middle[k] for slope in first[k]] for k in range(2 * ratios)]
+    grads = [[logs[k][i] - logs[ratios + k][i] for i in range(6)] for k in range(ratios)]
+    hess = np.zeros((6, 6))
+    weights = [Fraction(float(z)) for z in multipliers]
+    for i in range(6):
+        for j in range(i + 1):
+            if i == j:
+                second = [(a - 2 * b + c) / step**2 for a, b, c in zip(up[i], middle, down[i], strict=True)]
+            else:
+                both, neither = forms((i, 1), (j, 1)), forms((i, -1), (j, -1))
+                mixed = forms((i, 1), (j, -1)), forms((i, -1), (j, 1))
+                second = [
+                    (a + b - c - d) / (4 * step**2) for a, b, c, d in zip(both, neither, *mixed, strict=True)
+                ]
+            curved = [second[k] / middle[k] - logs[k][i] * logs[k][j] for k in range(2 * ratios)]
+            total = sum(weights[k] * (curved[k] - curved[ratios + k]) for k in range(ratios))
+            hess[i, j] = hess[j, i] = float(total)
+    return np.array([[float(x) for x in row] for row in grads]), hess
+
+
+def some_pose(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Returns a position above the field and an axis of any length."""
+    return rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0]), rng.normal(size=3)
+
+
+@given(seed=SEEDS, ratios=st.integers(1, 5), groups=st.integers(1, 3))
+def test_log_ratios_by_dense_matrices(
+    seed: int, ratios: int, groups: int, random_family: Callable, dense_forms: Callable
+) -> None:
+    """The log ratios are those of u^T N u over u^T D u, and the objective is the smallest."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, ratios, groups)
+    p, u = some_pose(rng)
+    numerators, denominators = dense_forms(family, p)
+    expected = np.log(
+        np.einsum("i,kij,j->k", u, numerators, u)
+        / np.einsum("i,kij,j->k", u, denominators[family.denominator_of], u)
+    )
+    np.testing.assert_allclose(log_values(family, p, u), expected, atol=1e-11)
+    logs, out = np.empty(groups), np.empty(ratios)
+    assert min_log_ratio(family.arrays, p, u, logs, out) == np.min(log_values(family, p, u))
+
+
+@given(seed=SEEDS, length=st.floats(1e-6, 1e6))
+def test_length_and_sign_of_the_axis_are_irrelevant(
+    seed: int, length: float, random_family: Callable
+) -> None:
+    """Scaling the axis, by a negative number too, leaves every log ratio unchanged."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 2)
+    p, u = some_pose(rng)
+    expected = log_values(family, p, u)
+    np.testing.assert_allclose(log_values(family, p, length * u), expected, atol=1e-13)
+    np.testing.assert_array_equal(log_values(family, p, -u), expected)
+
+
+@pytest.mark.parametrize("offset", [1e-2, 1e-5, 1e-8])
+def test_log_ratios_beside_the_null(offset: float, paper: Callable) -> None:
+    """Beside the jammer's null, under a million times the power, the log ratios keep their digits."""
+    family = build_family(paper(1e6))
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        p, _ = some_pose(rng)
+        u = family.points_m[2] - p
+        u += offset * np.linalg.norm(u) * rng.normal(size=3)
+        numerators, denominators = exact_forms(family, [Fraction(float(x)) for x in (*p, *u)])
+        expected = [math.log(n / d) for n, d in zip(numerators, denominators, strict=True)]
+        np.testing.assert_allclose(log_values(family, p, u), expected, atol=1e-13)
+
+
+def test_a_node_in_the_null_is_minus_infinity(paper: Callable) -> None:
+    """A node straight along the axis has log ratio minus infinity, and so has the objective."""
+    family = build_family(paper(1.0))
+    values = log_values(family, np.array([0.0, 0.0, 10.0]), np.array([0.0, 0.0, 2.0]))
+    assert values[0] == -math.inf
+    assert math.isfinite(values[1])
+
+
+@settings(max_examples=15)
+@given(seed=SEEDS, ratios=st.integers(1, 3), groups=st.integers(1, 2))
+def test_derivatives_are_exact(seed: int, ratios: int, groups: int, random_family: Callable) -> None:
+    """Gradients and weighted Hessian agree with exact differences to rounding, several denominators too."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, ratios, groups)
+    p, u = some_pose(rng)
+    multipliers = rng.uniform(0.1, 1.0, ratios)
+    f, grads, hess = kernel_derivatives(family, p, u, multipliers)
+    np.testing.assert_allclose(f, log_values(family, p, u), atol=1e-14)
+    exact_grads, exact_hess = exact_derivatives(family, p, u, multipliers)
+    np.testing.assert_allclose(grads, exact_grads, rtol=1e-10, atol=1e-12 * np.abs(exact_grads).max())
+    np.testing.assert_allclose(hess, exact_hess, rtol=1e-9, atol=1e-12 * np.abs(exact_hess).max())
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1e3, 1e6])
+@pytest.mark.parametrize("offset", [1e-3, 1e-6])
+def test_derivatives_beside_the_null(ratio: float, offset: float, paper: Callable) -> None:
+    """Beside the null the derivatives stay exact to rounding, seen against their own huge size."""
+    family = build_family(paper(ratio))
+    p = np.array([-2.24, 23.82, 8.0])
+    u = family.points_m[2] - p
+    u /= np.linalg.norm(u)
+    u += offset * np.array([0.3, -0.8, 0.5])
+    multipliers = np.array([0.6, 0.4])
+    _, grads, hess = kernel_derivatives(family, p, u, multipliers)
+    exact_grads, exact_hess = exact_derivatives(family, p, u, multipliers)
+    np.testing.assert_allclose(grads, exact_grads, atol=1e-13 * np.abs(exact_grads).max() + 1e-12)
+    np.testing.assert_allclose(hess, exact_hess, atol=1e-13 * np.abs(exact_hess).max() + 1e-12)
+
+
+@settings(max_examples=30)
+@given(seed=SEEDS)
+def test_derivatives_by_finite_differences(seed: int, random_family: Callable) -> None:
+    """Gradients are the differences of the values, and the Hessian those of the gradients.
+
+    Central differences err by the third derivative times the step squared, and by eps over the step; both
+    are about 1e-10 at the cube root of eps, 6e-6, in units of the length over which the values change: the
+    distance to the nearest point (at least 3 m here) for the position, 1 for the axis.
+    """
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 2)
+    p, u = some_pose(rng)
+    u /= np.linalg.norm(u)
+    multipliers = rng.uniform(0.1, 1.0, 3)
+    _, grads, hess = kernel_derivatives(family, p, u, multipliers)
+    step = np.finfo(float).eps ** (1.0 / 3.0)
+    numeric_grads, numeric_hess = np.empty((3, 6)), np.empty((6, 6))
+    for i in range(6):
+        move = np.zeros(6)
+        move[i] = 3.0 * step if i < 3 else step
+        ends = [(p + sign * move[:3], u + sign * move[3:]) for sign in (1.0, -1.0)]
+        above, below = (kernel_derivatives(family, *end, multipliers)[1] for end in ends)
+        values = [log_values(family, *end) for end in ends]
+        numeric_grads[:, i] = (values[0] - values[1]) / (2.0 * move[i])
+        numeric_hess[i] = multipliers @ (above - below) / (2.0 * move[i])
+    np.testing.assert_allclose(numeric_grads, grads, atol=1e-7 * (1.0 + np.abs(grads).max() ** 3))
+    np.testing.assert_allclose(numeric_hess, hess, atol=1e-6 * (1.0 + np.abs(hess).max() ** 2))
+
+
+@given(seed=SEEDS)
+def test_gradients_are_across_the_axis(seed: int, random_family: Callable) -> None:
+    """The ratios do not change along the axis (Euler), so every gradient in u is perpendicular to u."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 4, 2)
+    p, u = some_pose(rng)
+    _, grads, hess = kernel_derivatives(family, p, u, np.ones(4))
+    np.testing.assert_allclose(grads[:, 3:] @ u, 0.0, atol=1e-11 * (1.0 + np.abs(grads).max()))
+    # and differentiating once more along u gives the gradient back with its sign turned
+    np.testing.assert_allclose(hess[3:, 3:] @ u, -grads[:, 3:].sum(axis=0), atol=1e-9 * np.abs(hess).max())
+
+
+def test_ratios_without_a_multiplier_do_not_bend(random_family: Callable) -> None:
+    """A ratio whose multiplier is zero keeps its gradient and adds nothing to the Hessian."""
+    rng = np.random.default_rng(9)
+    family = random_family(rng, 3, 2)
+    p, u = some_pose(rng)
+    alone = [kernel_derivatives(family, p, u, np.eye(3)[k]) for k in range(3)]
+    _, grads, hess = kernel_derivatives(family, p, u, np.array([2.0, 0.0, 3.0]))
+    np.testing.assert_allclose(grads, alone[1][1], rtol=1e-14)
+    np.testing.assert_allclose(hess, 2.0 * alone[0][2] + 3.0 * alone[2][2], rtol=1e-10, atol=1e-12)

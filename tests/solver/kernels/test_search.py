@@ -1,0 +1,159 @@
+"""The multistart's parts: the box of better poses, the way out of the balls, and the search itself."""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.solver.kernels.axis import best_axis
+from nullpose.solver.kernels.links import min_log_ratio
+from nullpose.solver.kernels.search import cut_box, push_out, search
+from nullpose.solver.multistart import SearchSettings
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def box_of(family: Family, level: float) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the box outside which no pose reaches a log ratio."""
+    low, high = np.empty(3), np.empty(3)
+    cut_box(family.arrays, family.low_m, family.high_m, level, low, high)
+    return low, high
+
+
+def run(family: Family, landmarks: np.ndarray, shift: np.ndarray) -> tuple:
+    """Returns value, starts, evaluations, position, axis and multipliers of a short search, the axis free."""
+    p, u, z = np.zeros(3), np.zeros(3), np.zeros(len(family.numerator_point))
+    settings = SearchSettings(coarse=32, polished=8, rounds=4, patience=2)
+    counts = search(
+        family.arrays, family.domain, AxisField.free().arrays, landmarks, shift, settings, p, u, z
+    )
+    return *counts, p, u, z
+
+
+@settings(max_examples=40)
+@given(seed=SEEDS, nodes=st.integers(1, 6), jammers=st.integers(0, 2))
+def test_no_better_pose_lies_outside_the_box(
+    seed: int, nodes: int, jammers: int, random_scene: Callable
+) -> None:
+    """Of many positions with their best axes, each that reaches the level lies in the box cut with it."""
+    rng = np.random.default_rng(seed)
+    family = build_family(random_scene(rng, nodes, jammers, 10.0 ** rng.uniform(-2.0, 3.0)))
+    positions = rng.uniform([-100.0, -100.0, 8.0], [200.0, 200.0, 30.0], (60, 3))
+    axis = np.empty(3)
+    values = np.array([best_axis(family.arrays, p, axis) for p in positions])
+    for level in np.quantile(values, [0.0, 0.3, 0.7, 1.0]):
+        low, high = box_of(family, level - 1e-12)
+        better = positions[values >= level]
+        assert np.all((better >= low) & (better <= high))
+
+
+@given(seed=SEEDS)
+def test_no_better_pose_lies_outside_the_box_of_a_secrecy_family(seed: int, random_family: Callable) -> None:
+    """The same with isotropic parts, where a low level cuts nothing off, for any axis at all."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng, 3, 2)
+    positions = rng.uniform([-200.0, -200.0, 8.0], [300.0, 300.0, 30.0], (200, 3))
+    logs, out = np.empty(2), np.empty(3)
+    values = np.array(
+        [
+            min_log_ratio(family.arrays, p, u, logs, out)
+            for p, u in zip(positions, rng.normal(size=(200, 3)), strict=True)
+        ]
+    )
+    for level in np.quantile(values, [0.0, 0.5, 1.0]):
+        low, high = box_of(family, level - 1e-12)
+        better = positions[values >= level]
+        assert np.all((better >= low) & (better <= high))
+
+
+def test_the_box_of_the_paper(paper: Callable) -> None:
+    """At 0 dB the box is the airspace met with the cubes around the balls of 31.6 m about both nodes."""
+    low, high = box_of(build_family(paper(1.0)), 0.0)
+    reach = math.sqrt(1000.0)
+    np.testing.assert_allclose(low, [-reach, 50.0 - reach, 8.0], rtol=1e-14)
+    np.testing.assert_allclose(high, [reach, reach, 30.0], rtol=1e-14)
+
+
+def test_the_box_shrinks_as_the_level_rises(paper: Callable) -> None:
+    """A higher level cuts a smaller box; without a level there is only the airspace."""
+    family = build_family(paper(1.0))
+    boxes = [box_of(family, level) for level in (-math.inf, -2.0, -1.0, 0.0)]
+    np.testing.assert_array_equal(boxes[0], [family.low_m, family.high_m])
+    for (low, high), (inner_low, inner_high) in pairwise(boxes):
+        assert np.all(inner_low >= low)
+        assert np.all(inner_high <= high)
+
+
+def domain(low: np.ndarray, high: np.ndarray, centres: np.ndarray, radius: float) -> tuple[object, ...]:
+    """Returns a box without balls as the kernels take it, with keep-out balls of its own."""
+    family = Family(
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=low,
+        high_m=high,
+        keep_out_points_m=centres,
+        keep_out_m=radius,
+    )
+    return family.domain
+
+
+@given(seed=SEEDS, balls=st.integers(0, 4), radius=st.floats(0.5, 8.0))
+def test_a_push_ends_outside_the_balls(seed: int, balls: int, radius: float) -> None:
+    """A position that could be pushed out lies in the box and outside every ball; a clear one stays put."""
+    rng = np.random.default_rng(seed)
+    low, high = np.array([-30.0, -30.0, 2.0]), np.array([30.0, 30.0, 20.0])
+    centres = rng.uniform([-30.0, -30.0, 0.0], [30.0, 30.0, 10.0], (balls, 3))
+    for p in rng.uniform([-40.0, -40.0, 0.0], [40.0, 40.0, 25.0], (20, 3)):
+        before = np.clip(p, low, high)
+        clear = np.all(np.linalg.norm(centres - before, axis=1) >= 1.01 * radius)
+        pushed = push_out(p, domain(low, high, centres, radius))
+        assert np.all((p >= low) & (p <= high))
+        if pushed:
+            assert np.all(np.linalg.norm(centres - p, axis=1) >= radius)
+        if clear:
+            assert pushed
+            np.testing.assert_array_equal(p, before)
+
+
+def test_a_box_inside_a_ball_has_no_way_out() -> None:
+    """Where a ball holds the whole box, the push says that it failed."""
+    p = np.array([0.5, 0.5, 1.0])
+    assert not push_out(p, domain(np.zeros(3), np.ones(3), np.array([[0.5, 0.5, 0.5]]), 5.0))
+
+
+def test_a_search_repeats_itself(paper: Callable) -> None:
+    """The same shift gives the same pose to the last bit, and another the same value to 1e-12."""
+    family = build_family(paper(10.0))
+    landmarks = np.array([[10.0, 10.0, 8.0]])
+    first = run(family, landmarks, np.array([0.1, 0.2, 0.3]))
+    second = run(family, landmarks, np.array([0.1, 0.2, 0.3]))
+    other = run(family, landmarks, np.array([0.7, 0.9, 0.4]))
+    for a, b in zip(first, second, strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert other[0] == pytest.approx(first[0], abs=1e-12)
+    logs, out = np.empty(1), np.empty(2)
+    assert min_log_ratio(family.arrays, first[3], first[4], logs, out) == first[0]
+    assert np.sum(first[5]) == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.25, 0.999])
+def test_a_search_counts_its_work(shift: float, paper: Callable) -> None:
+    """Starts are landmarks and polished positions; evaluations are at least the positions judged."""
+    _, starts, evaluations, *_ = run(
+        build_family(paper(1.0)), np.array([[0.0, 25.0, 8.0]]), np.full(3, shift)
+    )
+    assert 1 + 2 * 8 <= starts <= 1 + 4 * 8
+    assert evaluations >= 1 + 2 * 32

@@ -1,0 +1,41 @@
+"""The first compilation, shared between two processes."""
+
+import subprocess
+from collections.abc import Callable
+
+import pytest
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.solver.kernels.branch import branch
+from nullpose.solver.kernels.links import min_log_ratio
+from nullpose.solver.kernels.multistart import search_and_climb
+from nullpose.solver.kernels.node import keep_largest
+from nullpose.solver.kernels.root import fill_root
+from nullpose.solver.options import SolveOptions
+from nullpose.solver.precompile import compile_proof, compile_search, precompile
+from nullpose.solver.solve_and_prove import solve_and_prove
+
+KERNELS = (branch, search_and_climb, min_log_ratio, keep_largest, fill_root)
+
+
+def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
+    """Compiled by hand, the halves serve every solve, whatever the axes."""
+    compile_search(dipoles=False)
+    compile_proof(dipoles=False)
+    before = [len(kernel.signatures) for kernel in KERNELS]
+    family = build_family(paper(1.0))
+    for field in (AxisField.free(), AxisField.vertical(), AxisField.within(0.0, 0.1)):
+        solve_and_prove(family, [field], SolveOptions(gap=1e-2))
+    assert [len(kernel.signatures) for kernel in KERNELS] == before
+
+
+def test_no_process_is_started_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once this process has the kernels, there is nothing left to do."""
+    precompile(dipoles=False)
+
+    def refuse(*arguments: object, **options: object) -> None:
+        raise AssertionError("a process was started")
+
+    monkeypatch.setattr(subprocess, "Popen", refuse)
+    precompile(dipoles=False)

@@ -1,0 +1,168 @@
+from collections.abc import Callable
+from importlib import import_module
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
+from nullpose.scenario import Scenario, apply_overrides, load
+from nullpose.solver.kernels import node
+from nullpose.solver.kernels.axis import best_axis
+from nullpose.solver.kernels.links import min_log_ratio
+from nullpose.solver.multistart import multistart
+from nullpose.solver.options import SolveOptions, default_gap
+from nullpose.solver.proof import Proof, prove
+
+PAPER = "examples/paper.toml"
+
+
+def proof_of(family: Family, axis_field: AxisField, **limits: float) -> Proof:
+    """Return a proof from a multistart's incumbent."""
+    found = multistart(family, axis_field, seed=1)
+    return prove(family, axis_field, found, SolveOptions(**limits))
+
+
+def boxes(proof: Proof) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and highest corners of a proof's leaves."""
+    centre, half = proof.leaves[:, node.CENTRE : node.HALF], proof.leaves[:, node.HALF : node.LEVEL]
+    return centre - half, centre + half
+
+
+def value_at(family: Family, p: np.ndarray) -> float:
+    """Return the smallest ratio at a position with its best axis."""
+    axis = np.empty(3)
+    return float(np.exp(best_axis(family.arrays, p, axis)))
+
+
+@pytest.mark.parametrize("power_w", [1e-3, 1.0, 1e6])
+def test_the_papers_optimum_is_closed(power_w: float) -> None:
+    """The bound is within the gap above the value, and the leaves cover the box of the distance cut."""
+    family = build_family(apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"]))
+    proof = proof_of(family, AxisField.free(), gap=1e-6)
+    value = np.exp(proof.incumbent.log_value)
+    assert proof.reason == ""
+    assert value <= proof.upper_bound <= value * (1.0 + 1.001e-6)
+    low, high = boxes(proof)
+    whole = np.prod(high.max(axis=0) - low.min(axis=0))
+    assert np.sum(np.prod(high - low, axis=1)) == pytest.approx(whole, rel=1e-9)
+
+
+def test_no_pose_of_a_leaf_reaches_its_level(random_scene: Callable) -> None:
+    """Positions drawn from the leaves, each with its exact best axis, stay below the level excluded there."""
+    rng = np.random.default_rng(4)
+    for n_nodes, n_jammers in ((1, 1), (2, 0), (3, 1), (5, 2), (8, 3)):
+        family = build_family(random_scene(rng, n_nodes, n_jammers, 10.0))
+        proof = proof_of(family, AxisField.free(), gap=1e-2)
+        assert proof.reason == ""
+        whole_sphere = proof.leaves[proof.leaves[:, node.FACE] < 0.0]
+        chosen = whole_sphere[rng.integers(len(whole_sphere), size=200)]
+        for row in chosen:
+            p = row[node.CENTRE : node.HALF] + rng.uniform(-1, 1, size=3) * row[node.HALF : node.LEVEL]
+            assert value_at(family, p) <= row[node.LEVEL] * (1.0 + 1e-12)
+
+
+def test_no_search_beats_the_bound(random_scene: Callable) -> None:
+    """An independent search from many starts never exceeds the bound."""
+    rng = np.random.default_rng(5)
+    for n_nodes in (2, 3, 5, 7):
+        for n_jammers in (1, 3):
+            family = build_family(random_scene(rng, n_nodes, n_jammers, 30.0))
+            proof = proof_of(family, AxisField.free(), gap=1e-3)
+            assert proof.reason == ""
+            for seed in range(5):
+                other = multistart(family, AxisField.free(), seed=100 + seed)
+                assert np.exp(other.log_value) <= proof.upper_bound
+
+
+def test_fixed_axes_are_closed() -> None:
+    """Zero interference and the needle above the jammer are closed too, the needle at any strength."""
+    for power_w in (0.1, 1e4):
+        scenario = apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"])
+        family = build_family(scenario)
+        fields = (
+            AxisField.towards(scenario.jammer_positions_m[0]),
+            AxisField.vertical(),
+        )
+        for axis_field in fields:
+            proof = proof_of(family, axis_field, gap=1e-6)
+            value = np.exp(proof.incumbent.log_value)
+            assert proof.reason == ""
+            assert proof.upper_bound <= value * (1.0 + 1.001e-6)
+
+
+def test_a_limit_leaves_a_valid_bound(random_scene: Callable) -> None:
+    """Stopped by a limit, the run says why and its bound still holds."""
+    rng = np.random.default_rng(6)
+    scenario: Scenario = random_scene(rng, 12, 3, 30.0)
+    family = build_family(scenario)
+    full = proof_of(family, AxisField.free(), gap=1e-2)
+    short = proof_of(family, AxisField.free(), gap=1e-6, node_limit=300)
+    assert "node limit" in short.reason
+    assert short.upper_bound >= np.exp(full.incumbent.log_value)
+    hasty = proof_of(family, AxisField.free(), gap=1e-8, time_limit_s=1e-3)
+    assert "time limit" in hasty.reason
+    assert hasty.upper_bound >= np.exp(full.incumbent.log_value)
+
+
+def test_a_poor_incumbent_is_improved() -> None:
+    """Started from a poor pose, the run finds the optimum on its own."""
+    family = build_family(load(PAPER))
+    best = multistart(family, AxisField.free(), seed=0)
+    p, axis = np.array([20.0, 40.0, 20.0]), np.array([0.0, 0.0, 1.0])
+    poor_value = min_log_ratio(family.arrays, p, axis, np.empty(1), np.empty(2))
+    poor = type(best)(
+        position_m=p, axis=axis, log_value=poor_value, multipliers=np.full(2, 0.5), starts=0, evaluations=0
+    )
+    proof = prove(family, AxisField.free(), poor, SolveOptions(gap=1e-6))
+    assert proof.reason == ""
+    assert proof.incumbent.log_value == pytest.approx(best.log_value, rel=1e-6)
+
+
+def test_progress_is_told(random_scene: Callable) -> None:
+    """The gap proved never grows from one report to the next, and nodes only add up."""
+    seen: list[tuple[float, int]] = []
+    family = build_family(random_scene(np.random.default_rng(7), 6, 2, 30.0))
+    found = multistart(family, AxisField.free(), seed=1)
+    prove(
+        family,
+        AxisField.free(),
+        found,
+        SolveOptions(gap=1e-3, on_progress=lambda gap, n: seen.append((gap, n))),
+    )
+    gaps, nodes = zip(*seen, strict=True)
+    assert list(nodes) == sorted(nodes)
+    assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(gaps))
+
+
+def test_default_gaps_loosen_with_size() -> None:
+    """More nodes are asked for a wider gap."""
+    gaps = [default_gap(n) for n in (1, 2, 3, 4, 20, 21, 100)]
+    assert gaps == sorted(gaps)
+
+
+def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_DIRECT_NODES", 10)
+    for seed in range(4):
+        family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
+        proof = proof_of(family, AxisField.free(), gap=1e-2)
+        assert proof.reason == ""
+        assert np.any(proof.leaves[:, node.KIND] == node.FAR)
+        for row in proof.leaves:
+            ratios = row[node.INDEX : node.INDEX + int(row[node.COUNT])]
+            assert len(set(ratios)) == len(ratios)
+
+
+def test_a_long_try_is_shared(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Begun by one thread and gone on with by three, a try proves what one thread alone proves."""
+    family = build_family(random_scene(np.random.default_rng(3), 5, 1, 30.0))
+    alone = proof_of(family, AxisField.free(), gap=1e-4)
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_ALONE_NODES", 50)
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_LATE_SEEN", 50)
+    shared = proof_of(family, AxisField.free(), gap=1e-4, threads=3)
+    assert alone.reason == shared.reason == ""
+    assert shared.nodes > 100
+    assert shared.upper_bound == pytest.approx(alone.upper_bound, rel=2e-4)

@@ -1,0 +1,65 @@
+"""A proof goes on to its limit however many boxes it takes, in a bounded memory."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from nullpose import Scenario, UsageError, solve
+from nullpose.solver.certificate_from_proof import certificate_of
+
+PROOF = import_module("nullpose.solver.proof")
+
+
+def whips(seed: int) -> Scenario:
+    """Returns five whips and two jammers for a level vehicle."""
+    rng = np.random.default_rng(seed)
+    places = [[x, y, 0.0] for x, y in rng.uniform(0.0, 60.0, (7, 2)).tolist()]
+    return Scenario.from_dict(
+        {
+            "airspace": {"altitude_m": [8.0, 30.0]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+            "airframe": {"tilt_max_deg": 0.0},
+            "nodes": [{"position_m": place, "power_w": 1.0, "antenna": "dipole"} for place in places[:5]],
+            "jammers": [{"position_m": place, "power_w": 10.0, "antenna": "dipole"} for place in places[5:]],
+        }
+    )
+
+
+def test_no_number_of_boxes_ends_a_proof() -> None:
+    """A tree of more boxes than a certificate holds is worked off until a limit that was asked for."""
+    scenario = Scenario.from_dict(
+        {
+            "airspace": {"altitude_m": [8.0, 30.0]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+            "airframe": {"tilt_max_deg": 1.0, "mount_deg": 90.0},
+            "nodes": [
+                {"position_m": [29.646027519011042, 40.85000198956229, 4.384168792188026], "power_w": 0.68},
+                {"position_m": [22.660002233949946, 32.54653735229097, 0.0], "power_w": 1.86},
+            ],
+            "jammers": [
+                {"position_m": [9.97385251302588, 41.512084865195845, 3.087689601584442], "power_w": 406.0}
+            ],
+        }
+    )
+    result = solve(scenario, node_limit=1_200_000, time_limit_s=600.0)
+    assert result.reason == "the node limit of 1200000"
+    assert result.stats.boxes >= 1_200_000
+
+
+def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where leaves do not fit into memory the proof is closed without them, and has no certificate."""
+    scenario = whips(1)
+    monkeypatch.setattr(PROOF, "_DIRECT_NODES", 10)
+    monkeypatch.setattr(PROOF, "_ALONE_NODES", 10)
+    kept = solve(scenario, gap=1e-3, threads=1)
+    monkeypatch.setattr(PROOF, "_MOST_BYTES", 1e4)
+    dropped = solve(scenario, gap=1e-3, threads=1)
+    assert kept.status == dropped.status == "certified"
+    assert dropped.objective.upper_bound == pytest.approx(kept.objective.upper_bound, rel=1e-9)
+    assert (kept.rigour, dropped.rigour) == ("verifiable", "floating-point")
+    assert dropped.stats.boxes > 0
+    with pytest.raises(UsageError, match="too many leaves"):
+        certificate_of(dropped)
