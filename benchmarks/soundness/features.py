@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from benchmarks.soundness.every_antenna import make_gap, put_antennas, put_level_airframe
@@ -78,6 +79,8 @@ def _star(rng: np.random.Generator, centre: FloatArray, size: float) -> list[lis
     angles = np.sort(rng.uniform(0.0, 1.0, count) + np.arange(count)) * 2.0 * np.pi / (count + 1.0)
     radii = size * rng.uniform(0.4, 1.3, count)
     corners = centre + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    if not shapely.Polygon(corners).is_valid:  # three corners may leave the centre outside
+        return _star(rng, centre, size)
     return [[float(x), float(y)] for x, y in corners]
 
 
