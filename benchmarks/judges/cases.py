@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from nullpose import Pose, Scenario, solve
-from nullpose.antenna import PatternAntenna
 from nullpose.antenna.files import read_pattern
 from nullpose.antenna.pattern import table_harmonics
 
@@ -32,7 +31,7 @@ def _points(
 
 def kinds(rng: np.random.Generator) -> dict[str, tuple[dict[str, Any] | None, Any, Any]]:
     """Return the drone's antenna, and what makes a node's and a jammer's, by what is compared."""
-    rows = PatternAntenna("", "", table_harmonics(read_pattern(_TABLE))).rows()
+    rows = table_harmonics(read_pattern(_TABLE)).rows()
 
     def isotropic() -> dict[str, Any]:
         return {}

@@ -115,7 +115,7 @@ class _Engine:
     def _drone(self, scenario: Scenario) -> tuple[str, float]:
         """Return the name of the drone's pattern with Sionna, and the gain that counts as 1."""
         antenna = scenario.antenna_record
-        if not isinstance(antenna, PatternAntenna):
+        if antenna.is_quadratic:
             return "dipole", _DIPOLE
         if antenna.name == "half-wave":
             return "hw_dipole", _HALF_WAVE

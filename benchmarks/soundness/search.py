@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from nullpose.antenna import PatternAntenna
 from nullpose.physics.objective import objective_value
 from nullpose.scenario import Scenario
 
@@ -32,7 +31,7 @@ def axes_of(
     if scheme == "maximum-gain" and len(scenario.nodes) == 2:
         first, second = scenario.node_positions_m
         return [lambda p, u: np.cross(first - p, second - p)]
-    if isinstance(scenario.antenna_record, PatternAntenna):
+    if not scenario.antenna_record.is_quadratic:
         return [lambda p, u: nearest_in_tilt(scenario, u)]
     band = scenario.axis_band
     return [(lambda p, u: u) if band == (0.0, 1.0) else (lambda p, u: nearest_in_band(u, *band))]

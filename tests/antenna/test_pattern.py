@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from nullpose.antenna import PatternAntenna
+from nullpose.antenna.half_wave import half_wave_harmonics
 from nullpose.antenna.harmonics import directions
 from nullpose.antenna.pattern import (
-    half_wave_harmonics,
     harmonics_of_rows,
     normalised,
     profile_harmonics,
@@ -52,7 +52,7 @@ def test_profile() -> None:
 def test_rows_round_trip() -> None:
     """What a result tells of a pattern is the pattern."""
     antenna = PatternAntenna("pattern", "any", half_wave_harmonics())
-    assert PatternAntenna("pattern", "any", harmonics_of_rows(antenna.rows())) == antenna
+    assert PatternAntenna("pattern", "any", harmonics_of_rows(antenna.harmonics.rows())) == antenna
 
 
 def test_no_gain_is_above_the_peak_and_none_below_zero() -> None:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from nullpose import solve
-from nullpose.antenna import PatternAntenna
 from nullpose.antenna.pattern import profile_harmonics
 from nullpose.certificate import Certificate, claimed_axes, parse_certificate, verify
 from nullpose.certificate.certificate import WORLD
@@ -21,9 +20,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 TILTED = ["airframe.tilt_max_deg=30", "airframe.mount_deg=90"]
 UNEVEN = {
     "kind": "profile",
-    "harmonics": PatternAntenna(
-        "", "", profile_harmonics(np.arange(181.0), 1.0 + 0.5 * np.cos(np.radians(np.arange(181.0))))
-    ).rows(),
+    "harmonics": profile_harmonics(np.arange(181.0), 1.0 + 0.5 * np.cos(np.radians(np.arange(181.0)))).rows(),
 }
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from nullpose import Scenario, apply_overrides, compare, load, solve, solve_many
-from nullpose.antenna import PatternAntenna
 from nullpose.antenna.harmonics import directions, fit
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import UsageError
@@ -26,7 +25,7 @@ def pattern_rows(function: Any, degree: int) -> list[list[float]]:
     grid = np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0)
     gain = function(*np.moveaxis(directions(*grid), -1, 0))
     table = PatternTable(theta_deg=grid[0], phi_deg=grid[1], gain=gain)
-    return PatternAntenna("", "", fit(table, degree)).rows()
+    return fit(table, degree).rows()
 
 
 def lobed(x: Any, y: Any, z: Any) -> Any:

@@ -5,17 +5,20 @@ Physics, solver, certificate, tables and figures ask the antenna.
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
+from nullpose.antenna.from_file import PATTERN, PROFILE
 from nullpose.antenna.ground import GROUND_ANTENNAS, GroundAntennas, unit_axis
+from nullpose.antenna.half_wave import HALF_WAVE
+from nullpose.antenna.kind import Antenna, AntennaKind
 from nullpose.antenna.pattern import PatternAntenna
 from nullpose.antenna.quadratic import QuadraticAntenna
-from nullpose.antenna.short_dipole import SHORT_DIPOLE, short_dipole
+from nullpose.antenna.short_dipole import DIPOLE, SHORT_DIPOLE, short_dipole
 
 __all__ = [
+    "ANTENNAS",
     "GROUND_ANTENNAS",
     "SHORT_DIPOLE",
     "Antenna",
+    "AntennaKind",
     "GroundAntennas",
     "PatternAntenna",
     "QuadraticAntenna",
@@ -23,5 +26,10 @@ __all__ = [
     "unit_axis",
 ]
 
-Antenna: TypeAlias = QuadraticAntenna | PatternAntenna
-"""Any antenna of the drone."""
+ANTENNAS: dict[str, AntennaKind] = {
+    "dipole": DIPOLE,
+    "half-wave": HALF_WAVE,
+    "profile": PROFILE,
+    "pattern": PATTERN,
+}
+"""By the kind in a scenario file."""

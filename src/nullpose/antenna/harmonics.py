@@ -82,6 +82,10 @@ class Harmonics:
         angles = np.outer(orders, phi_rad)
         return np.asarray(total[0].T @ np.cos(angles) + total[1].T @ np.sin(angles))
 
+    def rows(self) -> list[list[float]]:
+        """Return the terms as plain numbers: for each degree the cosine terms, then the sine terms."""
+        return [[*self.cosine[n, : n + 1], *self.sine[n, 1 : n + 1]] for n in range(self.degree + 1)]
+
     def truncated(self, degree: int) -> Harmonics:
         """Return the terms up to a degree.
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -26,7 +26,6 @@ from nullpose.antenna.table import PatternTable
 _TINY = 1e-7  # of the largest gain
 _LOW = 0.005  # of all directions, weighted by the grid's density
 _LEFT_OUT = 3e-4  # root mean square of the terms that are left out, of the largest gain
-_HALF_WAVE_DEGREE = 14  # whose terms reproduce the half-wave dipole to 1e-11
 _GRID = np.radians(np.arange(181.0)), np.radians(np.arange(360.0))  # where the largest gain is looked for
 _STEP_DEG = 0.25  # of the grid where the least gain is looked for, then about its lowest minima
 _MINIMA = 64
@@ -46,7 +45,14 @@ class PatternAntenna:
     label: str
     harmonics: Harmonics
 
-    leak = 0.0
+    is_quadratic: ClassVar[Literal[False]] = False
+    has_polarisation: ClassVar[bool] = False
+    leak: ClassVar[float] = 0.0
+
+    @property
+    def is_axisymmetric(self) -> bool:
+        """Whether the gain is the same all round the z axis."""
+        return self.harmonics.is_axisymmetric
 
     def gain(self, directions: ArrayLike) -> FloatArray:
         """Return the power gain in each direction, (...).
@@ -76,11 +82,6 @@ class PatternAntenna:
         """The pattern as the solver takes it, made once for the same harmonics."""
         return _arrays(*(part.tobytes() for part in (self.harmonics.cosine, self.harmonics.sine)))
 
-    def rows(self) -> list[list[float]]:
-        """Return the harmonics as plain numbers: for each degree the cosine terms, then the sine terms."""
-        cosine, sine = self.harmonics.cosine, self.harmonics.sine
-        return [[*cosine[n, : n + 1], *sine[n, 1 : n + 1]] for n in range(len(cosine))]
-
     def __eq__(self, other: object) -> bool:
         return isinstance(other, PatternAntenna) and self._key() == other._key()
 
@@ -99,7 +100,7 @@ def _arrays(cosine: bytes, sine: bytes) -> PatternArrays:
 
 
 def harmonics_of_rows(rows: Sequence[Sequence[float]]) -> Harmonics:
-    """Return the harmonics that :meth:`PatternAntenna.rows` tells.
+    """Return the harmonics that :meth:`Harmonics.rows` writes.
 
     Args:
         rows: for each degree n, 2 n + 1 numbers.
@@ -115,16 +116,6 @@ def harmonics_of_rows(rows: Sequence[Sequence[float]]) -> Harmonics:
     return Harmonics(cosine, sine)
 
 
-def half_wave_harmonics() -> Harmonics:
-    """Return ``cos^2(pi c / 2) / (1 - c^2)`` of a thin half-wave dipole, 1 broadside, c the cosine to z.
-
-    Source: Balanis, Antenna Theory, eq. 4-85, squared and normalised.
-    """
-    whole = _axial(lambda c: np.cos(0.5 * np.pi * c) ** 2 / (1.0 - c * c), _HALF_WAVE_DEGREE)
-    whole.cosine[1::2] = 0.0  # the same up and down
-    return whole
-
-
 def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
     """Return the harmonics of an antenna that is the same all round, from its gain over the angle.
 
@@ -132,7 +123,7 @@ def profile_harmonics(angle_deg: FloatArray, gain: FloatArray) -> Harmonics:
         angle_deg: (n,) angles from the axis, rising from 0 to 180.
         gain: (n,) power gain there, linear; it changes linearly between.
     """
-    whole = _axial(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), HIGHEST_DEGREE)
+    whole = axial_harmonics(lambda c: np.interp(np.degrees(np.arccos(c)), angle_deg, gain), HIGHEST_DEGREE)
     return _shortened(whole, float(np.min(gain)), float(np.max(gain)))
 
 
@@ -179,9 +170,15 @@ def normalised(harmonics: Harmonics) -> Harmonics:
     return Harmonics(harmonics.cosine / peak, harmonics.sine / peak)
 
 
-def _axial(function: Any, degree: int) -> Harmonics:
+def axial_harmonics(gain: Callable[[FloatArray], FloatArray], degree: int) -> Harmonics:
+    """Expand a gain that is the same all round.
+
+    Args:
+        gain: of the cosine of the angle to z.
+        degree: the highest n.
+    """
     nodes, weights = legendre.leggauss(4 * degree + 40)
-    values = weights * function(nodes)
+    values = weights * gain(nodes)
     cosine = np.zeros((degree + 1, degree + 1))
     for n in range(degree + 1):
         mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[n])) / 2.0

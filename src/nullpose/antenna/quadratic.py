@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -12,7 +12,7 @@ class QuadraticAntenna:
 
     Its link to a point at r, gain over squared distance, is ``u^T M(r) u`` for a unit axis u, with
     ``M(r) = (1 - e) T(r) + e I / |r|^2`` and ``T(r) = (|r|^2 I - r r^T) / |r|^4``. Solver and certificate
-    need no more than e of it.
+    need no more than e of it. It is polarised as a short dipole is.
 
     Args:
         name: as in a scenario file.
@@ -20,12 +20,17 @@ class QuadraticAntenna:
         leak: e, the gain along the axis, a power ratio from 0 to 1; 0 is a perfect null.
     """
 
+    is_quadratic: ClassVar[Literal[True]] = True
+    is_axisymmetric: ClassVar[bool] = True
+    has_polarisation: ClassVar[bool] = True
+    peak: ClassVar[float] = 1.0
+
     name: str
     label: str
     leak: float
 
     def gain(self, sine_squared: Any) -> Any:
-        """Return the power gain at an angle from the axis, 1 broadside.
+        """Evaluate the power gain at an angle from the axis, 1 broadside.
 
         Args:
             sine_squared: ``sin^2(gamma)``, a number or an array of any shape.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from nullpose.antenna.kind import AntennaKind
 from nullpose.antenna.quadratic import QuadraticAntenna
 
 SHORT_DIPOLE = QuadraticAntenna(name="dipole", label="short dipole", leak=0.0)
 
 
 def short_dipole(null_depth_db: float | None = None) -> QuadraticAntenna:
-    """Return a short dipole, with a perfect null or with one that an airframe fills.
+    """Make a short dipole, with a perfect null or with one that an airframe fills.
 
     Args:
         null_depth_db: how far the gain along the axis is below that across it, dB, not negative; None for a
@@ -18,3 +19,6 @@ def short_dipole(null_depth_db: float | None = None) -> QuadraticAntenna:
         return SHORT_DIPOLE
     label = f"{SHORT_DIPOLE.label} with a null of {null_depth_db:g} dB"
     return QuadraticAntenna(name=SHORT_DIPOLE.name, label=label, leak=10.0 ** (-null_depth_db / 10.0))
+
+
+DIPOLE = AntennaKind("a short dipole", short_dipole, ("null_depth_db",))

@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.antenna import PatternAntenna
 from nullpose.certificate.profile import ProfileField
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import RECORDS
@@ -150,8 +149,8 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Ma
     if record is None or (null_jammer is not None and not record.nulls_a_jammer):
         return None
     antenna = scenario.antenna_record
-    if not isinstance(antenna, PatternAntenna):
+    if antenna.is_quadratic:
         return record.fields(scenario, null_jammer)
-    if not (record.any_antenna and antenna.harmonics.is_axisymmetric):
+    if not (record.any_antenna and antenna.is_axisymmetric):
         return None
     return {"profile": ProfileField(antenna, scenario)}

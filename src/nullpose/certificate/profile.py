@@ -117,7 +117,7 @@ class ProfileField(AxisField):
     even: bool
 
     def __init__(self, antenna: PatternAntenna, scenario: Scenario) -> None:
-        if not antenna.harmonics.is_axisymmetric:
+        if not antenna.is_axisymmetric:
             raise ValueError(f"{antenna.label}: its gain changes round its axis")
         super().__init__(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
         even = antenna.harmonics.is_even

@@ -8,7 +8,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import PatternAntenna
 from nullpose.physics.secrecy import node_snr
 from nullpose.physics.sinr import received_power_w, sinr
 from nullpose.physics.types import FloatArray
@@ -186,6 +185,6 @@ def _actual(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the actual position, and the actual axis or attitude."""
     position, rotation = np.asarray(position_m, dtype=float) + case.position_offset_m, case.rotation_world
-    if isinstance(scenario.antenna_record, PatternAntenna):
+    if not scenario.antenna_record.is_quadratic:
         return position, np.asarray(rotation @ np.asarray(axis, dtype=float))
     return position, np.asarray((rotation @ np.asarray(axis, dtype=float)[..., None])[..., 0])

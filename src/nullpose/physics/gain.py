@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna, PatternAntenna
+from nullpose.antenna import SHORT_DIPOLE, Antenna
 from nullpose.physics.types import FloatArray
 
 
@@ -54,7 +54,7 @@ def antenna_gain(
     Returns:
         Array of shape ``(..., m)``: between 0 and 1 for a dipole.
     """
-    if isinstance(antenna, PatternAntenna):
+    if not antenna.is_quadratic:
         ways = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
         return antenna.gain(np.matmul(_unit(ways), np.asarray(axis, dtype=float)))
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]

@@ -11,7 +11,6 @@ from nullpose.antenna import (
     SHORT_DIPOLE,
     Antenna,
     GroundAntennas,
-    PatternAntenna,
     QuadraticAntenna,
 )
 from nullpose.physics.gain import antenna_gain
@@ -80,7 +79,7 @@ def link_gain(
     gain = antenna_gain(position_m, axis, points_m, antenna)
     if ground is None:
         return gain
-    if isinstance(antenna, PatternAntenna):
+    if not antenna.is_quadratic:
         return np.asarray(ground.shares * gain)  # of a dipole on the ground it says nothing: there is none
     of_dipoles = dipole_gain(position_m, axis, points_m, ground.axes, antenna)
     return np.asarray(ground.shares * ((1.0 - ground.leaks) * of_dipoles + ground.leaks * gain))
@@ -100,8 +99,7 @@ def interferer_gains(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
     point, antenna = scenario.objective_record.interferers.removesuffix("s"), scenario.antenna_record
     points_m, ground = getattr(scenario, f"{point}_positions_m"), getattr(scenario, f"{point}_antennas")
     gains = link_gain(position_m, axis, points_m.reshape(-1, 3), antenna, ground)
-    peak = antenna.peak if isinstance(antenna, PatternAntenna) else 1.0
-    return np.asarray(gains / (peak if ground is None else peak * ground.shares))
+    return np.asarray(gains / (antenna.peak if ground is None else antenna.peak * ground.shares))
 
 
 def worst_polarised(scenario: Scenario) -> Scenario:

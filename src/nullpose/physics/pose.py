@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.antenna import Antenna
 from nullpose.errors import UsageError
 from nullpose.physics.rotation import (
     antenna_axis,
@@ -135,7 +135,7 @@ class Pose:
         Returns:
             Unit axis, shape ``(3,)``, or the rotation to the world from the antenna's axes, ``(3, 3)``.
         """
-        if not isinstance(antenna, PatternAntenna):
+        if antenna.is_quadratic:
             return self.antenna_axis
         body = rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
         return np.asarray(body @ rotation_world_from_body(0.0, self.mount_rad, 0.0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.antenna import Antenna
 from nullpose.errors import UsageError
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
@@ -100,7 +100,7 @@ class Poses:
             Unit axes, shape ``(n, 3)``, or rotations to the world from the antenna's axes, ``(n, 3, 3)``.
         """
         angles = (self.roll_rad, self.pitch_rad, self.yaw_rad)
-        if not isinstance(antenna, PatternAntenna):
+        if antenna.is_quadratic:
             return antenna_axis(*angles, self.mount_rad)
         return np.asarray(
             rotation_world_from_body(*angles) @ rotation_world_from_body(0.0, self.mount_rad, 0.0)

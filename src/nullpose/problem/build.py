@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.antenna import PatternAntenna
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.objectives import FloatArray
 from nullpose.problem.airspace import airspace_zones
@@ -30,7 +29,7 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
         UsageError: the antenna is no dipole.
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
-    if isinstance(scenario.antenna_record, PatternAntenna) and not any_antenna:
+    if not scenario.antenna_record.is_quadratic and not any_antenna:
         raise UsageError(
             f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
             "there are solve, evaluate and antenna compare"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from nullpose.antenna import PatternAntenna
 from nullpose.physics import interferer_gains
 from nullpose.report.document import View, document, rows, table
 from nullpose.report.numbers import number, with_unit
@@ -115,5 +114,5 @@ def _robust_errors(result: Result) -> str:
 def _has_robust_pose(result: Result) -> bool:
     """Return whether a robust solve of the scenario can be asked for, and is not what was done."""
     scenario = result.scenario
-    is_dipole = scenario.array is None and not isinstance(scenario.antenna_record, PatternAntenna)
+    is_dipole = scenario.array is None and scenario.antenna_record.is_quadratic
     return is_dipole and not isinstance(result.details, RobustDetails)

@@ -4,33 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from nullpose.antenna import Antenna as AnyAntenna, PatternAntenna, short_dipole
+from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
-from nullpose.antenna.pattern import (
-    half_wave_harmonics,
-    harmonics_of_rows,
-    normalised,
-    profile_harmonics,
-    table_harmonics,
-)
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import Place, refusal
+from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Choice, ListOf
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels
 
-ESTIMATE = "estimate from two cuts"
-"""What the antenna's label and the scenario's name say where two cuts do not tell the pattern."""
-_KINDS = ("dipole", "half-wave", "profile", "pattern")
-_FILED = ("profile", "pattern")
 _MOST_ROWS = HIGHEST_DEGREE + 1
 
-_Kind = Annotated[str, Choice("an antenna", _KINDS)]
+_Kind = Annotated[str, Choice("an antenna", ANTENNAS)]
 _Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
 _TwoCuts = Annotated[str, Choice("a way to read two cuts", ("sum-of-losses",))]
 _Row = Annotated[
@@ -59,10 +48,10 @@ class Antenna(Section):
 
     kind: _Kind = Field(
         default="dipole",
-        description='Which antenna: "dipole", a short dipole; "half-wave", a thin half-wave dipole; '
-        '"profile", one that is the same all round, by its gain over the angle from its axis; '
-        '"pattern", any other.',
-        examples=list(_KINDS),
+        description="Which antenna: "
+        + "; ".join(f'"{name}", {kind.summary}' for name, kind in ANTENNAS.items())
+        + ".",
+        examples=list(ANTENNAS),
     )
     null_depth_db: NullDepthDecibels | None = Field(
         default=None,
@@ -117,27 +106,21 @@ class Antenna(Section):
         """Returns keys that have no meaning for the kind, and what a profile or a pattern lacks."""
         if self.kind is None:
             return
-        filed = {"file", "format", "frequency_hz", "normalise", "harmonics"}
-        allowed = {"dipole": {"null_depth_db"}, "half-wave": set(), "profile": filed}.get(
-            self.kind, filed | {"two_cuts"}
-        )
-        for key in stated.keys() - {"kind", "gain_dbi"} - allowed:
+        kind = ANTENNAS[self.kind]
+        for key in stated.keys() - {"kind", "gain_dbi", *kind.keys}:
             if stated[key] is not None:
                 yield (key,), f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
-        if self.gain_dbi and self.kind in _FILED and self.normalise == "none":
+        if self.gain_dbi and kind.read is not None and self.normalise == "none":
             yield (
                 ("gain_dbi",),
                 f"got {self.gain_dbi:g}, but the gains in the file are over an isotropic antenna, and this "
                 'would add to them; remove it, or write normalise = "peak", and the largest gain is this one',
             )
-        if self.kind in _FILED and "harmonics" not in stated:
+        if kind.read is not None and "harmonics" not in stated:
+            message = "only a scenario file on this machine may name another; load that file by its path"
             if "file" not in stated:
-                yield ("file",), f'missing, but kind = "{self.kind}" needs it; add the name of a file'
-            else:
-                yield (
-                    ("file",),
-                    "only a scenario file on this machine may name another; load that file by its path",
-                )
+                message = f'missing, but kind = "{self.kind}" needs it; add the name of a file'
+            yield ("file",), message
         for n, row in enumerate(self.harmonics or ()):
             if len(row) != 2 * n + 1:
                 yield ("harmonics", n), f"got {len(row)} numbers, must be {2 * n + 1}: 2 n + 1 for degree n"
@@ -145,48 +128,27 @@ class Antenna(Section):
     @cached_property
     def record(self) -> AnyAntenna:
         """What the antenna states of itself."""
-        if self.kind == "dipole":
-            return short_dipole(self.null_depth_db)
-        if self.kind == "half-wave":
-            return PatternAntenna(self.kind, "half-wave dipole", half_wave_harmonics())
-        harmonics = harmonics_of_rows(self.harmonics or ())
-        if self.normalise == "peak":
-            harmonics = normalised(harmonics)
-        of_file = f" of {PurePath(self.file).name}" if self.file else ""
-        at = "" if self.frequency_hz is None else f" at {self.frequency_hz / 1e6:.7g} MHz"
-        estimate = "" if self.two_cuts is None else f" ({ESTIMATE})"
-        return PatternAntenna(self.kind, f"{self.kind}{of_file}{at}{estimate}", harmonics)
+        kind = ANTENNAS[self.kind]
+        return kind.make(**{key: getattr(self, key) for key in kind.keys})
 
 
 def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
-    """Return a raw table with what its file holds, or as it is where another of its keys is at fault.
+    """Fill in a raw table what its file holds; leave it as it is where another of its keys is at fault.
 
     Args:
-        table: of a profile or a pattern.
+        table: of a kind that has a file, or of any other.
         path: of its file.
 
     Raises:
         ScenarioError: the file cannot be read as stated.
     """
-    from nullpose.antenna.files import read_pattern, read_profile
-    from nullpose.antenna.files.checks import require_fit
-
-    if table.get("kind") not in _FILED:
+    name = table.get("kind")
+    kind = ANTENNAS.get(name) if isinstance(name, str) else None
+    if kind is None or kind.read is None:
         return dict(table)
     unread = {**table, "harmonics": [[1.0]]}
     try:
         Antenna.from_dict(unread)
     except ScenarioError:
         return unread  # its faults are told with the rest of the scenario's
-    if table["kind"] == "profile":
-        profile = profile_harmonics(*read_profile(path))
-        return {**table, "harmonics": PatternAntenna("", "", profile).rows()}
-    is_estimate = table.get("two_cuts") is not None
-    pattern = read_pattern(path, table.get("format"), table.get("frequency_hz"), estimate=is_estimate)
-    if is_estimate and not pattern.doubt:
-        raise refusal("", "two_cuts has no meaning: the file tells the whole pattern; remove the key")
-    if is_estimate:
-        require_fit(pattern)
-    known = {} if pattern.frequency_hz is None else {"frequency_hz": pattern.frequency_hz}
-    harmonics = table_harmonics(pattern)
-    return {**table, **known, "harmonics": PatternAntenna("", "", harmonics).rows()}
+    return {**table, **kind.read(path, table)}

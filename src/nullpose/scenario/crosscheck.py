@@ -66,13 +66,12 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
     for place, point in points.items() if scenario.array is not None else ():
         if point.antenna not in (None, "isotropic"):
             yield (*place, "antenna"), "an array hears isotropic antennas only; remove this key or [array]"
-    kind = getattr(scenario.antenna, "kind", "dipole")
-    for place, point in points.items() if kind != "dipole" else ():
+    for place, point in points.items() if not scenario.antenna_record.has_polarisation else ():
         if point.antenna == "dipole":
             yield (
                 (*place, "antenna"),
                 f"a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
-                f'of antenna.kind = "{kind}" is not; write "circular" or "isotropic"',
+                f'of antenna.kind = "{scenario.antenna.kind}" is not; write "circular" or "isotropic"',
             )
     yield from shared_names(zones)
     if airspace is not None and not misplaced:

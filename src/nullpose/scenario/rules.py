@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -105,7 +106,7 @@ class Choice(Rule):
     """
 
     noun: str
-    words: tuple[str, ...]
+    words: Collection[str]
 
     def read(self, value: object) -> str:
         """Returns the word, or raises the fault that names the words and the one nearest."""

@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna, GroundAntennas, unit_axis
+from nullpose.antenna.from_file import ESTIMATE
 from nullpose.errors import WrongTypeError
 from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.antenna import ESTIMATE, Antenna
+from nullpose.scenario.antenna import Antenna
 from nullpose.scenario.array import Array
 from nullpose.scenario.arrays import read_only, rows_of_points
 from nullpose.scenario.crosscheck import scenario_faults

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
@@ -38,7 +37,7 @@ def solve_scheme(
     known = scenario.jammer_names
     if null_jammer is not None and null_jammer not in known:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
-    if isinstance(scenario.antenna_record, PatternAntenna):
+    if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy's optimisers with it
 
         return solve_pattern(scenario, options), {}

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from nullpose.antenna import PatternAntenna
 from nullpose.certificate import Certificate, Tree, claimed_axes, verify
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
@@ -32,7 +31,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
         UsageError: the scheme has no certificate for this scenario.
     """
     antenna = scenario.antenna_record
-    if isinstance(antenna, PatternAntenna) and not antenna.harmonics.is_axisymmetric:
+    if not antenna.is_axisymmetric:
         raise UsageError(
             f"certificate: a {antenna.label} has none: its gain changes round its axis, and its bound is "
             "proved in floating point; leave out --certificate and --verify"

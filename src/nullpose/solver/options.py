@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
-from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
@@ -35,7 +34,7 @@ def default_gap_of(scenario: Scenario) -> float:
     Args:
         scenario: what is to be solved.
     """
-    if isinstance(scenario.antenna_record, PatternAntenna):
+    if not scenario.antenna_record.is_quadratic:
         return 1e-3 if len(scenario.nodes) <= 3 else 2e-2
     return default_gap(len(scenario.nodes) * max(1, len(scenario.eavesdroppers)))
 

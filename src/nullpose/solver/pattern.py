@@ -50,7 +50,7 @@ def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
         SolveError: no pose reaches every node.
     """
     antenna = scenario.antenna_record
-    assert isinstance(antenna, PatternAntenna), "the caller asks"
+    assert not antenna.is_quadratic, "the caller asks"
     run = PatternRun(build_family(scenario, any_antenna=True), antenna, reach_of(scenario, antenna), options)
     return run.outcome()
 
@@ -65,7 +65,7 @@ def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
     airframe = scenario.airframe
     tilt, mount = (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
     up = rotation_world_from_body(0.0, mount, 0.0).T[:, 2].copy()
-    return Reach(tilt, mount, up, antenna.harmonics.is_axisymmetric, antenna.harmonics.is_even)
+    return Reach(tilt, mount, up, antenna.is_axisymmetric, antenna.harmonics.is_even)
 
 
 class PatternRun:

@@ -115,7 +115,7 @@ def has_proof_steps(result: Result) -> bool:
     Args:
         result: any.
     """
-    objective, is_pattern = result.objective, isinstance(result.scenario.antenna_record, PatternAntenna)
+    objective, is_pattern = result.objective, not result.scenario.antenna_record.is_quadratic
     if not isinstance(result.scheme, Scheme) or objective.upper_bound is None or result.scenario.array:
         return False
     value, bound = _ratios(result)
@@ -169,7 +169,7 @@ def _ratios(result: Result) -> tuple[float, float]:
 
 def _trees(result: Result) -> list[_Tree]:
     scenario, scheme, antenna = result.scenario, Scheme(result.scheme), result.scenario.antenna_record
-    if isinstance(antenna, PatternAntenna):
+    if not antenna.is_quadratic:
         return [_pattern_tree(result, antenna)]
     family, fields = build_family(scenario), scheme.record.fields(scenario, result.null_jammer)
     assert fields is not None, "the caller asks"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.antenna import Antenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import fixed
@@ -167,7 +167,7 @@ class Drone:
             wires, _ = pattern_mesh(antenna, radius_m, 18, 24)
             add_mesh(self._scene, f"{name}/wires", wires, self._look.slots[1], wireframe=True)
             return
-        degree = antenna.harmonics.degree if isinstance(antenna, PatternAntenna) else 0
+        degree = antenna.harmonics.degree if not antenna.is_quadratic else 0
         rings = min(_MOST_RINGS, _RINGS + 3 * degree)  # more where it may have more lobes
         opened = {"open_rad": _OPEN_RAD, "towards_rad": towards_rad}
         surface, gain = pattern_mesh(antenna, radius_m, rings, 3 * rings // 2, **opened)
@@ -176,7 +176,7 @@ class Drone:
 
 def _turns(antenna: Antenna) -> bool:
     """Return whether a pattern is the same all round."""
-    return not isinstance(antenna, PatternAntenna) or antenna.harmonics.is_axisymmetric
+    return antenna.is_axisymmetric
 
 
 def _has_null(antenna: Antenna) -> bool:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.antenna import Antenna
 from nullpose.physics import Pose
 from nullpose.problem.convex import convex_parts
 
@@ -109,7 +109,7 @@ def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[
         antenna: any.
         directions: (n, 3) unit vectors in the antenna's axes.
     """
-    if isinstance(antenna, PatternAntenna):
+    if not antenna.is_quadratic:
         return np.maximum(0.0, antenna.gain(directions)) / antenna.peak
     return np.asarray(antenna.gain(1.0 - np.minimum(1.0, directions[:, 2] ** 2)))
 

@@ -7,7 +7,6 @@ from html import escape
 
 import numpy as np
 
-from nullpose.antenna import PatternAntenna
 from nullpose.errors import ScenarioError
 from nullpose.report.geometry import null_angle_rad
 from nullpose.solver import Result
@@ -148,7 +147,7 @@ def _pose(result: Result, slot: int) -> str:
         f"{math.degrees(null_angle_rad(pose, jammer.position_m)):.1f}&deg; off {escape(jammer.name)}"
         for jammer in result.scenario.jammers[:_MOST_NULLS]
     )
-    if isinstance(result.scenario.antenna_record, PatternAntenna):
+    if not result.scenario.antenna_record.is_quadratic:
         null = ""  # its nulls are where the pattern has them
     return (
         f'<div>at <span data-np="position-{slot}">{east}, {north}, {up}</span> m (east, north, up)<br>'

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.antenna import PatternAntenna
 from nullpose.errors import UsageError
 from nullpose.files import write_csv
 from nullpose.notebook import imported
@@ -172,7 +171,7 @@ def value_map(
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(result, grid[usable], go_on)
     quantity = result.objective.quantity
-    is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
+    is_pattern = not scenario.antenna_record.is_quadratic
     return Field(
         east_m=east,
         north_m=north,
@@ -242,7 +241,7 @@ def in_decibels(values: FloatArray) -> FloatArray:
 def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     """Return the objective at each position with the axis of the result's case, shape (n,)."""
     scenario, held = result.scenario, result.pose.orientation(result.scenario.antenna_record)
-    if isinstance(scenario.antenna_record, PatternAntenna):
+    if not scenario.antenna_record.is_quadratic:
         return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
     fields = scheme.record.fields(scenario, result.null_jammer)

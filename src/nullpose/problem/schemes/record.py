@@ -80,8 +80,6 @@ class SchemeRecord:
             return "the paper states it for a drone that receives, and here it transmits"
         if scenario.axis_band != (0.0, 1.0) and not self.any_airframe:
             return "it may ask for any antenna axis, and the airframe does not reach every one"
-        from nullpose.antenna import PatternAntenna  # and NumPy with it
-
-        if not self.any_antenna and isinstance(scenario.antenna_record, PatternAntenna):
+        if not self.any_antenna and not scenario.antenna_record.is_quadratic:
             return "it is stated for a dipole, and the drone's antenna has another pattern"
         return self.reason_against(scenario)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import Antenna, PatternAntenna
+from nullpose.antenna import Antenna
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
@@ -46,7 +46,7 @@ def pattern_surface_m(
     Returns:
         Array of shape ``(3, n, m)``, world frame, metres.
     """
-    if isinstance(antenna, PatternAntenna):
+    if not antenna.is_quadratic:
         local, _ = _directions(_RINGS, np.linspace(0.0, math.tau, _AROUND))
         gain = antenna.gain(np.moveaxis(local, 0, -1)) / antenna.peak
         turned: FloatArray = np.einsum("ck,kij->cij", pose.orientation(antenna), radius_m * gain * local)

@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from nullpose.antenna import PatternAntenna
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import element_positions
@@ -88,7 +87,7 @@ def draw_pose(solution: Result, width: str | None = None) -> Figure:
     )
     words = textwrap.fill(words, _LETTERS)
     stage = Stage(scenario=scenario, poses=(pose,), view=ALONE)
-    is_pattern = isinstance(scenario.antenna_record, PatternAntenna)
+    is_pattern = not scenario.antenna_record.is_quadratic
     look: dict[str, Any] = {"surface": _WHOLE if is_pattern else _SURFACE, "plan": True, "width": width}
     return draw_panels(stage, draw_dipole, head=f"{scenario.name}\n{words}", **look)
 
@@ -124,7 +123,7 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
     angles_deg = [math.degrees(null_angle_rad(pose, point.position_m)) for point in points]
     nulls = [f"{angle:.1f}° off {point.name}" for angle, point in zip(angles_deg, points, strict=True)]
     value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
-    is_dipole = not isinstance(scenario.antenna_record, PatternAntenna)
+    is_dipole = scenario.antenna_record.is_quadratic
     return f"{value}, null {', '.join(nulls)}" if nulls and is_dipole else value
 
 
@@ -139,7 +138,7 @@ def draw_dipole(axes: Any, stage: Stage, pose: Pose) -> None:
     radius_m, position = stage.view.pattern * stage.extent_m, pose.position_m
     reach = AXIS * radius_m * pose.antenna_axis
     antenna = stage.scenario.antenna_record
-    named = "antenna's z axis" if isinstance(antenna, PatternAntenna) else "antenna axis (null)"
+    named = "antenna's z axis" if not antenna.is_quadratic else "antenna axis (null)"
     look = {"linewidth": 1.8, "zorder": 6.5, "label": named}
     draw_line(axes, position - reach, position + reach, color=DRONE, **look)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)

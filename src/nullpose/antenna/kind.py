@@ -1,0 +1,30 @@
+"""What a kind of antenna states of itself to scenario files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
+
+from nullpose.antenna.pattern import PatternAntenna
+from nullpose.antenna.quadratic import QuadraticAntenna
+
+Antenna: TypeAlias = QuadraticAntenna | PatternAntenna
+"""Any antenna of the drone."""
+
+
+class AntennaKind(NamedTuple):
+    """A kind of antenna, as ``kind`` in the table ``[antenna]`` names it.
+
+    Args:
+        summary: what it is, for the schema of scenario files.
+        make: from the values of ``keys``, by name, to the antenna.
+        keys: of the table ``[antenna]`` that have a meaning for it, beside ``kind`` and ``gain_dbi``.
+        read: from the path of its file and the table to the keys that the file fills in; None where the kind
+            has no file.
+    """
+
+    summary: str
+    make: Callable[..., Antenna]
+    keys: tuple[str, ...] = ()
+    read: Callable[[Path, Mapping[str, Any]], dict[str, Any]] | None = None
