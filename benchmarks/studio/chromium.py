@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from nullpose.studio.eye import Eye
+import numpy as np
 
-__all__ = ["CERTIFIED", "on_screen", "opened"]
+__all__ = ["CERTIFIED", "on_screen", "opened", "pixels"]
 
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 _PROVED = "/(certified|proved) to/.test(document.querySelector('[data-np=status-0]')?.innerText)"
@@ -52,5 +53,25 @@ def on_screen(page: Any, camera: Any, point_m: Any) -> tuple[float, float]:
         point_m: (3,) metres.
     """
     box = page.locator("canvas").first.bounding_box()
-    x, y, _ = Eye.of(camera).pixels([point_m])[0]
+    x, y, _ = pixels(camera, [point_m])[0]
     return box["x"] + float(x), box["y"] + float(y)
+
+
+def pixels(camera: Any, points_m: Any) -> Any:
+    """Return where points are on a canvas, (n, 3): pixels to the right and down, and metres ahead.
+
+    Args:
+        camera: viser's.
+        points_m: (n, 3) metres.
+    """
+    ahead = np.subtract(camera.look_at, camera.position) / np.linalg.norm(
+        np.subtract(camera.look_at, camera.position)
+    )
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(right, ahead), ahead])
+    aside, up, depth = axes @ np.subtract(points_m, camera.position).T
+    scale = 0.5 * camera.image_height / math.tan(0.5 * camera.fov) / depth
+    return np.stack(
+        [0.5 * camera.image_width + scale * aside, 0.5 * camera.image_height - scale * up, depth], -1
+    )

@@ -153,7 +153,7 @@ class _Hand:
     def _load(self) -> None:
         scenario = load(_EXAMPLES / f"{self._rng.choice(_SCENES)}.toml")
         self._ours._change(lambda view: view.with_scenario(scenario, ""))
-        self._ours.sight.aim()
+        self._ours.aim()
 
 
 class _Records(logging.Handler):

@@ -1,8 +1,8 @@
 """Makes the loop that README shows; needs the extra ``studiotest`` and Chromium, and some minutes.
 
-Eight seconds of the paper's scene in the studio: the jammer's power rises from 1 to 100 times a node's, the
-jammer is dragged in an arc and back, and the boxes of the proof close on the drone. Each frame waits for the
-proof of its own scene, so that every number in it is certified.
+Some seconds of the paper's scene in the studio: the jammer's power rises from 1 to 100 times a node's, then
+the jammer is dragged in an arc and back. Each frame waits for the proof of its own scene:
+every number in it is certified.
 """
 
 from __future__ import annotations
@@ -23,31 +23,25 @@ from benchmarks.studio.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
 from nullpose.physics import rotation_world_from_body  # noqa: E402
-from nullpose.solver.proof_steps import proof_steps  # noqa: E402
-from nullpose.studio.proof_bar import step_bar  # noqa: E402
-from nullpose.studio.replay import BOXES, Replay, drawn_airspace_m  # noqa: E402
 from nullpose.studio.server import studio  # noqa: E402
 
 LOOP = ROOT / "docs" / "images" / "studio-loop.webp"
 WIDTH, HEIGHT = 960, 540
 VIEWPORT = {"width": WIDTH + 40, "height": HEIGHT}  # the folded panel is cut off
 EACH_MS = 80
-RISES, DRAGS, PROVES, HOLDS = 26, 40, 24, 10  # frames: 100 of 80 ms
+RISES, DRAGS, HOLDS = 26, 40, 6  # frames: 72 of 80 ms
 MOST_DB = 20.0
 TURN_RAD = np.radians(14.0)  # of the camera, forth and back
 QUALITY = 62
 NEARER = 0.92  # of the camera's distance
 ASIDE, ABOVE = 0.14, 0.05  # of the scene's size
-CLOSE = 0.3  # of the camera's distance, at the end of the proof
 MOST_BYTES = 4_000_000
 CAPTIONS = (  # until which frame
     (
         RISES,
         "1  The jammer M becomes 100 times as strong as a node. The drone turns its null, orange, to it.",
     ),
-    (RISES + DRAGS, "2  M is moved. Position and attitude follow; each pose is proved best."),
-    (RISES + DRAGS + PROVES, "3  The proof again: only inside the pink boxes may a better position be left."),
-    (RISES + DRAGS + PROVES + HOLDS, "No box is left: no pose is better by more than a millionth."),
+    (RISES + DRAGS + HOLDS, "2  M is moved. Position and attitude follow; each pose is proved best."),
 )
 CAPTION = """words => {
   let line = document.getElementById('loop-caption');
@@ -68,21 +62,16 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
     session, client = ours.session, ours._client
     start = np.array(session.view.scenario.jammers[0].position_m)
     look_at, eye = np.array(client.camera.look_at), np.array(client.camera.position)
-    total = RISES + DRAGS + PROVES + HOLDS
+    total = RISES + DRAGS + HOLDS
 
     def shot(frame: int) -> Image.Image:
         told = next(words for last, words in CAPTIONS if frame < last)
         page.evaluate(CAPTION, told)
         turn = rotation_world_from_body(0.0, 0.0, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
-        share = closeness(frame - RISES - DRAGS)
-        drone = session.current(session.view.case).result.pose.position_m
-        middle = look_at + share * (1.0 - CLOSE) * (drone - look_at)  # the drone stays where it is seen
         with client.atomic():
-            client.camera.position = middle + (1.0 - share * (1.0 - CLOSE)) * turn @ (eye - look_at)
-            client.camera.look_at = middle
-        page.wait_for_timeout(350)
-        ours.sight.arrange()
-        page.wait_for_timeout(350)
+            client.camera.position = look_at + turn @ (eye - look_at)
+            client.camera.look_at = look_at
+        page.wait_for_timeout(700)
         return Image.open(BytesIO(page.screenshot(clip={"x": 0, "y": 0, "width": WIDTH, "height": HEIGHT})))
 
     for i in range(RISES):
@@ -95,33 +84,8 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
         session.change(lambda view, place=place: view.moved(("jammers", 0), place))
         settle(page, session)
         yield shot(RISES + i)
-    yield from proof(ours, lambda i: shot(RISES + DRAGS + i))
-
-
-def closeness(frame: int) -> float:
-    """Return how near to the drone the camera is at a frame of the proof, from 0 to 1."""
-    there, back = frame / (0.6 * PROVES), (PROVES + HOLDS - 1 - frame) / (0.8 * HOLDS)
-    return float(0.5 - 0.5 * np.cos(np.pi * np.clip(min(there, back), 0.0, 1.0)))
-
-
-def proof(ours: Any, shot: Any) -> Iterator[Image.Image]:
-    """Yield the frames of the proof: its boxes close on the drone, whose pattern then comes back."""
-    answer = ours.session.current(ours.session.view.case)
-    steps = proof_steps(answer.result)
-    replay = Replay(ours._client.scene, drawn_airspace_m(answer.result.scenario))
-    ours.panel.pattern.value = False
-    ours._refresh()
-    for i in range(PROVES):
-        step = steps[round(i * (len(steps) - 1) / (PROVES - 1))]
-        replay.show(step)
-        ours._proof._step_bar = step_bar(answer.result, step, steps[-1])
-        ours._show_overlay()
-        yield shot(i)
-    ours._client.scene.remove_by_name(BOXES)
-    ours._proof._step_bar, ours.panel.pattern.value = "", True
-    ours._refresh()
     for i in range(HOLDS):
-        yield shot(PROVES + i)
+        yield shot(RISES + DRAGS + i)
 
 
 def nearer(client: Any, size_m: float) -> None:
@@ -152,8 +116,7 @@ def main() -> None:
         ours: Any = next(iter(running.pages.values()))
         ours._client.gui.main_panel.minimize()
         page.wait_for_timeout(3000)
-        ours.sight.aim()
-        ours.sight.enlarge(1.25)
+        ours.aim()
         nearer(ours._client, ours.stage.size_m)
         page.mouse.move(600, 20)
         page.wait_for_timeout(3000)

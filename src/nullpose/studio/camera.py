@@ -1,109 +1,100 @@
-"""Where the camera stands, and how far it sees."""
+"""Where the camera stands: as near as it can be with the scene on its canvas, and clear of the card."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.physics import Pose, rotation_world_from_body
+from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.studio.eye import Eye
-from nullpose.studio.scene import axis_texts, grid_m, scene_size_m
+from nullpose.studio.scene import grid_m, scene_size_m
 
-_FAR = 100.0  # sizes of the scene that the camera sees, which leaves room to move away from it
-_FROM = [(0.82, -0.52, 0.64), (-0.52, -0.82, 0.64), (0.52, 0.82, 0.64), (-0.82, 0.52, 0.64)]
-"""Ways to the camera; the first is taken that has the fewest points behind the drone."""
-
-_SOUTH = (0.0, -0.97, 0.64)
-"""Way to the camera that goes around."""
-
-_DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
-"""Its label and its pattern, from where it is, sizes of the scene."""
+FloatArray = NDArray[np.float64]
 
 CARD_PX = (352.0, 336.0)
-"""What the overlay covers of the canvas's upper left, for one case, pixels."""
+"""Width and height of the canvas's upper left corner that the card covers for one case, pixels."""
 
+_CANVAS_PX = (1000.0, 800.0)  # where none is known
+_AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
+_MARGIN = 0.88  # of half the canvas, which leaves space for labels
+_ROUNDS = 6  # of centring
+_FAR = 100.0  # sizes of the scene that the camera sees, so that it can be moved away
 _TALL = 0.08  # of a point with its label, sizes of the scene
+_DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
+"""Ends of the drone's label and pattern, from its position, sizes of the scene."""
 
 
-def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> Eye:
-    """Return what a camera sees after letting it look at the whole of a scene.
-
-    That is the points, the drone with its pattern and label, and the ground between them.
+def canvas_px(camera: Any) -> FloatArray:
+    """Return the width and the height of a camera's canvas, (2,) pixels.
 
     Args:
-        camera: of a page, or the one that pages begin with.
-        scenario: the scene.
-        pose: of the drone, if it is known.
+        camera: viser's.
     """
-    size_m, eye = scene_size_m(scenario), Eye.of(camera)
-    points, drone = _points_m(scenario), _drone_m(size_m, pose)
-    matter = np.vstack([_floor_m(scenario), points, drone])
-    eyes = [eye._replace(position_m=way, look_at_m=np.zeros(3)).fitted(matter) for way in _FROM]
-    eye = min(eyes, key=lambda one: _behind(one, points, drone))  # of the best ones the first
-    eye = _beside_card(eye, matter, np.vstack([points, drone]))
-    way_m = np.subtract(eye.look_at_m, eye.position_m)
-    # turned by hand, it goes around a point that is on the ground
-    eye = eye._replace(look_at_m=eye.position_m - way_m * np.asarray(eye.position_m)[2] / way_m[2])
-    camera.position, camera.look_at = eye.position_m, eye.look_at_m
+    size = getattr(camera, "image_width", 0), getattr(camera, "image_height", 0)
+    return np.array(size if all(size) else _CANVAS_PX, dtype=float)
+
+
+def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
+    """Point a camera at the whole of a scene: points, drone, and the ground between them.
+
+    The card covers nothing of it: where it would, the scene stands right of it or below it, whichever is
+    nearer.
+
+    Args:
+        camera: viser's.
+        scenario: the scene.
+        pose: of the drone, if there is one.
+    """
+    matter, size_m = _matter_m(scenario, pose), scene_size_m(scenario)
+    canvas, (right_of, below) = canvas_px(camera), CARD_PX
+    whole, *others = (
+        _fit(canvas, camera.fov, matter, corner) for corner in ((0.0, 0.0), (right_of, 0.0), (0.0, below))
+    )
+    is_covered = canvas[0] < 2.0 * right_of or np.any(np.all(whole.seen_px < CARD_PX, axis=1))
+    fit = min(others, key=lambda other: other.distance_m) if is_covered else whole
+    camera.position = fit.position_m
+    # on the ground, about which a hand turns it
+    camera.look_at = fit.position_m - _AHEAD * fit.position_m[2] / _AHEAD[2]
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     camera.near = 0.02 * size_m
     camera.far = _FAR * size_m
-    return eye
 
 
-def around(camera: Any, scenario: Scenario, pose: Pose | None = None) -> tuple[Eye, NDArray[np.float64]]:
-    """Return what a camera sees south of the drone, and the foot, (3,) metres, of the axis to turn it about.
+class _Fit(NamedTuple):
+    """A camera's position, its distance, and where it sees points: (n, 2) pixels to the right and down."""
 
-    On the whole way around, all points and the drone with its pattern are in the canvas.
-
-    Args:
-        camera: of a page.
-        scenario: the scene.
-        pose: of the drone, if it is known.
-    """
-    size_m, eye = scene_size_m(scenario), Eye.of(camera)
-    matter = np.vstack([_points_m(scenario), _drone_m(size_m, pose)])
-    foot = np.append((matter.mean(axis=0) if pose is None else pose.position_m)[:2], 0.0)
-    turns = [rotation_world_from_body(0.0, 0.0, angle) for angle in np.arange(0.0, math.tau, 0.26)]
-    ring = np.vstack([(matter - foot) @ turn.T for turn in turns])
-    eye = eye._replace(position_m=np.array(_SOUTH), look_at_m=np.zeros(3)).fitted(ring)
-    return _beside_card(eye, ring, _drone_m(size_m, pose) - foot), foot
+    position_m: FloatArray
+    distance_m: float
+    seen_px: FloatArray
 
 
-def _beside_card(eye: Eye, matter_m: NDArray[np.float64], clear_m: NDArray[np.float64]) -> Eye:
-    """Return a camera with all that matters beside the card if that would cover what is to be clear of it."""
-    covered = np.any(np.all(eye.pixels(clear_m)[:, :2] < CARD_PX, axis=1))
-    return eye.beside(matter_m, CARD_PX) if covered or eye.width_px < 2.0 * CARD_PX[0] else eye
+def _fit(canvas: FloatArray, fov_rad: float, points_m: FloatArray, corner_px: tuple[float, float]) -> _Fit:
+    """Find the nearest position with all points right of and below a corner."""
+    right = np.cross(_AHEAD, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    sides = np.stack([right, np.cross(right, _AHEAD)])
+    slope = 2.0 * math.tan(0.5 * fov_rad) / canvas[1]  # of a pixel, at a distance of one
+    half = 0.5 * _MARGIN * slope * (canvas - corner_px)
+    centre = 0.5 * slope * np.array(corner_px) * [1.0, -1.0]
+    middle = 0.5 * (points_m.min(axis=0) + points_m.max(axis=0))
+    for _ in range(_ROUNDS):
+        aside, depth = (points_m - middle) @ sides.T, (points_m - middle) @ _AHEAD[:, None]
+        distance_m = float(np.max(np.abs(aside - depth * centre) / half - depth))
+        seen = (aside + distance_m * centre) / (depth + distance_m)
+        off = 0.5 * (seen.min(axis=0) + seen.max(axis=0)) - centre
+        middle = middle + distance_m * off @ sides
+    position = middle - distance_m * (_AHEAD + centre @ sides)
+    return _Fit(position, distance_m, 0.5 * canvas + seen * [1.0, -1.0] / slope)
 
 
-def _points_m(scenario: Scenario) -> NDArray[np.float64]:
-    """Return where points and the upper ends of their labels are, (n, 3) metres."""
-    points = [one.position_m for one in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
-    return np.vstack([points, np.add(points, [0.0, 0.0, _TALL * scene_size_m(scenario)])])
-
-
-def _drone_m(size_m: float, pose: Pose | None) -> NDArray[np.float64]:
-    """Return where the drone's pattern and label end, (n, 3) metres; nothing without a pose."""
-    return np.empty((0, 3)) if pose is None else pose.position_m + size_m * np.array(_DRONE)
-
-
-def _floor_m(scenario: Scenario) -> NDArray[np.float64]:
-    """Return points, (n, 3) metres, around the ground's grid and the numbers beside it."""
-    (west, south), (east, north), _ = grid_m(scenario)
-    texts = [[x, y] for _, x, y in axis_texts(scenario)]
-    return np.insert([[west, south], [east, south], [east, north], [west, north], *texts], 2, 0.0, axis=1)
-
-
-def _behind(eye: Eye, points_m: NDArray[np.float64], drone_m: NDArray[np.float64]) -> int:
-    """Return how many points a camera sees behind the drone with its pattern."""
-    if not len(drone_m):
-        return 0
-    points, drone = eye.pixels(points_m), eye.pixels(drone_m)
-    low, high = drone.min(axis=0), drone.max(axis=0)
-    inside = np.all((low[:2] < points[:, :2]) & (points[:, :2] < high[:2]), axis=1)
-    return int(np.sum(inside & (points[:, 2] > low[2])))
+def _matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:
+    """Return the ends of points with labels, of the drone and of the ground's grid, (n, 3) metres."""
+    size_m, (low, high, _) = scene_size_m(scenario), grid_m(scenario)
+    points = [point.position_m for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
+    ground = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
+    drone = np.empty((0, 3)) if pose is None else pose.position_m + size_m * np.array(_DRONE)
+    return np.vstack([points, np.add(points, [0.0, 0.0, _TALL * size_m]), ground, drone])

@@ -8,8 +8,7 @@ from viser import SceneApi
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.colours import round_steps, scale_colours, scale_range
-from nullpose.studio.drawing import FLAT, add_lines
-from nullpose.studio.labels import Labels, Rank
+from nullpose.studio.drawing import FLAT, add_label, add_lines
 from nullpose.studio.look import LIGHT, Look
 from nullpose.study.value_map import Field
 
@@ -24,12 +23,11 @@ class Carpet:
 
     Args:
         scene: the page's scene.
-        labels: of the page.
         look: its colours.
     """
 
-    def __init__(self, scene: SceneApi, labels: Labels, look: Look = LIGHT) -> None:
-        self._scene, self._labels, self._look = scene, labels, look
+    def __init__(self, scene: SceneApi, look: Look = LIGHT) -> None:
+        self._scene, self._look = scene, look
 
     def show(self, field: Field) -> tuple[float, float]:
         """Return the ends of the scale after drawing a field in place of the one before.
@@ -59,17 +57,14 @@ class Carpet:
             add_lines(self._scene, "/map/contours", raised, self._look.contour, 1.3)
         levels = sorted({level for level, _ in contours})
         for level in levels[:: max(1, len(levels) // _MOST_LABELS)]:
-            points = np.concatenate([line for own, line in contours if own == level])
-            x, y = points[np.argmin(points[:, 1])]  # southmost, out of the way of what is in the middle
+            points = np.concatenate([line for each, line in contours if each == level])
+            x, y = points[np.argmax(points[:, 0])]  # eastmost: in front, beside the labels of the points
             name, text = f"/map/level-{level:g}", f"{level:g} {field.unit}".replace("-", MINUS)
-            self._labels.put(
-                name, text, (x, y, altitude_m), Rank.SCALE, scale=0.7, anchors=("center-center",)
-            )
+            add_label(self._scene, name, text, (x, y, altitude_m), 0.7, "center-center")
         return low, high
 
     def hide(self) -> None:
         """Take the field out of the scene."""
-        self._labels.drop("/map")
         self._scene.remove_by_name("/map")
 
 

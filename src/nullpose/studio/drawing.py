@@ -1,4 +1,4 @@
-"""What everything in a page's scene is drawn with: meshes without shadows, and lines."""
+"""What everything in a page's scene is drawn with: meshes without shadows, lines and labels."""
 
 from __future__ import annotations
 
@@ -75,6 +75,28 @@ def add_lines(
     points = np.asarray(segments_m, dtype=np.float32)
     colours = np.asarray(colour, dtype=np.uint8)
     return scene.add_line_segments(name, points, colours, thickness=thickness, thickness_units=units)
+
+
+def add_label(
+    scene: SceneApi,
+    name: str,
+    text: str,
+    position_m: ArrayLike,
+    scale: float = 0.9,
+    anchor: str = "bottom-center",
+) -> Any:
+    """Return the handle of a label added to a scene.
+
+    Args:
+        scene: the page's scene.
+        name: its place in the scene's tree.
+        text: what it says.
+        position_m: (3,) in the frame that it is part of, metres.
+        scale: of its letters.
+        anchor: the part of it that is at that place.
+    """
+    position = np.asarray(position_m, dtype=float)
+    return scene.add_label(name, text, position=position, font_screen_scale=scale, anchor=anchor)
 
 
 def put(handle: Any, **values: object) -> None:

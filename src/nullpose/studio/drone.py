@@ -15,8 +15,7 @@ from nullpose.report.numbers import fixed
 from nullpose.solver import Result
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import scale_colours
-from nullpose.studio.drawing import add_coloured_mesh, add_lines, add_mesh, put
-from nullpose.studio.labels import ANCHORS, Labels, Rank
+from nullpose.studio.drawing import add_coloured_mesh, add_label, add_lines, add_mesh, put
 from nullpose.studio.links import Links
 from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.meshes import (
@@ -39,8 +38,8 @@ _OPEN_RAD = math.radians(110.0)  # of the pattern, towards the camera
 _RINGS, _MOST_RINGS = 24, 60  # of the pattern from pole to pole: without a graphics card triangles take long
 _FAINT = 0.01  # gain over the largest: along an axis with more there is no null to point
 _BEAM_RAD = math.asin(math.sqrt(_FAINT))  # half the angle within which a dipole has less
-_LABEL_AT = (np.array([0.0, 0.0, 0.17]), np.array([0.0, 0.14, 0.0]))  # above, and to the right at first
-_ANCHORS = (ANCHORS, (ANCHORS[1], *ANCHORS))
+_LABEL_AT = (np.array([0.0, 0.0, 0.17]), np.array([0.0, 0.14, 0.0]))  # above, and to the right
+_ANCHORS = ("bottom-center", "center-left")
 
 
 class Drone:
@@ -48,13 +47,12 @@ class Drone:
 
     Args:
         scene: the page's scene.
-        labels: of the page.
         slot: 0 for the chosen case, 1 for the compared one.
         look: the page's colours.
     """
 
-    def __init__(self, scene: SceneApi, labels: Labels, slot: int, look: Look = LIGHT) -> None:
-        self._scene, self._labels, self._slot, self._look = scene, labels, slot, look
+    def __init__(self, scene: SceneApi, slot: int, look: Look = LIGHT) -> None:
+        self._scene, self._slot, self._look = scene, slot, look
         self._name = f"/drone-{'ab'[slot]}"
         self._parts: dict[str, Any] = {}
         self._built: tuple[Antenna, float] | None = None
@@ -96,10 +94,8 @@ class Drone:
         self._pose = pose
         self.face(eye_m)
         self._show_null(result, size_m)
-        place_m = here + size_m * _LABEL_AT[self._slot]
-        self._labels.put(
-            f"{self._name}/label", text, place_m, Rank.VALUE, scale=1.2, anchors=_ANCHORS[self._slot]
-        )
+        put(parts["label"], text=text)
+        parts["label"].position = here + size_m * _LABEL_AT[self._slot]
         parts["drop"].points = np.array([[here, [*here[:2], 0.0]]], dtype=np.float32)
         parts["links"].show(result, link_range_db)
 
@@ -121,21 +117,20 @@ class Drone:
         parts["null"].points = ends[None].astype(np.float32)
         parts["beam"].vertices = beam_mesh(pose.position_m, ends[1], _BEAM_RAD).vertices.astype(np.float32)
         has_null = _has_null(result.scenario.antenna_record)
-        for name in ("null", "beam"):
-            put(parts[name], visible=has_null)
-        if not has_null or self._slot == 1:
-            return
+        for name, is_shown in (("null", True), ("beam", True), ("angle", self._slot == 0)):
+            put(parts[name], visible=has_null and is_shown)
         angles = {
             one.name: math.degrees(null_angle_rad(pose, one.position_m)) for one in result.scenario.jammers
         }
         nearest = min(angles, key=lambda name: angles[name], default="")
-        text = f"null {fixed(angles[nearest], 1)}\u00b0 off {nearest}" if nearest else "null"
-        place_m = 0.35 * pose.position_m + 0.65 * ends[1]
-        self._labels.put(f"{self._name}/angle", text, place_m, Rank.NULL, anchors=ANCHORS[1:3])
+        put(
+            parts["angle"],
+            text=f"null {fixed(angles[nearest], 1)}\u00b0 off {nearest}" if nearest else "null",
+        )
+        parts["angle"].position = 0.35 * pose.position_m + 0.65 * ends[1]
 
     def hide(self) -> None:
         """Take the drone out of the scene."""
-        self._labels.drop(self._name)
         self._scene.remove_by_name(self._name)
         self._built = None
 
@@ -159,6 +154,8 @@ class Drone:
         lines: dict[str, tuple[ArrayLike, float]] = {"null": (look.null, 3.0), "drop": (look.drop, 1.2)}
         for line, (colour, width_px) in lines.items():
             self._parts[line] = add_lines(scene, f"{name}/{line}", np.zeros((1, 2, 3)), colour, width_px)
+        for label, scale, anchor in (("label", 1.2, _ANCHORS[slot]), ("angle", 0.9, "center-left")):
+            self._parts[label] = add_label(scene, f"{name}/{label}", "", np.zeros(3), scale, anchor)
         self._parts["links"] = Links(scene, name, look, size_m)
 
     def _add_pattern(self, name: str, antenna: Antenna, radius_m: float, towards_rad: float) -> None:

@@ -16,7 +16,6 @@ from nullpose.studio.look import Look
 from nullpose.studio.panel import Panel
 from nullpose.studio.picture import scene_png
 from nullpose.studio.session import Session
-from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import View
 
@@ -31,7 +30,6 @@ class Exchange:
         session: whose scene it is.
         panel: the page's panel.
         stage: what is drawn.
-        sight: the page's camera.
         look: the page's colours.
         change: how the view is changed.
     """
@@ -42,12 +40,11 @@ class Exchange:
         session: Session,
         panel: Panel,
         stage: Stage,
-        sight: Sight,
         look: Look,
         change: Change,
     ) -> None:
         self._client, self._session, self._panel, self._stage = client, session, panel, stage
-        self._sight, self._look, self._change = sight, look, change
+        self._look, self._change = look, change
         files: list[tuple[Any, str, Callable[[], bytes]]] = [
             (panel.save, "scenario.toml", partial(scenario_toml, session)),
             (panel.pose, "pose.json", partial(pose_json, session)),
@@ -74,9 +71,7 @@ class Exchange:
         def loaded(view: View) -> View:
             return view.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
-        if self._change(loaded, name=file.name):
-            self._sight.aimed = False
-        else:  # viser has said by now that the file has arrived
+        if not self._change(loaded, name=file.name):  # viser has said by now that the file has arrived
             told = "It arrived, but its faults are listed in the panel, and the scene is as it was."
             self._tell(f"{file.name} was not taken", told)
 

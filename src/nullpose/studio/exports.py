@@ -7,8 +7,6 @@ from io import BytesIO
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
-
 from nullpose.errors import UsageError
 from nullpose.studio.answer import Answer
 from nullpose.studio.drone import LINK_RANGE_DB
@@ -107,9 +105,7 @@ def scene_html(
         UsageError: the present scene is not solved yet.
     """
     from nullpose.studio.camera import aim
-    from nullpose.studio.eye import Eye
     from nullpose.studio.frame import look_html
-    from nullpose.studio.labels import Labels
     from nullpose.studio.opening import LOOPBACK, open_server, unannounced
     from nullpose.studio.overlay import overlay_html
     from nullpose.studio.stage import Stage
@@ -122,20 +118,19 @@ def scene_html(
         if camera is not None:
             first.position, first.look_at, first.fov = camera.position, camera.look_at, camera.fov
             first.up = camera.up_direction
-        labels = Labels(server.scene)
-        stage = Stage(server.scene, labels, session, look)
+        stage = Stage(server.scene, session, look)
         stage.link_range_db = link_range_db
         stage.show(first.position, chosen_map=chosen_map, pattern=pattern)
-        labels.arrange(Eye.of(first))
         page = str(server.scene.as_html(dark_mode=look.dark))
         ends = {"position": first.position, "look_at": first.look_at, "fov": first.fov}
-        phone = aim(SimpleNamespace(**ends, **_PHONE_PX), session.view.scenario, best.result.pose)
+        phone = SimpleNamespace(**ends, **_PHONE_PX)
+        aim(phone, session.view.scenario, best.result.pose)
     finally:
         with unannounced():
             server.stop()
     card = (
         f"{look_html()}<div id=np-overlay>{overlay_html(session, stage.scale)}</div>"
-        f"<script>{_ON_A_PHONE % tuple(np.array(phone[:2]).tolist())}</script>"
+        f"<script>{_ON_A_PHONE % (phone.position.tolist(), phone.look_at.tolist())}</script>"
         "<script>document.documentElement.style.setProperty('--np-height',"
         "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
     )

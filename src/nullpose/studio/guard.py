@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from functools import partial
 from http import HTTPStatus
 from ipaddress import ip_address
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import parse_qs
 
 from nullpose.studio.frame import framed
@@ -30,20 +30,8 @@ _log = logging.getLogger("nullpose.studio.requests")
 _log.addFilter(lambda record: record.getMessage() != "opening handshake failed")
 
 
-class Screen(NamedTuple):
-    """What a browser's page says of its screen.
-
-    Args:
-        dark: whether it prefers dark pages.
-        card: whether it draws with a graphics card.
-    """
-
-    dark: bool
-    card: bool
-
-
-SCREEN: ContextVar[Screen] = ContextVar("screen")
-"""That of the browser whose websocket the running task serves."""
+PREFERS_DARK: ContextVar[bool] = ContextVar("prefers_dark")
+"""Whether the browser whose websocket the running task serves prefers dark pages."""
 
 
 class Guard:
@@ -101,7 +89,7 @@ class Guard:
         if not hmac.compare_digest(given.get("token", [""])[0].encode(), self._token.encode()):
             return connection.respond(HTTPStatus.FORBIDDEN, _NO_TOKEN)
         if "Upgrade" in request.headers:  # this task goes on to serve the websocket
-            SCREEN.set(Screen(*(given.get(name) == ["1"] for name in Screen._fields)))
+            PREFERS_DARK.set(given.get("dark") == ["1"])
         if path == _ALIVE:
             response = connection.respond(HTTPStatus.OK, "")
         else:

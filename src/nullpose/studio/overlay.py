@@ -9,6 +9,7 @@ from typing import NamedTuple
 from nullpose.report.numbers import MINUS
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import css, scale_colours
+from nullpose.studio.proof_bar import proof_html
 from nullpose.studio.readout import status_look
 from nullpose.studio.session import Session
 from nullpose.study.value_map import Field
@@ -30,17 +31,18 @@ class Scale(NamedTuple):
     links_db: tuple[float, float]
 
 
-def overlay_html(session: Session, scale: Scale | None = None, bar: str = "") -> str:
+def overlay_html(session: Session, scale: Scale | None = None) -> str:
     """Return the card; its look is :func:`nullpose.studio.frame.look_html`.
 
     Args:
         session: whose.
         scale: the map that is shown, or None.
-        bar: what stands between the value and its bound, as HTML.
     """
     cases = "".join(_case_html(session, slot) for slot in range(len(session.view.cases)))
     colours = "" if scale is None else _scale_html(scale, session.current(session.view.case))
-    return f'<div data-np="overlay" data-version="{session.version}">{cases}{bar}{colours}</div>'
+    return (
+        f'<div data-np="overlay" data-version="{session.version}">{cases}{proof_html(session)}{colours}</div>'
+    )
 
 
 def _case_html(session: Session, slot: int) -> str:

@@ -15,8 +15,8 @@ from viser import ClientHandle
 from nullpose.errors import ScenarioError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
+from nullpose.studio.camera import aim, canvas_px
 from nullpose.studio.case import case_named
-from nullpose.studio.drawing import put
 from nullpose.studio.editor import Editor
 from nullpose.studio.edits import new_scenario
 from nullpose.studio.events import Event, Progress
@@ -25,11 +25,8 @@ from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.overlay import overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, by_hand
 from nullpose.studio.plot import power_plot_svg
-from nullpose.studio.present import Present
-from nullpose.studio.proof_view import ProofView
 from nullpose.studio.readout import failure_html, readout_html
 from nullpose.studio.session import Session
-from nullpose.studio.sight import Sight
 from nullpose.studio.stage import Stage
 from nullpose.studio.view import Key, View
 
@@ -48,7 +45,6 @@ class Page:
         scenario: the scene to begin with.
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
-        card: whether the browser draws with a graphics card.
     """
 
     def __init__(
@@ -58,7 +54,6 @@ class Page:
         text: str = "",
         *,
         dark: bool = False,
-        card: bool = False,
     ) -> None:
         self._client = client
         self._lock = threading.RLock()
@@ -66,22 +61,16 @@ class Page:
         self._gesture = 0
         self._slid_at = 0.0
         self._late: threading.Timer | None = None
+        self._is_presented = False
+        self._aimed: tuple[int, bool] | None = None
+        self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
         look = DARK if dark else LIGHT
         self.session = Session(scenario, text, on_view=self._view_changed, on_event=self._told)
         self.panel = Panel(client.gui, dark=dark)
-        self.sight = Sight(
-            client,
-            self.session,
-            self._lock,
-            is_dragging=lambda: self.stage.ground.dragged is not None,
-            face=lambda eye_m: self.stage.face(eye_m),
-        )
-        self.stage = Stage(client.scene, self.sight.labels, self.session, look, self._dragged)
+        self.stage = Stage(client.scene, self.session, look, self._dragged)
         own = client, self.session, self.panel
         self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
-        self._exchange = Exchange(*own, self.stage, self.sight, look, self._change)
-        self.present = Present(client, self.sight)
-        self._proof = ProofView(*own, self._lock, self._refresh, self._show_overlay, card=card)
+        self._exchange = Exchange(*own, self.stage, look, self._change)
         self._listen()
         self.session.start()
 
@@ -90,9 +79,6 @@ class Page:
         with self._lock:
             self._open = False
             self._not_late()
-            self._proof.stop()
-            self.sight.close()
-        self.present.close()
         self.session.close()
 
     def _listen(self) -> None:
@@ -107,9 +93,9 @@ class Page:
         buttons: list[tuple[Any, Callable[[], object]]] = [
             (panel.undo, session.undo),
             (panel.redo, session.redo),
-            (panel.aim, self.sight.aim),
+            (panel.aim, self.aim),
             (panel.new, self._new),
-            (panel.present, self.present.toggle),
+            (panel.present, self.present),
         ]
         for control, action in controls:
             control.on_update(by_hand(action))
@@ -120,13 +106,13 @@ class Page:
             ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
             ("Delete what is selected", self._editor.delete, "delete", None),
             ("End adding, select nothing", lambda: self._editor.begin(""), "escape", None),
-            ("Begin or end presenting", self.present.toggle, "P", None),
-            ("End presenting", self.present.end, "escape", None),
+            ("Begin or end presenting", self.present, "P", None),
+            ("End presenting", lambda: self.present(False), "escape", None),
         ]
         for label, act, key, modifier in commands:
             command = self._client.gui.add_command(label, hotkey=key, modifier=modifier)
             command.on_trigger(lambda event, act=act: act())
-        self._client.camera.on_update(self.sight.looked)
+        self._client.camera.on_update(self._looked)
 
     def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
         """Return whether a change was made; if not, its faults are shown."""
@@ -165,7 +151,36 @@ class Page:
 
     def _new(self) -> None:
         self._change(lambda view: view.with_scenario(new_scenario(), ""))
-        self.sight.aimed = False
+
+    def aim(self) -> None:
+        """Let the camera look at the whole of the scene."""
+        view, camera = self.session.view, self._client.camera
+        answer = self.session.current(view.case)
+        with self._client.atomic():
+            aim(camera, view.scenario, answer.result.pose if answer else None)
+        self._aimed = view.opened, answer is not None
+        self._fit = canvas_px(camera), np.array(camera.position)
+
+    async def _looked(self, _: object) -> None:
+        """Aim again if only the canvas has another size, and turn the pattern towards the camera."""
+        camera = self._client.camera
+        if self._fit is not None:
+            is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
+            if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
+                self.aim()
+        self.stage.face(camera.position)
+
+    def present(self, begin: bool | None = None) -> None:
+        """Fold the panel, or unfold it.
+
+        Args:
+            begin: whether it is to be folded; None for the other of the two.
+        """
+        is_presented = self._is_presented
+        self._is_presented = not is_presented if begin is None else begin
+        if self._is_presented != is_presented:
+            panel = self._client.gui.main_panel
+            (panel.minimize if self._is_presented else panel.expand)()
 
     def _told(self, event: Event) -> None:
         if not isinstance(event, Progress):
@@ -175,11 +190,10 @@ class Page:
             self._show_overlay()
 
     def _show_overlay(self) -> None:
-        self.panel.overlay.content = overlay_html(self.session, self.stage.scale, self._proof.bar)
+        self.panel.overlay.content = overlay_html(self.session, self.stage.scale)
 
     def _view_changed(self) -> None:
         with self._lock:
-            self._proof.stop()
             if self.stage.ground.dragged is None:
                 self._refresh()
             elif self._late is None and self._open:  # each step of a drag has one picture: with its answer
@@ -213,16 +227,15 @@ class Page:
 
     def _refresh_scene(self) -> None:
         panel = self.panel
-        pattern = panel.pattern.value and not self._proof.is_playing
-        if not self.sight.aimed:
-            self.sight.aim()  # first, since the pattern is open towards the camera
+        view = self.session.view
+        if self._aimed != (view.opened, True):
+            self.aim()  # first, since the pattern is open towards the camera
         chosen = {
             "chosen_map": panel.map.value,
             "selected": self._editor.selected,
             "freed": panel.freed.value,
         }
-        self.stage.show(self._client.camera.position, **chosen, pattern=pattern)
-        self.sight.arrange()
+        self.stage.show(self._client.camera.position, **chosen, pattern=panel.pattern.value)
 
     def _refresh_panel(self) -> None:
         session, view, panel = self.session, self.session.view, self.panel
@@ -239,6 +252,5 @@ class Page:
             value=answer.shown_value if answer and at_rest else None,
             unit=Quantity.of(view.scenario).unit,
         )
-        put(panel.replay, disabled=not self._proof.can_play)
         panel.undo.disabled = not session.history.past
         panel.redo.disabled = not session.history.future

@@ -87,17 +87,11 @@ _TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
             "Let points be dragged up and down too.",
             {"initial_value": False},
         ),
-        "replay": (
-            "button",
-            "Replay the proof",
-            "Show which boxes of positions are left as the bound comes down to the value; again: stop.",
-            {"disabled": True},
-        ),
         "aim": ("button", "Reset the camera", "Look at the whole scene again.", {}),
         "present": (
             "button",
             "Present",
-            "Fold the panel and let the camera go round (key: P); again, or Escape: stop.",
+            "Fold the panel (key: P); again, or Escape: unfold it.",
             {},
         ),
     },

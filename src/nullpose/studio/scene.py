@@ -15,8 +15,7 @@ from nullpose.report.numbers import MINUS
 from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.colours import round_steps
-from nullpose.studio.drawing import add_lines, add_mesh, put
-from nullpose.studio.labels import ANCHORS, Labels, Rank
+from nullpose.studio.drawing import add_label, add_lines, add_mesh, put
 from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.meshes import MARKS, ellipsoid_mesh, prism_edges, prism_mesh
 from nullpose.studio.view import POWER_DB, Key, View
@@ -87,7 +86,6 @@ class Ground:
 
     Args:
         scene: the page's scene.
-        labels: of the page.
         on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
             whose points are not dragged.
         look: the page's colours.
@@ -96,13 +94,14 @@ class Ground:
         dragged: the point that is being dragged, whose place the browser sets; or None.
     """
 
-    def __init__(self, scene: SceneApi, labels: Labels, on_drag: OnDrag | None, look: Look = LIGHT) -> None:
-        self._scene, self._labels, self._on_drag, self._look = scene, labels, on_drag, look
+    def __init__(self, scene: SceneApi, on_drag: OnDrag | None, look: Look = LIGHT) -> None:
+        self._scene, self._on_drag, self._look = scene, on_drag, look
         self._ground: object = None
         self._points: dict[Key, GroundPoint] = {}
         self._drawn: dict[Key, object] = {}
         self._handles: dict[Key, Any] = {}
         self._rings: dict[Key, Any] = {}
+        self._labels: dict[Key, Any] = {}
         self.dragged: Key | None = None
 
     def show(
@@ -130,7 +129,6 @@ class Ground:
         if ground != self._ground:
             self._ground = ground
             for part in ("/ground", "/airspace"):
-                self._labels.drop(part)
                 self._scene.remove_by_name(part)
             self._draw_grid(view.scenario)
             self._draw_airspace(view.scenario)
@@ -148,26 +146,22 @@ class Ground:
             handle = self._handles[key]
             if key != self.dragged:
                 handle.position = point.position_m
-            self._label(key, point, view, answer, size_m)
+            self._label(key, point, view, answer)
             if key in self._rings:
                 self._show_rings(key, view, size_m)
 
-    def _label(self, key: Key, point: GroundPoint, view: View, answer: Answer | None, size_m: float) -> None:
+    def _label(self, key: Key, point: GroundPoint, view: View, answer: Answer | None) -> None:
         """Write a point's name over it, and a node's SINR."""
-        text, rank = point.name, Rank.JAMMER if key[0] == "jammers" else Rank.POINT
+        text, is_worst = point.name, False
         if answer is not None and key[0] == "nodes":
             nodes, worst = len(view.scenario.nodes), answer.worst_nodes
-            rank = Rank.WORST if point.name in worst else rank
-            if rank is Rank.WORST or nodes <= _CROWD:
+            is_worst = point.name in worst
+            if is_worst or nodes <= _CROWD:
                 text += f" {signed(answer.result.links[key[1]].sinr_db)} dB"
-            if rank is Rank.WORST and len(worst) < nodes:
+            if is_worst and len(worst) < nodes:
                 text += ", worst"
-        offset_m = np.array([0.0, 0.0, 0.062 * size_m])
-        scale = 1.1 if rank <= Rank.JAMMER else 0.9
-        place_m = point.position_m + offset_m
-        self._labels.put(
-            f"{_name(key)}/label", text, place_m, rank, scale=scale, anchors=ANCHORS, offset_m=offset_m
-        )
+        scale = 1.1 if is_worst or key[0] == "jammers" else 0.9
+        put(self._labels[key], text=text, font_screen_scale=scale)
 
     def _show_rings(self, key: Key, view: View, size_m: float) -> None:
         """Put a jammer's rings on the ground, the larger the more power it has over the nodes."""
@@ -183,6 +177,7 @@ class Ground:
         name, colour, point = _name(key), self._look.kinds[key[0]], self._points[key]
         mark = MARKS[key[0]].placed(0.022 * size_m)
         add_mesh(self._scene, f"{name}/mark", mark, colour, flat_shading=True)
+        self._labels[key] = add_label(self._scene, f"{name}/label", "", (0.0, 0.0, 0.062 * size_m))
         if keep_out_m > 0.0:  # wires: what is see-through below the map would be hidden by it
             keep_out = ellipsoid_mesh(keep_out_m * np.eye(3), 6, 10)
             add_mesh(self._scene, f"{name}/keep-out", keep_out, self._look.wire, wireframe=True)
@@ -221,9 +216,9 @@ class Ground:
 
     def _remove(self, key: Key) -> None:
         """Take a point with all that is drawn of it out of the scene."""
-        self._labels.drop(f"{_name(key)}/")
         self._scene.remove_by_name(_name(key))
         self._rings.pop(key, None)
+        self._labels.pop(key, None)
 
     def _draw_grid(self, scenario: Scenario) -> None:
         low, high, step_m = grid_m(scenario)
@@ -234,7 +229,7 @@ class Ground:
         for i, (text, x, y) in enumerate(axis_texts(scenario)):
             name, place_m = f"/ground/tick-{i}", (x, y, 0.0)
             text = text.replace("-", MINUS)
-            self._labels.put(name, text, place_m, Rank.SCALE, scale=0.8, anchors=("center-center",))
+            add_label(self._scene, name, text, place_m, 0.8, "center-center")
 
     def _draw_airspace(self, scenario: Scenario) -> None:
         airspace = scenario.airspace
@@ -256,9 +251,7 @@ class Ground:
             add_mesh(self._scene, f"/airspace/zone-{i}", floor, colour, opacity=0.25)
             edges = prism_edges(outline, low_m, high_m)
             add_lines(self._scene, f"/airspace/zone-edges-{i}", edges, colour, 1.8)
-            self._labels.put(
-                f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top, Rank.ZONE, anchors=ANCHORS
-            )
+            add_label(self._scene, f"/airspace/zone-label-{i}", f"no-fly {zone.name}", top)
 
 
 def _circle() -> FloatArray:

@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from nullpose.scenario import Scenario
-from nullpose.studio.guard import SCREEN, Screen
+from nullpose.studio.guard import PREFERS_DARK
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
 
 if TYPE_CHECKING:
@@ -62,18 +62,18 @@ class Studio:
             self._server.stop()
 
     async def _connect(self, client: ClientHandle) -> None:
-        # the screen is known here, in the websocket's task, but to make a page would hold up all others
-        arguments = (client, SCREEN.get())
+        # the preference is known here, in the websocket's task, but to make a page would hold up all others
+        arguments = (client, PREFERS_DARK.get())
         threading.Thread(target=self._serve, args=arguments, name="nullpose-studio-page", daemon=True).start()
 
-    def _serve(self, client: ClientHandle, screen: Screen) -> None:
+    def _serve(self, client: ClientHandle, dark: bool) -> None:
         from nullpose.studio.page import Page
 
         if not self._places.acquire(timeout=_RELOAD_S):
             client.add_notification("Not opened", _FULL, color="red")
             return
         try:
-            page = Page(client, self._scenario, self._text, dark=screen.dark, card=screen.card)
+            page = Page(client, self._scenario, self._text, dark=dark)
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")

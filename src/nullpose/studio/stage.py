@@ -9,7 +9,6 @@ from viser import SceneApi
 from nullpose.studio.carpet import Carpet
 from nullpose.studio.drone import LINK_RANGE_DB, Drone
 from nullpose.studio.field_map import MAPS, FieldMap
-from nullpose.studio.labels import Labels
 from nullpose.studio.look import Look
 from nullpose.studio.overlay import Scale
 from nullpose.studio.readout import drone_text
@@ -25,7 +24,6 @@ class Stage:
 
     Args:
         scene: of viser's.
-        labels: in that scene.
         session: whose.
         look: the colours.
         on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
@@ -41,15 +39,14 @@ class Stage:
     def __init__(
         self,
         scene: SceneApi,
-        labels: Labels,
         session: Session,
         look: Look,
         on_drag: OnDrag | None = None,
     ) -> None:
         self._session = session
-        self.ground = Ground(scene, labels, on_drag, look)
-        self._carpet = Carpet(scene, labels, look)
-        self._drones = [Drone(scene, labels, slot, look) for slot in (0, 1)]
+        self.ground = Ground(scene, on_drag, look)
+        self._carpet = Carpet(scene, look)
+        self._drones = [Drone(scene, slot, look) for slot in (0, 1)]
         self._map_shown: tuple[FieldMap | None, str] = (None, "")
         self.scale: Scale | None = None
         self.size_m = np.inf

@@ -40,12 +40,14 @@ class View:
         case: how its pose is chosen.
         compared: a second case to set beside it, or None.
         text: of the file that the scenario is from, which may be out of date; empty without a file.
+        opened: how many other scenes were opened before this one.
     """
 
     scenario: Scenario
     case: Case = OPTIMUM
     compared: Case | None = None
     text: str = ""
+    opened: int = 0
 
     @property
     def cases(self) -> tuple[Case, ...]:
@@ -169,8 +171,9 @@ class View:
         allowed = cases_of(scenario)
         case = self.case if self.case in allowed else allowed[0]
         compared = self.compared if self.compared in allowed and self.compared != case else None
-        kept = self.text if text is None else text
-        return View(scenario=scenario, case=case, compared=compared, text=kept)
+        if text is None:
+            return replace(self, scenario=scenario, case=case, compared=compared)
+        return View(scenario=scenario, case=case, compared=compared, text=text, opened=self.opened + 1)
 
     @property
     def written(self) -> View:

@@ -15,7 +15,6 @@ from nullpose.solver import Result
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.drone import Drone
-from nullpose.studio.labels import Labels
 from nullpose.studio.opening import LOOPBACK, open_server
 
 PAPER = load(Path(__file__).parents[3] / "examples" / "paper.toml")
@@ -26,7 +25,7 @@ ANGLE = st.floats(-3.0, 3.0)
 def drone() -> Iterator[Drone]:
     """A drone in a scene that no browser shows."""
     server, _ = open_server(LOOPBACK, 0)
-    yield Drone(server.scene, Labels(server.scene), 0)
+    yield Drone(server.scene, 0)
     server.stop()
 
 

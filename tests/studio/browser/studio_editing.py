@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.studio.chromium import pixels
 from playwright.sync_api import Locator, Page
 
 from nullpose import load, solve
-from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
 
@@ -33,7 +33,7 @@ class Hand:
     def _screen(self, point_m: Any) -> tuple[float, float]:
         canvas = self.page.locator("canvas").first.bounding_box()
         assert canvas is not None
-        right, down, _ = Eye.of(self.ours._client.camera).pixels([point_m])[0]
+        right, down, _ = pixels(self.ours._client.camera, [point_m])[0]
         x, y = canvas["x"] + float(right), canvas["y"] + float(down)
         assert canvas["x"] < x < canvas["x"] + canvas["width"], "it is out of sight"
         assert canvas["y"] < y < canvas["y"] + canvas["height"], "it is out of sight"
@@ -91,7 +91,7 @@ def hand(page: Page, session: Session, running: Studio) -> Hand:
     page.mouse.move(400, 20)
     hand = Hand(page, next(one for one in running.pages.values() if one.session is session))
     page.keyboard.press("Escape")
-    hand.ours.sight.aim()  # another test may have turned the camera
+    hand.ours.aim()  # another test may have turned the camera
     page.wait_for_timeout(1000)
     return hand
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.studio.chromium import pixels
 from matplotlib.image import imread
 from numpy.typing import NDArray
 from playwright.sync_api import Page
@@ -21,7 +22,6 @@ from nullpose import load, solve
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Scenario
 from nullpose.studio.case import case_named
-from nullpose.studio.eye import Eye
 from nullpose.studio.field_map import MAPS
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
@@ -91,10 +91,10 @@ def _pixels(page: Page) -> NDArray[np.float64]:
     return np.asarray(picture, dtype=float)
 
 
-def _around(pixels: NDArray[np.float64], eye: Eye, point_m: Any, reach_px: int) -> NDArray[np.float64]:
+def _around(picture: NDArray[np.float64], camera: Any, point_m: Any, reach_px: int) -> NDArray[np.float64]:
     """Returns the pixels, (n, 3), around a point of the scene."""
-    x, y, _ = eye.pixels([point_m])[0].round().astype(int)
-    window = pixels[max(0, y - reach_px) : y + reach_px + 1, max(0, x - reach_px) : x + reach_px + 1]
+    x, y, _ = pixels(camera, [point_m])[0].round().astype(int)
+    window = picture[max(0, y - reach_px) : y + reach_px + 1, max(0, x - reach_px) : x + reach_px + 1]
     return window.reshape(-1, 3)
 
 
@@ -134,14 +134,14 @@ def test_a_scene_of_a_kilometre_is_drawn(
     scenario = _of_a_kilometre(paper)
     shown(View(scenario=scenario))
     page.wait_for_timeout(2.0 * AFTER_A_SECOND)
-    pixels, eye = _pixels(page), Eye.of(ours._client.camera)
+    picture, camera = _pixels(page), ours._client.camera
     for node in scenario.nodes:
-        assert _is_blue(_around(pixels, eye, node.position_m, 10)).sum() > 10
-    assert _is_orange(_around(pixels, eye, scenario.jammers[0].position_m, 10)).sum() > 10
+        assert _is_blue(_around(picture, camera, node.position_m, 10)).sum() > 10
+    assert _is_orange(_around(picture, camera, scenario.jammers[0].position_m, 10)).sum() > 10
     field = ours.session.field_map.footprint
     inside = slice(len(field.east_m) // 4, -len(field.east_m) // 4, 3)
     ground = [(east, north, 0.0) for east in field.east_m[inside] for north in field.north_m[inside]]
-    tints = [np.ptp(np.median(_around(pixels, eye, one, 1), axis=0)) for one in ground]
+    tints = [np.ptp(np.median(_around(picture, camera, one, 1), axis=0)) for one in ground]
     assert np.mean(np.array(tints) > 0.03) > 0.8
 
     page.get_by_role("tab", name="Files").click()
@@ -231,14 +231,14 @@ def test_a_link_has_the_legends_colour(
     page.wait_for_timeout(AFTER_A_SECOND)
     answer = session.current(session.view.case)
     assert answer is not None
-    pixels, eye = _pixels(page), Eye.of(ours._client.camera)
+    picture, camera = _pixels(page), ours._client.camera
     for link, node in zip(answer.result.links, session.view.scenario.nodes, strict=True):
         share = np.clip((link.sinr_db - low) / (high - low), 0.0, 1.0)
         legend = [
             np.interp(share, np.linspace(0.0, 1.0, len(stops)), one) / 255 for one in np.transpose(stops)
         ]
         way = np.linspace(node.position_m, answer.result.pose.position_m, 60)[12:30]
-        far = [np.abs(_around(pixels, eye, point, 2) - legend).max(axis=1).min() for point in way]
+        far = [np.abs(_around(picture, camera, point, 2) - legend).max(axis=1).min() for point in way]
         assert np.median(far) < 0.05, f"{link.node}: {far}"
 
 

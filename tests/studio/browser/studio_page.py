@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.studio.chromium import pixels
 from matplotlib.image import imread
 from playwright.sync_api import Page
 from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
 from nullpose.solver import Scheme
-from nullpose.studio.eye import Eye
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
 
@@ -50,7 +50,7 @@ def _on_screen(page: Page, camera: Any, point_m: Any) -> tuple[float, float]:
     """Return where a point of the scene is on the canvas, from the camera as the server knows it."""
     canvas = page.locator("canvas").first.bounding_box()
     assert canvas is not None
-    x, y, _ = Eye.of(camera).pixels([point_m])[0]
+    x, y, _ = pixels(camera, [point_m])[0]
     return canvas["x"] + float(x), canvas["y"] + float(y)
 
 
@@ -292,27 +292,14 @@ def test_the_pattern_opens_towards_the_camera(page: Page, session: Session, runn
         assert abs(np.arctan2(towards @ y, towards @ x)) < 0.1
 
 
-def test_presenting_folds_the_panel_and_goes_round(page: Page, session: Session, running: Studio) -> None:
-    """P begins it and Escape ends it; the drone stays where it is on the screen, from the same distance."""
-    ours = next(one for one in running.pages.values() if one.session is session)
-    camera = ours._client.camera
-    answer = session.current(session.view.case)
-    assert answer is not None
-    here = answer.result.pose.position_m
+def test_presenting_folds_the_panel(page: Page, session: Session) -> None:
+    """P begins it and Escape ends it; the card stays."""
     page.mouse.click(400, 20)
     page.keyboard.press("p")
-    page.wait_for_timeout(3000)
-    assert not page.get_by_role("tab", name="Files").is_visible()
+    page.get_by_role("tab", name="Files").wait_for(state="hidden")
     assert page.locator("#np-overlay").is_visible()
-    before, seen = np.array(camera.position), Eye.of(camera).pixels([here])[0]
-    page.wait_for_timeout(2000)
-    after = np.array(camera.position)
-    assert np.linalg.norm(after - before) > 0.05 * np.linalg.norm(before - here)
-    assert np.linalg.norm(after - here) == pytest.approx(np.linalg.norm(before - here), rel=1e-3)
-    assert Eye.of(camera).pixels([here])[0] == pytest.approx(seen, rel=1e-2)
     page.keyboard.press("Escape")
     page.get_by_role("tab", name="Files").wait_for()
-    assert not ours.present.is_on
 
 
 def test_a_picture_of_the_scene_is_exported(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.studio.chromium import pixels
 from matplotlib.image import imread
 from playwright.sync_api import Browser
 
@@ -93,7 +94,8 @@ def test_on_a_phone_the_drone_is_in_the_frame(
     camera = SimpleNamespace(
         position=np.ones(3), look_at=np.zeros(3), fov=1.309, image_width=390, image_height=844
     )
-    x, y, _ = aim(camera, result.scenario, result.pose).pixels([result.pose.position_m])[0]
+    aim(camera, result.scenario, result.pose)
+    x, y, _ = pixels(camera, [result.pose.position_m])[0]
     picture = imread(io.BytesIO(page.screenshot()))[..., :3]
     drone = picture[int(y) - 6 : int(y) + 7, int(x) - 6 : int(x) + 7]
     assert y > CARD_PX[1]

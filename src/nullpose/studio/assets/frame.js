@@ -15,26 +15,13 @@
   const token = query.get("token");
 
   function address(websocket) {
-    for (const name of ["dark", "card", "websocket"]) query.delete(name);
+    for (const name of ["dark", "websocket"]) query.delete(name);
     if (websocket) query.set("websocket", websocket);
     history.replaceState(null, "", `?${query}`);
   }
 
-  function isDrawnByCard() {
-    const context = document.createElement("canvas").getContext("webgl2");
-    if (!context) return false;
-    let name = context.getParameter(context.RENDERER);
-    if (name === "WebKit WebGL") { // what Chromium calls all of them, until it is asked for more
-      const more = context.getExtension("WEBGL_debug_renderer_info");
-      name = more ? context.getParameter(more.UNMASKED_RENDERER_WEBGL) : "software";
-    }
-    context.getExtension("WEBGL_lose_context")?.loseContext();
-    return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
-  }
-
   const own = new URLSearchParams({ token });
   if (matchMedia("(prefers-color-scheme: dark)").matches) own.set("dark", "1");
-  if (isDrawnByCard()) own.set("card", "1");
   address(`ws://${location.host}/?${own}`);
 
   const overlay = document.createElement("div");
