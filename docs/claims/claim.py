@@ -8,7 +8,7 @@ from typing import Any
 
 from claims.study import JammingStudy
 from nullpose.report.certainty import Certainty
-from nullpose.report.numbers import short
+from nullpose.report.numbers import rounded_up
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +74,7 @@ class Claim:
         return (
             f"{rests_on.values} values: {rests_on.certified} certified, {rests_on.gap_not_reached} with a "
             f"bound outside the requested gap, {rests_on.best_found} best found without a bound; largest "
-            f"relative gap {'none' if gap is None else short(gap)}"
+            f"relative gap {'none' if gap is None else rounded_up(gap)}"
         )
 
     @property

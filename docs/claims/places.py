@@ -19,7 +19,7 @@ from claims.study import (
 from nullpose.physics import received_power_w, to_db
 from nullpose.problem.schemes import Scheme
 from nullpose.report.geometry import distance_m, null_angle_rad
-from nullpose.report.numbers import at_most
+from nullpose.report.numbers import rounded_up
 
 POINTED_DEG = 1.0
 ABOVE_M = 0.1
@@ -136,7 +136,7 @@ def equidistant(study: JammingStudy) -> Measured:
         f"{max(as_printed['largest_distance_difference_m'], NOISE):.1g} m.",
         "evidence": {"levels": levels, "as_printed": as_printed},
         "proved": "At P_M/P = 3 no equidistant position reaches more than "
-        f"{at_most(bound_db(study.equidistant_at(_GAIN, 3.0)), 5)} dB, and the position found reaches "
+        f"{rounded_up(bound_db(study.equidistant_at(_GAIN, 3.0)), 5)} dB, and the position found reaches "
         f"{at_least(three['best_db'], 5)} dB. At each of the {len(failing)} swept levels above "
         f"{limit or 0.0:.3g} the best position is ahead of every equidistant one by at least "
         f"{at_least(proved_db)} dB.",

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from nullpose.paper.printed import PrintedPoint, search_as_printed
 from nullpose.paper.reproduce import Reproduction
 from nullpose.paper.scene import JAMMER_POWER
-from nullpose.report.numbers import at_most
+from nullpose.report.numbers import rounded_up
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study import SweepRow, sweep
 
@@ -201,4 +201,4 @@ def at_least(number: float, digits: int = 2) -> str:
         number: any.
         digits: how many.
     """
-    return f"{-float(at_most(-number, digits)):.{digits}g}"
+    return f"{-float(rounded_up(-number, digits)):.{digits}g}"

@@ -23,7 +23,7 @@ from claims.study import (
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.problem.schemes import Scheme
-from nullpose.report.numbers import at_most
+from nullpose.report.numbers import rounded_up
 
 COINCIDE_DB = 0.01
 CONSTANT_DB = 1e-6
@@ -63,7 +63,7 @@ def strong_jamming(study: JammingStudy) -> Measured:
     most_db = study.lead(_OPTIMUM, _NULL, limit or strongest).most_db
     return measured | {
         "finding": f"{measured['finding']} It is within {COINCIDE_DB} dB from {level_words(limit)} on.",
-        "proved": f"{measured['proved']}, and at most {at_most(most_db, 5)} dB at every power from "
+        "proved": f"{measured['proved']}, and at most {rounded_up(most_db, 5)} dB at every power from "
         f"{limit or strongest:.3g} on, between the swept ones too: more jamming never raises the optimum, "
         "and does not touch zero interference.",
         "holds_from": limit,
@@ -100,7 +100,7 @@ def _approach(study: JammingStudy, scheme: Scheme, end: float, levels: Sequence[
         f"optimum. Between P_M/P = {levels[0]:g} and {levels[1]:g} the shortfall goes as "
         f"(P_M/P)^{slope:.2f}, so the two coincide exactly only in the limit.",
         "evidence": {"scheme": scheme, "exponent_of_the_shortfall": slope, "levels": rows},
-        "proved": f"The true shortfall is at most {at_most(lead.most_db)} dB at P_M/P = {end:g}",
+        "proved": f"The true shortfall is at most {rounded_up(lead.most_db)} dB at P_M/P = {end:g}",
     }
 
 
@@ -133,8 +133,8 @@ def zero_interference_constant(study: JammingStudy) -> Measured:
             "position_m": positions_m[0].tolist(),
             "position_spread_m": spread_m,
         },
-        "proved": f"The true values at the {len(rows)} levels differ by at most {at_most(most_db)} dB. That "
-        "they do not differ at all, at any power, needs no solver: with the null on the only jammer its "
+        "proved": f"The true values at the {len(rows)} levels differ by at most {rounded_up(most_db)} dB. "
+        "That they do not differ at all, at any power, needs no solver: with the null on the only jammer its "
         "power drops out of the ratio (eq. 3.2).",
     }
 
@@ -168,7 +168,7 @@ def pose_optimisation_wins(study: JammingStudy) -> Measured:
         behind_db = max(-study.lead(_NULL, _VERTICAL, null_from).least_db, 0.0)
         proved += (
             f" From {level_words(null_from)} on, between the levels too, zero interference is ahead of the "
-            f"vertical case, or behind by at most {at_most(behind_db)} dB: the one does not change, the "
+            f"vertical case, or behind by at most {rounded_up(behind_db)} dB: the one does not change, the "
             "other does not rise."
         )
     return {
@@ -223,9 +223,9 @@ def saturation(study: JammingStudy) -> Measured:
                 "largest_distance_difference_m": unequal_m,
             }
         },
-        "proved": f"Over the last decade no curve changes by more than {at_most(max(falls_db))} dB, between "
-        "the swept levels either, as more jamming never raises a curve. For the same reason each, once "
-        f"within {NEAR_DB} dB of its last value, stays there, but for the gap of the proofs.",
+        "proved": f"Over the last decade no curve changes by more than {rounded_up(max(falls_db))} dB, "
+        "between the swept levels either, as more jamming never raises a curve. For the same reason each, "
+        f"once within {NEAR_DB} dB of its last value, stays there, but for the gap of the proofs.",
         "holds_from": None if None in starts else max(starts),
     }
 

@@ -25,7 +25,7 @@ _LONGEST_KEY = 40  # characters of a key that a message repeats
 
 
 def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
-    """Return what a file holds; a device, a pipe or too large a file is refused before it is read.
+    """Read a file; a device, a pipe or too large a file is refused before it is read.
 
     Args:
         path: the file.
@@ -47,55 +47,41 @@ def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
 
 
 def parse_json(text: str, **options: Any) -> Any:
-    """Return what a JSON text holds, in which no object gives a key twice.
-
-    Args:
-        text: the JSON.
-        options: further ones of ``json.loads``.
+    """Parse a JSON text, in which no object gives a key twice, with options of ``json.loads``.
 
     Raises:
         ScenarioError: it is no JSON, gives a key twice, or would take too much memory.
     """
-    repeated: list[tuple[object, str]] = []
-
-    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        table = dict(pairs)
-        if len(table) < len(pairs) and not repeated:
-            counts = Counter(key for key, _ in pairs)
-            repeated.append((table, next(key for key in counts if counts[key] > 1)))
-        return table
-
-    place, message = "", f"it has more than {_MOST_LISTS} lists and objects"
+    place = ""
     try:
-        if text.count("[") + text.count("{") <= _MOST_LISTS:
-            value = json.loads(text, object_pairs_hook=unique, **options)
-            if not repeated:
-                return value
-            place = _place(value, repeated[0][0]).removeprefix(".")
-            message = (
-                f"the key {json.dumps(repeated[0][1][:_LONGEST_KEY])} is given twice in one object; keep one"
-            )
+        if text.count("[") + text.count("{") > _MOST_LISTS:
+            raise ValueError(f"it has more than {_MOST_LISTS} lists and objects")
+        return json.loads(text, object_pairs_hook=_unique, **options)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         message = f"this is not JSON: {error.msg[:1].lower()}{error.msg[1:]}"
     except RecursionError:
         message = "lists or objects are nested too deeply to be read"
     except ValueError as error:  # an integer beyond what Python converts, or what an option refuses
-        message = (
-            "a number has too many digits; write it as in 1e-3" if "digits" in str(error) else str(error)
-        )
+        message = str(error)
+        message = "a number has too many digits; write it as in 1e-3" if "digits" in message else message
     raise ScenarioError([Fault(place, message)])
 
 
-def _place(value: object, wanted: object, place: str = "") -> str:
-    """Return where in some data one of its tables is, as in ``.trees[0]``; nothing if it is the whole."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, item in items:
-        here = f"{place}[{key}]" if isinstance(value, list) else f"{place}.{str(key)[:_LONGEST_KEY]}"
-        found = here if item is wanted else _place(item, wanted, here)
-        if found:
-            return found
-    return ""
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Build an object of JSON; refuse one that gives a key twice."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        counts = Counter(key for key, _ in pairs)
+        key = next(key for key in counts if counts[key] > 1)
+        raise ValueError(f"the key {json.dumps(key[:_LONGEST_KEY])} is given twice in one object; keep one")
+    return table
+
+
+def json_text(value: object, indent: int | None = 2) -> str:
+    """Write plain data as JSON in ASCII; a number that JSON lacks (NaN, infinities) becomes null."""
+    read_back = json.loads(json.dumps(value, default=dict), parse_constant=lambda _: None)
+    return json.dumps(read_back, indent=indent)
 
 
 def check_outputs(inputs: Mapping[str, Path], outputs: Mapping[str, Path | None]) -> None:
@@ -123,15 +109,15 @@ def check_outputs(inputs: Mapping[str, Path], outputs: Mapping[str, Path | None]
         taken[option] = path
 
 
-def _is_same(one: Path, other: Path) -> bool:
-    """Return whether two names lead to one file, or would."""
+def _is_same(path: Path, other: Path) -> bool:
+    """Check whether two names lead to one file, or would."""
     with suppress(OSError, ValueError):
-        return os.path.samefile(one, other)
-    return os.path.realpath(one) == os.path.realpath(other)
+        return os.path.samefile(path, other)
+    return os.path.realpath(path) == os.path.realpath(other)
 
 
 def _target(path: Path) -> Path:
-    """Return the file that a name leads to through links, whether it is there or not; refuse all else."""
+    """Follow a name through links to a file, whether it is there or not; refuse all else."""
     target = Path(os.path.realpath(path))
     with suppress(FileNotFoundError, NotADirectoryError):
         if not stat.S_ISREG(target.stat().st_mode):
@@ -141,10 +127,7 @@ def _target(path: Path) -> Path:
 
 @contextmanager
 def refusals(doing: str) -> Iterator[None]:
-    """Turn the system's refusals in the block into an OutputError.
-
-    Args:
-        doing: what is being done, for the message.
+    """Turn the system's refusals in the block into an OutputError, whose message says what was being done.
 
     Raises:
         OutputError: the system refused something.
@@ -158,10 +141,7 @@ def refusals(doing: str) -> Iterator[None]:
 
 
 def prepare_folder(folder: Path) -> Path:
-    """Return a folder that exists and can be written, making it and its parents if need be.
-
-    Args:
-        folder: where results are to go.
+    """Make a folder and its parents if need be, and see that it can be written; return it.
 
     Raises:
         OutputError: a file is in the way, or the folder cannot be made or written.
@@ -180,8 +160,7 @@ def prepare_folder(folder: Path) -> Path:
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name beside a file; what is written there replaces the file if all goes well.
 
-    Args:
-        path: the file to write; its suffix is kept, for writers that go by it.
+    The suffix is kept, for writers that go by it.
 
     Raises:
         OutputError: the file cannot be written.
@@ -198,11 +177,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_csv(path: Path, rows: Iterable[Iterable[object]]) -> Path:
-    """Return the path of a CSV file after writing rows to it, whole or not at all.
-
-    Args:
-        path: the file to write.
-        rows: the names of the columns, then the cells.
+    """Write rows, the first with the names of the columns, to a CSV file, whole or not at all; return it.
 
     Raises:
         OutputError: the file cannot be written.
@@ -213,11 +188,7 @@ def write_csv(path: Path, rows: Iterable[Iterable[object]]) -> Path:
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Return the path of a UTF-8 text file after writing it whole or not at all.
-
-    Args:
-        path: the file to write.
-        text: what it is to hold.
+    """Write a UTF-8 text file, whole or not at all; return it.
 
     Raises:
         OutputError: the file cannot be written.

@@ -12,14 +12,12 @@ from typing import Any
 
 from nullpose.errors import UsageError
 from nullpose.report.comparison import Comparison
-from nullpose.report.figures.airframes import draw_airframe_bars
-from nullpose.report.figures.cases import draw_cases
-from nullpose.report.figures.plan import draw_plan
+from nullpose.report.figures.bars import draw_airframe_bars, draw_cases
+from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.poses import draw_dipole
 from nullpose.report.figures.scene import ALONE, Stage, draw_panel
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
-from nullpose.report.figures.value_map import draw_field
 from nullpose.solver import Result
 from nullpose.study import AirframeComparison, Field, SweepTable, value_map
 

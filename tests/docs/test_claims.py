@@ -217,7 +217,7 @@ def test_bounds_of_the_leads(claims: dict[str, Claim], reproduction: Reproductio
         lead = study.lead("optimum", "vertical", level)
         assert lead.least_db <= lead.found_db <= lead.most_db
         assert lead.most_db - lead.least_db < 1e-5
-    assert "at most 4.6e-06 dB at P_M/P = 1e+06" in claims["strong-jamming-zero-interference"].proved
+    assert "at most 4.6e-6 dB at P_M/P = 1e+06" in claims["strong-jamming-zero-interference"].proved
 
 
 def test_the_best_equidistant_position_is_proved(reproduction: Reproduction) -> None:

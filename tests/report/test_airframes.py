@@ -11,8 +11,7 @@ from rich.console import Console
 from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
 from nullpose.objectives import Quantity
 from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
-from nullpose.report.figures.airframes import draw_airframes
-from nullpose.report.numbers import less_or_more
+from nullpose.report.figures.bars import draw_airframes
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -81,27 +80,6 @@ def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     assert "Of the vehicles compared with one dipole, it comes nearest" in nearest
 
 
-def test_a_vehicle_that_was_not_compared_is_not_judged() -> None:
-    """A 25 degree tilt with an upright dipole suffices for whips; without it only the compared are judged."""
-    tilted = Airframe(tilt_max_deg=25.0, mount_deg=0.0)
-    whips = load(EXAMPLES / "whips.toml")
-    assert whips.airframe is None
-    usual = answer_lines(compare_airframes(whips, certify=False))
-    found = compare_airframes(whips.model_copy(update={"airframe": tilted}), certify=False)
-    assert found.suffices(found.stated)
-    assert found.least_sufficient is found.stated
-    assert not any("needs" in line for line in usual)
-    assert usual[0].startswith("Of the vehicles compared")
-    assert "state it in [airframe] to compare it" in usual[0]
-
-
-def test_the_least_of_all_suffices(plain: AirframeComparison) -> None:
-    """Were a level vehicle as good, no tilt is said to be needed."""
-    value = 0.995 * plain.omnidirectional.value
-    first = answer_lines(with_value(plain, "level-vertical", value))[0]
-    assert first.startswith("A level vehicle with a vertical dipole reaches 0.02 dB less")
-
-
 def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     """Where no array is enough, the best found is told with its size and its share."""
     poor = plain
@@ -110,21 +88,6 @@ def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
     (arrays,) = answer_lines(poor)[1:]
     assert "with an array of 8 with digital combining reaches 0.97 dB less" in arrays
     assert "compared with an array, it comes nearest" in arrays
-
-
-def test_own_vehicle_and_errors_have_their_say(robust: AirframeComparison) -> None:
-    """The file's vehicle is judged, and what is left under the file's errors."""
-    lines = answer_lines(robust)
-    assert any(line.startswith("The file's vehicle (a 5 degree tilt") for line in lines)
-    assert "does not suffice: it reaches" in " ".join(lines)
-    assert lines[-1].startswith(
-        "Under the stated errors an omnidirectional vehicle guarantees 6.97 dB less at its robust pose"
-    )
-    assert "guarantees under 0.01 dB less than that. Of the vehicles compared" in lines[-1]
-    text = text_of(robust)
-    assert "Guaranteed under the file's errors (dB)" in text
-    assert "file: tilt 5, mount 90" in text
-    assert "No guarantee is computed for arrays." in text
 
 
 def test_nothing_to_give() -> None:
@@ -166,15 +129,6 @@ def test_tables_fit_a_terminal(name: str) -> None:
         assert result.case.label in text
 
 
-@pytest.mark.parametrize(
-    ("difference", "words"),
-    [(-0.0324, "0.03 dB less"), (-1e-9, "under 0.01 dB less"), (3.28, "3.28 dB more")],
-)
-def test_differences(difference: float, words: str) -> None:
-    """Two decimals of a decibel; what they do not show is not called nothing."""
-    assert less_or_more(difference, Quantity.of(load(EXAMPLES / "paper.toml"))) == words
-
-
 @pytest.mark.parametrize("name", ["whips", "eavesdropper", "requirements"])
 def test_no_answer_is_a_share(name: str) -> None:
     """Values in dB and rates may be near zero or below: they are compared by differences in their unit."""
@@ -200,10 +154,3 @@ def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
     boxes = [text.get_window_extent() for text in axes.texts]
     assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[i + 1 :])
     assert all(box.x1 <= figure.bbox.x1 for box in boxes)
-
-
-def test_figure_of_rates() -> None:
-    """Rates are drawn from zero, in bits/s/Hz."""
-    (axes,) = draw_airframes(compared("eavesdropper")).axes
-    assert axes.get_xlim()[0] == 0.0
-    assert "(bits/s/Hz)" in axes.get_xlabel()

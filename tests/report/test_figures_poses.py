@@ -66,12 +66,6 @@ def test_zones_far_away_are_left_out() -> None:
     assert radii == pytest.approx(12.0, rel=1e-3)
 
 
-def test_no_jammer_no_line(paper: Scenario) -> None:
-    """A scene without jammers is drawn too, and tells no angle."""
-    calm = Scenario.from_dict({**paper.to_dict(), "jammers": []})
-    assert "null" not in draw_pose(solve(calm, certify=False)).get_suptitle()
-
-
 def test_names_with_dollars(paper: Scenario, tmp_path: Path) -> None:
     """A name is drawn as it is, not as a formula."""
     data = paper.to_dict() | {"name": "costs $5 and $x^$"}

@@ -2,17 +2,15 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from nullpose import Scenario, compare_airframes, load, solve, solve_array, solve_robust, sweep
 from nullpose.report.comparison import compare_all
-from nullpose.report.figures.airframes import draw_airframes
-from nullpose.report.figures.cases import draw_comparison
+from nullpose.report.figures.bars import draw_airframes, draw_comparison
+from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose, draw_result
 from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
 from nullpose.report.figures.sweep import draw_sweep
-from nullpose.report.figures.value_map import draw_value_map
 from nullpose.study import value_map
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -76,12 +74,3 @@ def test_fonts_are_in_the_pdf(paper: Scenario, tmp_path: Path) -> None:
     assert b"/FontFile2" in content
     assert b"/Type3" not in content
     assert write_figure_file(figure, tmp_path / "again.pdf").read_bytes() == content
-
-
-def test_few_points_have_a_marker_each(paper: Scenario) -> None:
-    """Of many only some have one, so that they do not merge."""
-    few = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], certify=False)).axes[0].lines
-    assert {line.get_markevery() for line in few} == {1}
-    values = np.geomspace(0.1, 10.0, 27)
-    many = draw_sweep(sweep(paper, "jammers.M.power_w", values, schemes=["vertical"], certify=False))
-    assert many.axes[0].lines[0].get_markevery()[1] > 1

@@ -1,6 +1,5 @@
 """The figure of a robust solution: two poses in one space, with the sets that jammers may be in."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +8,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from nullpose import Scenario, load
-from nullpose.report.figures.bodies import draw_set, set_box_m
 from nullpose.report.figures.poses import draw_robust
-from nullpose.report.geometry import distance_m
+from nullpose.report.figures.scene import draw_set, set_box_m
 from nullpose.solver.robust import RobustSolution, solve_robust
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "robust.toml"
@@ -47,25 +45,6 @@ def test_both_poses_with_what_they_guarantee(solution: RobustSolution) -> None:
     assert "smallest SINR; errors: axis 2 deg, position 0.5 m, M up to 3 m" in figure.get_suptitle()
 
 
-def test_titles_have_room(solution: RobustSolution) -> None:
-    """Neither panel's title reaches into the other's, in dB or in bits/s/Hz; many errors are cut short."""
-    data = load(EXAMPLE.with_name("eavesdropper.toml")).to_dict()
-    data["eavesdroppers"][0]["uncertainty_m"] = [6.0, 3.0, 1.5]
-    data["receiver"]["attitude_error_deg"] = 1.0
-    data["eavesdroppers"] += [
-        {"name": f"listener {index}", "position_m": [200.0, 10.0 * index, 0.0], "uncertainty_m": 2.0}
-        for index in range(12)
-    ]
-    crowded = replace(solution, scenario=Scenario.from_dict(data))
-    for figure in (draw_robust(solution), draw_robust(crowded)):
-        figure.canvas.draw()
-        first, second = (axes.title.get_window_extent() for axes in figure.axes)
-        assert 0.0 < first.x0 < first.x1 < second.x0 < second.x1 < figure.bbox.x1
-        assert figure.get_suptitle().count("\n") == 1
-        assert figure._suptitle.get_window_extent().y0 > first.y1
-    assert figure.get_suptitle().endswith(" ...")
-
-
 def test_both_panels_show_the_same_space(solution: RobustSolution) -> None:
     """Places can be compared: limits are the same, and both drones are inside."""
     first, second = draw_robust(solution).axes
@@ -89,14 +68,6 @@ def test_the_set_is_drawn_around_its_jammer(solution: RobustSolution) -> None:
     assert texts.count("where the jammer may be") == 1
 
 
-def test_without_a_set_there_is_none() -> None:
-    """Errors of the vehicle alone draw nothing around the jammer."""
-    data = load(EXAMPLE).to_dict()
-    del data["jammers"][0]["uncertainty_m"]
-    figure = draw_robust(solve_robust(Scenario.from_dict(data), certify=False))
-    assert "where the jammer may be" not in {text.get_text() for text in figure.legends[0].get_texts()}
-
-
 def test_wires_lie_on_the_ellipsoid() -> None:
     """A turned ellipsoid's wires are on its surface and within its box, which they touch nearly."""
     (jammer,) = _turned().jammers
@@ -109,9 +80,3 @@ def test_wires_lie_on_the_ellipsoid() -> None:
     assert np.all(wires >= low - 1e-9)
     assert np.all(wires <= high + 1e-9)
     assert np.ptp(wires, axis=0) == pytest.approx(high - low, rel=0.1)
-
-
-def test_the_robust_pose_of_the_example_stands_farther_off(solution: RobustSolution) -> None:
-    """What the figure is there to show."""
-    jammer = solution.scenario.jammer_positions_m[0]
-    assert distance_m(solution.robust.pose, jammer) > distance_m(solution.nominal.pose, jammer)

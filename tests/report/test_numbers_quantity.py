@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from nullpose import Link, Scenario, load
+from nullpose import Link
 from nullpose.objectives import Quantity
 from nullpose.report.numbers import bound_text, bound_words, value_words
 from nullpose.solver import Objective
@@ -17,21 +17,6 @@ MARGIN = Objective(name="min_margin", value=2.0, value_db=10.0 * math.log10(2.0)
 RATE = Objective(
     name="min_secrecy_rate", value=1.25, value_db=math.nan, upper_bound=1.2500011, relative_gap=1e-6
 )
-
-
-@pytest.mark.parametrize(
-    ("example", "noun", "unit"),
-    [
-        ("paper", "SINR", "dB"),
-        ("requirements", "margin", "dB"),
-        ("eavesdropper", "secrecy rate", "bits/s/Hz"),
-    ],
-)
-def test_a_scenario_asks_for_one_quantity(example: str, noun: str, unit: str) -> None:
-    """What a file asks for decides the noun and the unit."""
-    quantity = Quantity.of(load(EXAMPLES / f"{example}.toml"))
-    assert (quantity.noun, quantity.unit) == (noun, unit)
-    assert quantity.smallest == f"smallest {noun}"
 
 
 def test_only_ratios_are_told_in_decibels() -> None:
@@ -58,22 +43,9 @@ def test_a_bound_has_its_unit_and_its_gap() -> None:
     assert bound_words(replace(RATE, upper_bound=None, relative_gap=None)) == ""
 
 
-def test_a_rate_of_nothing_has_a_bound_too() -> None:
-    """Where every eavesdropper hears better, value and bound are zero and can be told."""
-    nothing = replace(RATE, value=0.0, upper_bound=0.0, relative_gap=0.0)
-    assert float(bound_words(nothing).split()[2]) == 0.0
-
-
 def test_each_node_has_its_number() -> None:
     """A link gives the rate, the margin or the SINR, whichever is asked for."""
     link = Link("S", sinr=4.0, sinr_db=6.0, margin=2.0, margin_db=3.0, secrecy_rate_bps_hz=0.5)
     assert Quantity.named("min_secrecy_rate").at(link) == 0.5
     assert Quantity.named("min_margin").at(link) == 2.0
     assert Quantity.named("min_sinr").at(replace(link, margin=None)) == 4.0
-
-
-def test_weights_make_margins(paper: Scenario) -> None:
-    """One weight is enough for margins to be what counts."""
-    data = paper.to_dict()
-    data["nodes"][1]["weight"] = 2.0
-    assert Quantity.of(Scenario.from_dict(data)).noun == "margin"

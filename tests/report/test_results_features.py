@@ -8,7 +8,7 @@ from rich.console import Console, RenderableType
 
 from nullpose import Scenario, load, solve
 from nullpose.report.comparison import compare_all, comparison_view
-from nullpose.report.results import binding_nodes, solution_view
+from nullpose.report.results import binding_nodes, result_view
 from nullpose.report.scenario import scenario_view, summarise
 from nullpose.report.sweep import sweep_view
 from nullpose.scenario import apply_overrides
@@ -35,7 +35,7 @@ def test_nothing_is_not_a_number(name: str) -> None:
     scenario = example(name)
     views = (
         scenario_view(scenario),
-        solution_view(solve(scenario)),
+        result_view(solve(scenario)),
         comparison_view(compare_all(scenario)),
     )
     for view in views:
@@ -48,7 +48,7 @@ def test_nothing_is_not_a_number(name: str) -> None:
 def test_a_rate_has_no_decibels() -> None:
     """The rate is in bits/s/Hz, per node and in all; SNR is what is in dB, at the eavesdropper too."""
     solution = solve(example("eavesdropper"))
-    text = text_of(solution_view(solution))
+    text = text_of(result_view(solution))
     assert "smallest secrecy rate 1.160284 bits/s/Hz" in text
     assert "secrecy rate (bits/s/Hz)" in text
     assert "SINR" not in text
@@ -65,7 +65,7 @@ def test_jamming_in_a_downlink_is_noise() -> None:
     """Jammers beside eavesdroppers raise the nodes' noise, which is shown, and get no table."""
     data = example("eavesdropper").to_dict()
     data["jammers"] = [{"name": "M", "position_m": [17.0, 40.0, 4.0], "power_w": 1.0}]
-    text = text_of(solution_view(solve(Scenario.from_dict(data), certify=False)))
+    text = text_of(result_view(solve(Scenario.from_dict(data), certify=False)))
     assert "noise (dBm)" in text
     assert "Jammers" not in text
     assert "part of the nodes' noise" in text
@@ -74,7 +74,7 @@ def test_jamming_in_a_downlink_is_noise() -> None:
 def test_a_margin_is_called_so() -> None:
     """Margins decide which node binds, and stand beside SINR and requirement."""
     solution = solve(example("requirements"))
-    text = text_of(solution_view(solution))
+    text = text_of(result_view(solution))
     assert "smallest margin 3.964289 dB" in text
     assert "smallest SINR" not in text
     assert "required SINR (dB)" in text
@@ -84,41 +84,6 @@ def test_a_margin_is_called_so() -> None:
     assert "SINR thermometer (dB)" in text
     assert "Vertical: missed: node " in text
     assert "node camera: 0.87 dB below" in text
-
-
-def test_weights_are_shown(paper: Scenario) -> None:
-    """A node's weight has a column; one without has none to show."""
-    data = paper.to_dict()
-    data["nodes"][0]["weight"] = 2.0
-    scenario = Scenario.from_dict(data)
-    for view in (solution_view(solve(scenario, certify=False)), scenario_view(scenario)):
-        assert "weight" in text_of(view)
-
-
-def test_the_airframe_is_told_with_what_it_uses() -> None:
-    """The tilt used, and the tilt allowed."""
-    text = text_of(solution_view(solve(example("airframe"), certify=False)))
-    assert "tilted by 10.000 deg, at most 10 deg; dipole 90 deg from upright on the body" in text
-    text = text_of(comparison_view(compare_all(example("airframe"))))
-    assert "vehicle's tilt (deg)" in text
-    assert "Vertical: not applicable: the airframe does not reach a vertical antenna" in text
-    assert "--airframes" in text
-
-
-def test_zones_and_fence_are_in_the_summary() -> None:
-    """Each zone has a row with its shape and its altitudes, the fence its size."""
-    text = text_of(scenario_view(example("no-fly")))
-    for words in (
-        "geofence",
-        "5 corners, x -40 to 50, y -20 to 70",
-        "school",
-        "centre -2, 24, radius 12",
-        "0 to 25",
-    ):
-        assert words in text
-    assert "mast" in text
-    assert "polygon of 4" in text
-    assert "zones and fence ignored" in " ".join(text.split())
 
 
 def test_errors_are_in_the_summary() -> None:

@@ -6,9 +6,7 @@ from dataclasses import replace
 import pytest
 
 from nullpose import Pose, Solution, solve
-from nullpose.physics import Geodetic, pose_frames
 from nullpose.report.results import frame_rows
-from nullpose.report.words import place_words
 from nullpose.scenario import Origin, Scenario
 
 
@@ -31,21 +29,6 @@ def test_the_lines_of_a_round_pose(solution: Solution) -> None:
     ]
 
 
-def test_the_lines_tell_the_frames(solution: Solution) -> None:
-    """The place in the lines is that of the pose."""
-    moved = replace(solution, pose=Pose((123.4, -56.7, 20.0), 0.1, 0.2))
-    place = pose_frames(moved.scenario, moved.pose).geodetic
-    assert place is not None
-    assert frame_rows(moved.scenario, moved.pose)[0][1] == place_words(place)
-    assert "north -56.7000 m, east 123.4000 m" in frame_rows(moved.scenario, moved.pose)[1][1]
-
-
 def test_nothing_without_an_origin(solution: Solution, paper: Scenario) -> None:
     """A scenario that lies nowhere on the Earth has no such lines."""
     assert frame_rows(paper, solution.pose) == []
-
-
-def test_no_zero_has_a_sign() -> None:
-    """A rounded zero is written without a minus."""
-    words = place_words(Geodetic(lat_deg=-1e-12, lon_deg=-0.0, alt_m=-1e-9))
-    assert words == "lat 0.00000000 deg, lon 0.00000000 deg, alt 0.000 m over the WGS-84 ellipsoid"

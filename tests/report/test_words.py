@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from nullpose import Airframe, Array
-from nullpose.report.words import airframe_words, array_words, reach_words
+from nullpose import Airframe
+from nullpose.report.words import airframe_words, reach_words
 
 
 def test_tilt_and_mount_are_told() -> None:
@@ -16,13 +16,6 @@ def test_tilt_and_mount_are_told() -> None:
     assert used == "tilted by 7.500 deg, at most 10 deg; dipole 90 deg from upright on the body"
     slanted = airframe_words(Airframe(tilt_max_deg=20.0, mount_deg=45.0))
     assert slanted.endswith("dipole 45 deg from upright on the body")
-
-
-def test_presets_keep_their_names() -> None:
-    """A preset is told by its name; one that takes any attitude has no limit."""
-    level = airframe_words(Airframe(preset="level"))
-    assert level == "level: tilts at most 0 deg; dipole 0 deg from upright on the body"
-    assert "tilts without limit" in airframe_words(Airframe(preset="omnidirectional"))
 
 
 @pytest.mark.parametrize(
@@ -37,15 +30,3 @@ def test_presets_keep_their_names() -> None:
 def test_reach(tilt_deg: float, mount_deg: float, words: str) -> None:
     """The band of axes is mount less tilt to mount plus tilt."""
     assert reach_words(Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)) == words
-
-
-def test_no_airframe_reaches_all() -> None:
-    """Without an airframe every axis is reached."""
-    assert reach_words(None) == "any axis direction"
-
-
-def test_arrays() -> None:
-    """Elements, layout and spacing; one element in the singular."""
-    array = Array(elements=4, layout="circular", spacing_wavelengths=0.5)
-    assert array_words(array) == "4 upright dipoles, circular, 0.5 wavelengths apart"
-    assert array_words(array.model_copy(update={"elements": 1})).startswith("1 upright dipole,")

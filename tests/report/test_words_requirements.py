@@ -47,16 +47,3 @@ def test_a_weight_proves_nothing_about_requirements(scenario: Scenario) -> None:
     assert "missed: node camera" in words
     assert "thermometer" not in words
     assert "proved" not in words
-
-
-def test_no_requirements_no_words(paper: Scenario) -> None:
-    """Without requirements there is nothing to say."""
-    assert requirement_words(solve(paper, certify=False)) == ""
-
-
-def test_a_single_requirement(paper: Scenario) -> None:
-    """One node that requires something is told in the singular."""
-    data = paper.to_dict()
-    data["nodes"][0]["min_sinr_db"] = -3.0
-    words = requirement_words(solve(Scenario.from_dict(data), certify=False))
-    assert words.startswith("every requirement is met; node S1: ")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nullpose import AirframeComparison, Scenario, Status, compare_airframes, load, min_sinr
-from nullpose.report.plain import json_text
+from nullpose.files import json_text
 from nullpose.scenario import apply_overrides
 from nullpose.study import AIRFRAME_CASES
 

@@ -81,7 +81,7 @@ def show(
     check_outputs({"the pattern": file}, {"--figure": figure})
     table = read_pattern(file, format_name, frequency_hz, estimate=True)
     if figure is not None:
-        from nullpose.report.figures.cuts import draw_pattern
+        from nullpose.report.figures.pattern import draw_pattern
 
         write_figure_file(draw_pattern(table), figure)
     tell(summary_of(table), pattern_view, json_output, files=[figure] if figure else [])

@@ -62,7 +62,7 @@ def compare(
     with compiling_announced(), Ticker("solving") as ticker:
         comparison = compare_all(scenario, on_progress=ticker, **options)
     if figure is not None:
-        from nullpose.report.figures.cases import draw_comparison
+        from nullpose.report.figures.bars import draw_comparison
         from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_comparison(comparison, width), figure)
@@ -83,7 +83,7 @@ def _compare_airframes(
     with compiling_announced(), Ticker("comparing vehicles") as ticker:
         vehicles = compare_airframes(scenario, on_progress=ticker, **options)
     if figure is not None:
-        from nullpose.report.figures.airframes import draw_airframes
+        from nullpose.report.figures.bars import draw_airframes
         from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_airframes(vehicles, width), figure)

@@ -80,7 +80,7 @@ def evaluate(
     """Evaluate poses of your own against the upper bound."""
     from nullpose.errors import UsageError
     from nullpose.physics import Pose, Poses
-    from nullpose.report.evaluation import evaluation_view
+    from nullpose.report.results import evaluation_view
     from nullpose.scenario.plausibility import close_to_degrees
     from nullpose.solver import solve
     from nullpose.solver.options import SolveOptions

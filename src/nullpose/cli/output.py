@@ -80,7 +80,7 @@ def show_json(value: object) -> None:
     Args:
         value: plain data.
     """
-    from nullpose.report.plain import json_text
+    from nullpose.files import json_text
 
     say(json_text(value), broken=False)
 

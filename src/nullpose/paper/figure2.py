@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from nullpose.paper.printed import PrintedPoint
-from nullpose.problem.schemes import Curve, Scheme
+from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import labelled_certainty
 from nullpose.report.document import grouped
-from nullpose.report.figures.style import CURVES, draw_curve, house_style
+from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_style
 from nullpose.report.figures.sweep import draw_caption, draw_curves
-from nullpose.report.numbers import MINUS, begun
+from nullpose.report.numbers import MINUS, capitalised
 from nullpose.study import SweepTable
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def figure2_lines(table: SweepTable) -> list[str]:
         table: a sweep of the paper's scenario over the jammer's power.
     """
     searched = ("Maximum gain, as printed", "best found by search, no upper bound")
-    return [f"{begun(line)}." for line in grouped([*labelled_certainty(table), searched])]
+    return [f"{capitalised(line)}." for line in grouped([*labelled_certainty(table), searched])]
 
 
 def draw_figure2(table: SweepTable, printed: Sequence[PrintedPoint]) -> Figure:

@@ -11,7 +11,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, document, grouped, head, rows, table
-from nullpose.report.numbers import begun, bound_text, fixed, less_or_more, percent, short
+from nullpose.report.numbers import bound_text, capitalised, less_or_more, rounded_up
 from nullpose.solver import Status
 from nullpose.study import AirframeComparison, AirframeResult
 from nullpose.study.airframe_comparison import TOLERANCE
@@ -25,42 +25,37 @@ _STATUS = {
 
 
 def airframes_view(comparison: AirframeComparison) -> View:
-    """Return a table with a row for each vehicle, what is proved of it, and the answer in words.
-
-    Args:
-        comparison: what each vehicle makes of a scenario.
-    """
+    """Set a row for each vehicle, what is proved of it, and the answer in words."""
     quantity = Quantity.of(comparison.scenario)
     results, dipoles = comparison.results, len(comparison.dipoles)
     value, _, nominal, robust, most = numbers_of(comparison)
     whole = results.index(comparison.omnidirectional)
     labels = [result.case.label for result in results]
     objectives = [result.objective for result in results]
+    no_ratio = quantity.is_rate
     values = rows(
         {
             "vehicle, dipole": labels,
-            "power ratio": [
-                None if of is None or quantity.is_rate else f"{of.value:.5g}" for of in objectives
-            ],
-            "value": _told(value, 4),
-            "bound": [None if of is None else bound_text(of, 4) for of in objectives],
-            "difference": _told(value - value[whole], 3),
+            "power ratio": [None if x is None or no_ratio else f"{x.value:.5g}" for x in objectives],
+            "value": _texts(value, 4),
+            "bound": [None if x is None else bound_text(x, 4) for x in objectives],
+            "difference": _texts(value - value[whole], 3),
             "status": [_STATUS[result.status] for result in results],
         }
     )
+    values.insert(dipoles, {})
     guaranteed = rows(
         {
             "vehicle, dipole": labels[:dipoles],
-            "pose above": _told(nominal[:dipoles], 3),
-            "robust pose": _told(robust[:dipoles], 3),
-            "bound": _told(most[:dipoles], 3),
-            "difference": _told((robust - robust[whole])[:dipoles], 3),
+            "pose above": _texts(nominal[:dipoles], 3),
+            "robust pose": _texts(robust[:dipoles], 3),
+            "bound": _texts(most[:dipoles], 3),
+            "difference": _texts((robust - robust[whole])[:dipoles], 3),
         }
     )
-    values.insert(dipoles, {})
     bold = [] if comparison.stated is None else [comparison.stated.case.label]
+    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
     kept = f"Guaranteed under the file's errors ({quantity.unit})"
-    title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(
         head(comparison.scenario.name),
         "",
@@ -73,129 +68,79 @@ def airframes_view(comparison: AirframeComparison) -> View:
 
 
 def numbers_of(comparison: AirframeComparison) -> FloatArray:
-    """Return what is known of each vehicle in the quantity's unit, shape ``(5, n)``; NaN for nothing.
+    """Convert each vehicle's numbers to the quantity's unit, shape ``(5, n)``; NaN for none.
 
     Its value and the bound on it; what the pose shown and the robust pose guarantee, and the bound on that.
-
-    Args:
-        comparison: what each vehicle makes of a scenario.
     """
     quantity, columns = Quantity.of(comparison.scenario), []
     for result in comparison.results:
-        of, kept = result.objective, result.guaranteed
-        found = [None] * 2 if of is None else [of.value, of.upper_bound]
-        found += [None] * 3 if kept is None else [kept.nominal_pose, kept.robust_pose, kept.upper_bound]
-        columns.append([math.nan if number is None else quantity.in_unit(number) for number in found])
+        objective, kept = result.objective, result.guaranteed
+        numbers = [None] * 2 if objective is None else [objective.value, objective.upper_bound]
+        numbers += [None] * 3 if kept is None else [kept.nominal_pose, kept.robust_pose, kept.upper_bound]
+        columns.append([math.nan if number is None else quantity.in_unit(number) for number in numbers])
     return np.transpose(columns)
 
 
-def _told(numbers: FloatArray, digits: int) -> list[str | None]:
-    words = [fixed(number, digits) if math.isfinite(number) else "nothing" for number in numbers]
-    return [None if math.isnan(number) else text for number, text in zip(numbers, words, strict=True)]
+def _texts(numbers: FloatArray, digits: int) -> list[str | None]:
+    texts = [f"{x:z.{digits}f}" if math.isfinite(x) else "nothing" for x in numbers.tolist()]
+    return [None if math.isnan(number) else text for number, text in zip(numbers, texts, strict=True)]
 
 
 def proof_lines(comparison: AirframeComparison) -> list[str]:
-    """Return what is proved of the table's numbers, in sentences.
-
-    Args:
-        comparison: what each vehicle makes of a scenario.
-    """
+    """Write what is proved of the table's numbers."""
     labelled = [(result.case.label, result) for result in comparison.results]
-    gaps = [each.objective.relative_gap for _, each in labelled if each.objective is not None]
-    known = [gap for gap in gaps if gap is not None]
+    found = [result for result in comparison.results if result.objective is not None]
+    gaps = [each.objective.relative_gap for each in found if each.objective.relative_gap is not None]
+    statuses = dict.fromkeys(result.status for result in found)
     lines = [
         "Omnidirectional: the vehicle can take any attitude. Difference: from that vehicle.",
         "Bounds are rounded up.",
+        *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}" for status in statuses),
+        *grouped((label, result.reason) for label, result in labelled),
+        *([f"The widest relative gap between value and bound is {rounded_up(max(gaps))}."] if gaps else []),
+        *rigour_lines(
+            ("arrays" if result in comparison.arrays else "one dipole", result.objective.rigour)
+            for result in found
+        ),
     ]
-    statuses = dict.fromkeys(each.status for _, each in labelled if each.status is not None)
-    legend = {status: status.message for status in statuses}
-    lines += [
-        f"{_STATUS[status]}: {message.removeprefix('certified ')}" for status, message in legend.items()
-    ]
-    lines += grouped((label, each.reason) for label, each in labelled)
-    lines += [f"The widest relative gap between value and bound is {short(max(known))}."] if known else []
-    lines += rigour_lines(
-        ("arrays" if each in comparison.arrays else "one dipole", each.objective.rigour)
-        for _, each in labelled
-        if each.objective
-    )
     if comparison.scenario.is_uncertain:
-        lines.append(
-            "Guaranteed: proved for every error within the stated limits. "
-            "No guarantee is computed for arrays."
-        )
+        guarantee = "Guaranteed: proved for every error within the stated limits."
+        lines.append(f"{guarantee} No guarantee is computed for arrays.")
     return lines
 
 
 def answer_lines(comparison: AirframeComparison) -> list[str]:
-    """Return what the numbers say of the question whether the vehicle has to be omnidirectional.
+    """Answer whether the vehicle has to be omnidirectional, by the vehicles that were compared alone.
 
-    The least of the vehicles compared that suffices, what the others fall short by in dB or bits/s/Hz, what
-    an array would take, and what of it holds under errors. No vehicle that was not compared is judged.
-
-    Args:
-        comparison: what each vehicle makes of a scenario.
+    The least of them that suffices or the one that comes nearest, with one dipole and with an array.
     """
-    least, own, arrays = comparison.least_sufficient, comparison.stated, comparison.arrays
+    least, stated = comparison.least_sufficient, comparison.stated
     if least is None:
         return ["Of the vehicles compared, none with one dipole gives every node a signal in this scene."]
     lesser = [result for result in comparison.dipoles if result is not comparison.omnidirectional]
-    lines = [_least_line(comparison, lesser)] if lesser else []
+    lines = [_least_line(comparison, kind) for kind in (lesser, comparison.arrays) if kind]
     if least is comparison.omnidirectional:
         only = "Of the vehicles compared with one dipole, only the omnidirectional one was found to suffice."
         lines.insert(0, f"{only} Another tilt or mount may: state it in [airframe] to compare it.")
-    if own is not None and own is not least:
-        verdict = "suffices too" if comparison.suffices(own) else "does not suffice"
-        lines.append(f"{begun(own.case.phrase)} {verdict}: it reaches {_difference(comparison, own)}.")
-    if arrays:
-        lines.append(_least_line(comparison, arrays))
-    if comparison.scenario.is_uncertain:
-        lines.append(_errors_line(comparison))
+    if stated is not None and stated is not least:
+        verdict = "suffices too" if comparison.suffices(stated) else "does not suffice"
+        lines.append(f"{capitalised(stated.case.phrase)} {verdict}: it {_reach(comparison, stated)}.")
     return lines
 
 
 def _least_line(comparison: AirframeComparison, results: Sequence[AirframeResult]) -> str:
-    """Return which of a kind's vehicles, by what they take, is the least that suffices, or comes nearest."""
+    """Name the least of a kind's vehicles, in the order of what they take, that suffices or is nearest."""
     best, verdict = max(results, key=lambda result: result.value), "comes nearest"
     least = next((result for result in results if comparison.suffices(result)), None)
     if least is not None:
-        best, verdict = least, f"is the simplest {_near(comparison)} of that"
-    return (
-        f"{begun(best.case.phrase)} reaches {_difference(comparison, best)} in this scene. Of the vehicles "
-        f"compared with {'an array' if best.case.array else 'one dipole'}, it {verdict}."
-    )
+        is_rate = Quantity.of(comparison.scenario).is_rate
+        within = f"{100.0 * TOLERANCE:g} %" if is_rate else f"{-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB"
+        best, verdict = least, f"is the simplest within {within} of that"
+    kind = "an array" if best.case.array else "one dipole"
+    reach = f"{capitalised(best.case.phrase)} {_reach(comparison, best)} in this scene."
+    return f"{reach} Of the vehicles compared with {kind}, it {verdict}."
 
 
-def _difference(comparison: AirframeComparison, result: AirframeResult) -> str:
-    quantity = Quantity.of(comparison.scenario)
-    return f"{less_or_more(comparison.difference(result), quantity)} than the omnidirectional vehicle"
-
-
-def _near(comparison: AirframeComparison) -> str:
-    """Return how near to the omnidirectional vehicle suffices: as a rate, or in decibels of a power ratio."""
-    if Quantity.of(comparison.scenario).is_rate:
-        return f"within {percent(TOLERANCE)}"
-    return f"within {-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB"
-
-
-def _errors_line(comparison: AirframeComparison) -> str:
-    """Return what of the answer is left under the errors that the scenario states."""
-    whole = comparison.omnidirectional.guaranteed
-    if whole is None or not whole.robust_pose:
-        return "Under the stated errors no vehicle has a guaranteed value above zero."
-    quantity = Quantity.of(comparison.scenario)
-    least, robust_pose = next(
-        (result, result.guaranteed.robust_pose)
-        for result in comparison.dipoles
-        if result.guaranteed is not None
-        and result.guaranteed.robust_pose is not None
-        and result.guaranteed.robust_pose >= (1.0 - TOLERANCE) * whole.robust_pose
-    )
-    all_tilt = quantity.in_unit(whole.robust_pose)
-    kept = less_or_more(all_tilt - quantity.in_unit(comparison.omnidirectional.value), quantity)
-    lost = less_or_more(quantity.in_unit(robust_pose) - all_tilt, quantity)
-    return (
-        f"Under the stated errors an omnidirectional vehicle guarantees {kept} at its robust pose than it "
-        f"reaches without errors. {begun(least.case.phrase)} guarantees {lost} than that. Of the vehicles "
-        f"compared with one dipole, it is the simplest {_near(comparison)} of that guarantee."
-    )
+def _reach(comparison: AirframeComparison, result: AirframeResult) -> str:
+    difference = less_or_more(comparison.difference(result), Quantity.of(comparison.scenario))
+    return f"reaches {difference} than the omnidirectional vehicle"

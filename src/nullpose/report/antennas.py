@@ -6,22 +6,15 @@ import math
 from collections.abc import Sequence
 
 from nullpose.objectives import Quantity
-from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, rows, table
-from nullpose.report.geometry import tilt_rad
-from nullpose.report.numbers import begun, bound_text, degrees_text, fixed, with_unit
-from nullpose.report.results import azimuth_text
-from nullpose.solver import Result
+from nullpose.report.numbers import bound_text, capitalised, less_or_more, with_unit
+from nullpose.report.results import pose_cells
 from nullpose.study import AntennaComparison
 
 
 def antennas_view(comparison: AntennaComparison) -> View:
-    """Return the values with the paper's and the stated antennas, both poses side by side, and the answer.
-
-    Args:
-        comparison: of the paper's antennas with those of a scenario.
-    """
+    """Set the values with the paper's and the stated antennas, both poses side by side, and the answer."""
     scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
     promised, possible = comparison.promised, comparison.possible
     values = {
@@ -33,72 +26,46 @@ def antennas_view(comparison: AntennaComparison) -> View:
         values["  as 2, perfect null of the drone's antenna"] = comparison.with_ground
     values["3 best pose for the stated antennas"] = possible.objective.value
     numbers = [quantity.in_unit(value) for value in values.values()]
-    whole, none = numbers[0], [None] * (len(numbers) - 2)
+    none = [None] * (len(numbers) - 2)
     columns: dict[str, Sequence[str | None]] = {
         "pose and antennas": list(values),
-        "value": [_told(number, 4) for number in numbers],
+        "value": [_text(number, 4) for number in numbers],
         "bound": [bound_text(promised.objective, 4), *none, bound_text(possible.objective, 4)],
-        "difference": [_told(number - whole, 3) for number in numbers],
+        "difference": [_text(number - numbers[0], 3) for number in numbers],
     }
-    poses = {"paper's antennas": _pose_cells(promised), "antennas as stated": _pose_cells(possible)}
-    both = [("paper's antennas", promised), ("antennas as stated", possible)]
+    labelled = {"paper's antennas": promised, "antennas as stated": possible}
+    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(
         head(scenario.name),
         "",
-        table(
-            f"{begun(quantity.smallest)} over the nodes ({quantity.unit})",
-            rows(columns),
-            left=["pose and antennas"],
-        ),
-        table("Best poses", beside(poses)),
+        table(title, rows(columns), left=["pose and antennas"]),
+        table("Best poses", beside({label: pose_cells(result.pose) for label, result in labelled.items()})),
         "Difference: from row 1. Bounds are rounded up.",
         "Isotropic ground antennas lose nothing to polarisation.",
-        *dict.fromkeys(result.status.message for _, result in both),
-        *grouped((label, result.reason) for label, result in both),
-        *rigour_lines((label, result.objective.rigour) for label, result in both),
+        *dict.fromkeys(result.status.message for result in labelled.values()),
+        *grouped((label, result.reason) for label, result in labelled.items()),
+        *rigour_lines((label, result.objective.rigour) for label, result in labelled.items()),
         "",
         head(answer(comparison)),
     )
 
 
 def answer(comparison: AntennaComparison) -> str:
-    """Return in two sentences what the stated antennas cost and what the best pose for them recovers.
-
-    Args:
-        comparison: of the paper's antennas with those of a scenario.
-    """
+    """Say in two sentences what the stated antennas cost and what the best pose for them recovers."""
     quantity = Quantity.of(comparison.scenario)
-    flown = "The best pose for the paper's antennas"
-    received, possible = (
-        quantity.in_unit(x) for x in (comparison.received, comparison.possible.objective.value)
-    )
+    values = (comparison.promised.objective.value, comparison.received, comparison.possible.objective.value)
+    promised, received, possible = map(quantity.in_unit, values)
+    pose, other = "The best pose for the paper's antennas", "The best pose for the stated antennas"
     if not math.isfinite(received):
-        best = with_unit(possible, quantity)
         return (
-            f"{flown} leaves a node without signal if the antennas are the stated ones. The best pose for "
-            f"the stated antennas reaches {best}."
+            f"{pose} leaves a node without signal if the antennas are the stated ones. "
+            f"{other} reaches {with_unit(possible, quantity)}."
         )
-    lost = quantity.in_unit(comparison.promised.objective.value) - received
-    gained = with_unit(abs(possible - received), quantity)
-    less = f"{with_unit(abs(lost), quantity)} {'less' if lost >= 0.0 else 'more'}"
     return (
-        f"{flown} gives {less} if the antennas are the stated ones. The best pose for the stated antennas "
-        f"gives {gained} more than that."
+        f"{pose} gives {less_or_more(received - promised, quantity)} if the antennas are the stated ones. "
+        f"{other} gives {with_unit(abs(possible - received), quantity)} more than that."
     )
 
 
-def _told(number: float, digits: int) -> str:
-    return fixed(number, digits) if math.isfinite(number) else "nothing"
-
-
-def _pose_cells(result: Result) -> dict[str, str]:
-    pose = result.pose
-    place: FloatArray = pose.position_m
-    return {
-        **{f"{axis} (m)": fixed(float(at), 3) for axis, at in zip("xyz", place, strict=True)},
-        "roll (deg)": degrees_text(pose.roll_rad),
-        "pitch (deg)": degrees_text(pose.pitch_rad),
-        "yaw (deg)": degrees_text(pose.yaw_rad),
-        "axis tilt (deg)": degrees_text(tilt_rad(pose)),
-        "axis azimuth (deg)": azimuth_text(pose),
-    }
+def _text(number: float, digits: int) -> str:
+    return f"{number:z.{digits}f}" if math.isfinite(number) else "nothing"

@@ -1,4 +1,4 @@
-"""What is proved of a set of values, counted and in words."""
+"""How certain a set of values is, counted and in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from nullpose.problem.schemes import Scheme
 from nullpose.report.document import grouped
-from nullpose.report.numbers import begun, short
+from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
 from nullpose.study import SweepRow, SweepTable
 
@@ -19,7 +19,7 @@ class Certainty:
 
     Args:
         values: how many there are.
-        certified: values with a bound within the gap asked for.
+        certified: values with a bound within the requested gap.
         gap_not_reached: values with a bound farther off.
         best_found: values with no bound.
         largest_relative_gap: of those with a bound; None if there are none.
@@ -33,74 +33,58 @@ class Certainty:
 
     @classmethod
     def of(cls, rows: Iterable[SweepRow]) -> Certainty:
-        """Return the certainty of some rows.
-
-        Args:
-            rows: of any schemes.
-        """
+        """Count the rows of a sweep, of any schemes."""
         rows = tuple(rows)
-        statuses = [row.status for row in rows]
+        counts = Counter(row.status for row in rows)
         gaps = [row.relative_gap for row in rows if row.relative_gap is not None]
         return cls(
             values=len(rows),
-            certified=statuses.count(Status.CERTIFIED),
-            gap_not_reached=statuses.count(Status.GAP_NOT_REACHED),
-            best_found=statuses.count(Status.BEST_FOUND),
+            certified=counts[Status.CERTIFIED],
+            gap_not_reached=counts[Status.GAP_NOT_REACHED],
+            best_found=counts[Status.BEST_FOUND],
             largest_relative_gap=max(gaps, default=None),
         )
 
     @property
     def weakest(self) -> Status:
-        """What can be said of each of them."""
+        """The status that every value has at least."""
         if self.best_found:
             return Status.BEST_FOUND
         return Status.GAP_NOT_REACHED if self.gap_not_reached else Status.CERTIFIED
 
     @property
     def sentence(self) -> str:
-        """The same in words, with the widest gap."""
-        gap = self.largest_relative_gap
-        widest = "none" if gap is None else short(gap)
-        sentences = {
-            Status.CERTIFIED: f"each point is certified optimal within {widest} (relative)",
-            Status.GAP_NOT_REACHED: "all bounds are valid, but the requested gap is not reached at "
-            f"{self.gap_not_reached} of {self.values} points; relative gap up to {widest}",
-            Status.BEST_FOUND: "best found by search, no upper bound",
-        }
-        return sentences[self.weakest]
+        """What is true of every value, in words, with the widest gap."""
+        gap = "none" if self.largest_relative_gap is None else rounded_up(self.largest_relative_gap)
+        if self.weakest is Status.BEST_FOUND:
+            return "best found by search, no upper bound"
+        if self.weakest is Status.CERTIFIED:
+            return f"each point is certified optimal within {gap} (relative)"
+        return (
+            "all bounds are valid, but the requested gap is not reached at "
+            f"{self.gap_not_reached} of {self.values} points; relative gap up to {gap}"
+        )
 
 
 def certainty_lines(table: SweepTable) -> list[str]:
-    """Return what is proved of a table's curves, in a sentence for each kind of certainty that occurs.
-
-    Args:
-        table: a sweep.
-    """
-    return [begun(line) for line in grouped(labelled_certainty(table))]
+    """Write how certain the curves of a sweep are, a sentence for each kind of certainty that occurs."""
+    return [capitalised(line) for line in grouped(labelled_certainty(table))]
 
 
 def labelled_certainty(table: SweepTable) -> list[tuple[str, str]]:
-    """Return the label of each of a table's curves with what is proved of it, in words.
-
-    Args:
-        table: a sweep.
-    """
-    said: list[tuple[str, str]] = []
+    """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
+    labelled: list[tuple[str, str]] = []
     for status in Status:
-        schemes = [name for name in table.schemes if Certainty.of(table.of(name)).weakest is status]
-        together = Certainty.of(row for row in table.rows if row.scheme in schemes)
-        said += [(Scheme(name).label, together.sentence) for name in schemes]
-    return said
+        names = [name for name in table.schemes if Certainty.of(table.of(name)).weakest is status]
+        together = Certainty.of(row for row in table.rows if row.scheme in names)
+        labelled += [(Scheme(name).label, together.sentence) for name in names]
+    return labelled
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
-    """Return how sure bounds are, in a sentence for each rigour that occurs.
-
-    Args:
-        rigours: the label of each answer, and its rigour; labels may repeat.
-    """
-    said = list(rigours)
-    counts, among = Counter(said), Counter(label for label, _ in said)
+    """Write how sure bounds are, a sentence for each rigour that occurs; labels may repeat."""
+    labelled = list(rigours)
+    counts, among = Counter(labelled), Counter(label for label, _ in labelled)
     sentences = []
     for (label, rigour), count in counts.items():
         share = "" if count == among[label] else f"at {count} of {among[label]} points "

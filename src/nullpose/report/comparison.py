@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from nullpose.notebook import html_table
 from nullpose.objectives import Quantity
 from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, table
-from nullpose.report.geometry import null_angle_rad, tilt_rad
-from nullpose.report.numbers import bound_text, degrees_text, fixed
-from nullpose.report.results import azimuth_text, binding_nodes, work_words
+from nullpose.report.geometry import null_angle_rad
+from nullpose.report.numbers import bound_text
+from nullpose.report.results import binding_nodes, pose_cells, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.solver import Result, compare
@@ -37,22 +36,15 @@ class Comparison:
     @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended a proof."""
-        return any(solution.interrupted for solution in self.solutions)
+        return any(result.interrupted for result in self.solutions)
 
     def __repr__(self) -> str:
-        told = [f"Comparison({self.scenario.name!r}: {len(self.solutions)} cases", *self._absent()]
-        return "; ".join(told) + ")"
-
-    def _repr_html_(self) -> str:
-        return html_table(self.scenario.name, [one.row() for one in self.solutions], self._absent())
-
-    def _absent(self) -> list[str]:
-        """Return the cases that do not apply, with the reasons."""
-        return [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out]
+        absent = [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out]
+        return "; ".join([f"Comparison({self.scenario.name!r}: {len(self.solutions)} cases", *absent]) + ")"
 
     def to_dict(self) -> dict[str, object]:
         """Return the comparison as plain data, the scenario once for all cases."""
-        found = [solution.to_dict().items() for solution in self.solutions]
+        found = [result.to_dict().items() for result in self.solutions]
         left_out = [
             {"scheme": scheme.value, "status": "not-applicable", "reason": reason}
             for scheme, reason in self.left_out
@@ -64,98 +56,76 @@ class Comparison:
         }
 
 
-def compare_all(scenario: Scenario, **options: Any) -> Comparison:
-    """Return the four cases of the paper for one scenario.
-
-    Args:
-        scenario: nodes, jammers, receiver and airspace.
-        options: of :func:`nullpose.solver.compare`.
-    """
+def compare_all(
+    scenario: Scenario, on_progress: Callable[[int, int], None] | None = None, **options: Any
+) -> Comparison:
+    """Solve a scenario in the paper's four cases, with options of :func:`nullpose.solver.compare`."""
     reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in Scheme]
     left_out = tuple((scheme, reason) for scheme, reason in reasons if reason is not None)
-    return Comparison(scenario, tuple(compare(scenario, **options)), left_out)
+    return Comparison(scenario, tuple(compare(scenario, on_progress=on_progress, **options)), left_out)
 
 
 def comparison_view(comparison: Comparison) -> View:
-    """Return several schemes' solutions side by side, one column each.
-
-    Args:
-        comparison: what each scheme makes of a scenario.
-    """
-    scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
-    others = "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes"
-    bounds = "Each upper bound holds for the poses that its scheme allows."
-    return document(
-        head(scenario.name),
-        table("", _rows(comparison), bold=[f"smallest {quantity.short} ({quantity.unit})"]),
-        "\n".join([*_lines(comparison), f"* worst node: the {quantity.smallest} is here", bounds, others]),
-    )
-
-
-def _rows(comparison: Comparison) -> list[Mapping[str, str]]:
-    """Return what is told of each scheme, one column each; a rule between values, poses and links."""
-    solutions, quantity = comparison.solutions, Quantity.of(comparison.scenario)
-    best = max((quantity.in_unit(each.objective.value) for each in solutions), default=math.nan)
+    """Set the cases of a scenario side by side, a column each, and what is to be said of them below."""
+    scenario, results = comparison.scenario, comparison.solutions
+    quantity = Quantity.of(scenario)
+    best = max((quantity.in_unit(result.objective.value) for result in results), default=math.nan)
+    groups = [
+        {result.label: _value_cells(result, best) for result in results},
+        {result.label: pose_cells(result.pose) | _null_cells(result) for result in results},
+        {result.label: _link_cells(result) for result in results},
+    ]
     rows: list[Mapping[str, str]] = []
-    for cells in (_value_cells, _pose_cells, _link_cells):
-        rows += [*beside({each.label: cells(each, best) for each in solutions}), {}]
-    return rows
+    for columns in groups:
+        rows += [*beside(columns), {}]
+    bold = [f"smallest {quantity.short} ({quantity.unit})"]
+    return document(head(scenario.name), table("", rows, bold=bold), "\n".join(_lines(comparison)))
 
 
 def _lines(comparison: Comparison) -> list[str]:
-    """Return what is said of the cases: notes, requirements, what does not apply, how sure each is."""
-    solutions = comparison.solutions
-    labelled = [(each.label, each) for each in solutions]
+    """Write what there is to say: notes, requirements, cases that do not apply, how sure each is."""
+    results, quantity = comparison.solutions, Quantity.of(comparison.scenario)
+    labelled = [(result.label, result) for result in results]
     absent = [(scheme.label, f"not applicable: {reason}") for scheme, reason in comparison.left_out]
-    starts = sum(each.stats.starts for each in solutions)
-    boxes = sum(each.stats.boxes for each in solutions)
+    starts = sum(result.stats.starts for result in results)
+    boxes = sum(result.stats.boxes for result in results)
+    status = {label: f"{each.status.message}{each.reason and f': {each.reason}'}" for label, each in labelled}
     return [
-        *grouped((label, each.note) for label, each in labelled),
-        *grouped((label, requirement_words(each)) for label, each in labelled),
+        *grouped((label, result.note) for label, result in labelled),
+        *grouped((label, requirement_words(result)) for label, result in labelled),
         *grouped([*absent, *((label, "") for label, _ in labelled)]),
-        *grouped(
-            (label, f"{each.status.message}{each.reason and f': {each.reason}'}") for label, each in labelled
-        ),
-        *rigour_lines((label, each.rigour) for label, each in labelled),
+        *grouped(status.items()),
+        *rigour_lines((label, result.rigour) for label, result in labelled),
         f"{work_words(starts, boxes)} (all cases together)",
+        f"* worst node: the {quantity.smallest} is here",
+        "Each upper bound holds for the poses that its scheme allows.",
+        "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes",
     ]
 
 
-def _value_cells(solution: Result, best: float) -> dict[str, str]:
-    objective, quantity = solution.objective, solution.objective.quantity
+def _value_cells(result: Result, best: float) -> dict[str, str]:
+    objective, quantity = result.objective, result.objective.quantity
     value, smallest = quantity.in_unit(objective.value), f"smallest {quantity.short}"
     return {
         f"{smallest} ({quantity.unit})": f"{value:.7f}",
         f"upper bound ({quantity.unit})": bound_text(objective, 7),
         **({} if quantity.is_rate else {smallest: f"{objective.value:.7g}"}),
-        f"below the best ({quantity.unit})": fixed(best - value, 4),
+        f"below the best ({quantity.unit})": f"{best - value:z.4f}",
     }
 
 
-def _pose_cells(solution: Result, _: float) -> dict[str, str]:
-    """Return place and attitude, and how far the null is off what it is for."""
-    scenario, pose = solution.scenario, solution.pose
-    points: list[Jammer | Eavesdropper] = [*scenario.eavesdroppers]
-    if not solution.objective.quantity.is_rate:
-        points += scenario.jammers
-    angles = {
-        "roll (deg)": pose.roll_rad,
-        "pitch (deg)": pose.pitch_rad,
-        "yaw (deg)": pose.yaw_rad,
-        "vehicle's tilt (deg)": pose.tilt_rad,
-        "axis tilt (deg)": tilt_rad(pose),
-    }
-    return {
-        **{f"{axis} (m)": fixed(float(at), 3) for axis, at in zip("xyz", pose.position_m, strict=True)},
-        **{name: degrees_text(angle_rad) for name, angle_rad in angles.items()},
-        "axis azimuth (deg)": azimuth_text(pose),
-        **{f"axis to {p.name} (deg)": degrees_text(null_angle_rad(pose, p.position_m)) for p in points},
-    }
+def _null_cells(result: Result) -> dict[str, str]:
+    """Write how far the null is off what it is for."""
+    points: list[Jammer | Eavesdropper] = [*result.scenario.eavesdroppers]
+    if not result.objective.quantity.is_rate:
+        points += result.scenario.jammers
+    angles_rad = [(point.name, null_angle_rad(result.pose, point.position_m)) for point in points]
+    return {f"axis to {name} (deg)": f"{math.degrees(angle_rad):.2f}" for name, angle_rad in angles_rad}
 
 
-def _link_cells(solution: Result, _: float) -> dict[str, str]:
-    """Return each node's SINR, margin or rate, and its ratio; a mark where the node binds."""
-    quantity, links, binding = solution.objective.quantity, solution.links, binding_nodes(solution)
+def _link_cells(result: Result) -> dict[str, str]:
+    """Write each node's ratio, and its SINR, margin or rate with a mark where the node binds."""
+    quantity, links, binding = result.objective.quantity, result.links, binding_nodes(result)
     ratios = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
     return ratios | {
         f"{quantity.short} {link.node} ({quantity.unit})": (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
-from nullpose.files import write_text
+from nullpose.files import json_text, write_text
 from nullpose.physics import Pose, pose_frames
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
-from nullpose.report.plain import json_text
 from nullpose.report.results import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
@@ -27,10 +26,7 @@ _Feature = dict[str, object]
 
 
 def require_origin(scenario: Scenario) -> Origin:
-    """Return the scenario's origin.
-
-    Args:
-        scenario: what is to be put on the map.
+    """Look up the origin that puts a scenario on the map.
 
     Raises:
         UsageError: it has none.
@@ -45,15 +41,12 @@ def require_origin(scenario: Scenario) -> Origin:
 
 
 def solution_geojson(solution: Result) -> dict[str, Any]:
-    """Return a solution as a GeoJSON FeatureCollection, ready for JSON.
+    """Build a GeoJSON FeatureCollection of a result.
 
     Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid (or,
     where the origin tells only that, over the sea, as property ``alt_msl_m``);
     polygons for the airspace, if it is bounded on all sides, the geofence and the no-fly zones. Property
     ``kind`` tells them apart. Angles are in degrees; ``altitude_m`` of a polygon is z in the local frame.
-
-    Args:
-        solution: what was found.
 
     Raises:
         UsageError: the scenario has no origin.
@@ -65,11 +58,7 @@ def solution_geojson(solution: Result) -> dict[str, Any]:
 
 
 def write_geojson(solution: Result, path: Path) -> Path:
-    """Return the path of a GeoJSON file after writing a solution to it, one feature a line.
-
-    Args:
-        solution: what was found.
-        path: the file.
+    """Write a result to a GeoJSON file, a feature on a line; return its path.
 
     Raises:
         UsageError: the scenario has no origin.
@@ -88,14 +77,14 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
         named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
         yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
     for node, link in zip(scenario.nodes, solution.links, strict=True):
-        own = {key: value for key, value in asdict(link).items() if value is not None and key != "node"}
-        yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **own}
+        values = {key: value for key, value in asdict(link).items() if value is not None and key != "node"}
+        yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **values}
     for jammer in scenario.jammers:
         reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
         yield jammer.position_m, {"kind": "jammer", "name": jammer.name, **reach}
-    for each in scenario.eavesdroppers:
-        reach = {"uncertainty_m": each.uncertainty_reach_m}
-        yield each.position_m, {"kind": "eavesdropper", "name": each.name, **reach}
+    for point in scenario.eavesdroppers:
+        reach = {"uncertainty_m": point.uncertainty_reach_m}
+        yield point.position_m, {"kind": "eavesdropper", "name": point.name, **reach}
 
 
 def _pose_properties(solution: Result) -> dict[str, object]:
@@ -114,7 +103,7 @@ def _pose_properties(solution: Result) -> dict[str, object]:
 
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
-    """Return how the drone is turned, in the frames of other programs, and how the antenna's axis lies."""
+    """Convert the attitude to the frames of other programs, and the antenna's axis to two angles."""
     frames = pose_frames(scenario, pose)
     return {
         **{
@@ -132,13 +121,13 @@ def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
 def _outlines(scenario: Scenario) -> Iterator[tuple[FloatArray, float, _Feature]]:
     """Yield the airspace, the fence and the zones: corners and height in metres, and properties."""
     airspace = scenario.airspace
-    height_m, own = airspace.altitude_m[0], {"altitude_m": airspace.altitude_m}
+    height_m, altitude = airspace.altitude_m[0], {"altitude_m": airspace.altitude_m}
     if airspace.x_m is not None and airspace.y_m is not None:
         (west, east), (south, north) = airspace.x_m, airspace.y_m
         corners = np.array([(west, south), (east, south), (east, north), (west, north)])
-        yield corners, height_m, {"kind": "airspace", **own}
+        yield corners, height_m, {"kind": "airspace", **altitude}
     if airspace.geofence_m is not None:
-        yield airspace.geofence_outline_m, height_m, {"kind": "geofence", **own}
+        yield airspace.geofence_outline_m, height_m, {"kind": "geofence", **altitude}
     for zone in airspace.no_fly:
         properties: _Feature = {"kind": "no-fly", "name": zone.name, "altitude_m": zone.altitude_m}
         properties |= {} if zone.radius_m is None else {"radius_m": zone.radius_m}
@@ -155,14 +144,14 @@ def _point(origin: Origin, place: FloatArray, properties: _Feature) -> _Feature:
 
 
 def _polygon(origin: Origin, corners_m: FloatArray, height_m: float, properties: _Feature) -> _Feature:
-    """Return an outline as a polygon, at a height [m] over the local frame's zero."""
+    """Build a polygon of an outline, at a height [m] over the local frame's zero."""
     places_m = np.column_stack([corners_m, np.full(len(corners_m), height_m)])
     places = geodetic_from_enu(places_m, origin.geodetic).tolist()
     ring = [[round(lon_deg, 9), round(lat_deg, 9)] for lat_deg, lon_deg, _ in places]
     return _feature("Polygon", [[*ring, ring[0]]], properties)
 
 
-def _feature(kind: str, coordinates: list[Any], properties: _Feature) -> _Feature:
+def _feature(kind: str, coordinates: Sequence[object], properties: _Feature) -> _Feature:
     return {
         "type": "Feature",
         "geometry": {"type": kind, "coordinates": coordinates},

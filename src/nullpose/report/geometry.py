@@ -15,14 +15,10 @@ _SIDES = 72  # of the polygon that stands for a cylinder; 0.1 % of the radius la
 
 
 def null_angle_rad(pose: Pose, point_m: ArrayLike) -> float:
-    """Return the angle between the antenna's axis, where its null is, and the direction to a point.
+    """Measure the angle between the antenna's axis, where its null is, and the direction to a point.
 
     Between 0 (the null is on the point) and pi/2 (the point is broadside), the axis having no sign. It is
     ``atan2(|u x r|, |u . r|)``, which keeps its digits at both ends.
-
-    Args:
-        pose: where the drone is and how it is turned.
-        point_m: a ground point, shape ``(3,)``, metres.
     """
     to_point = np.asarray(point_m, dtype=float) - pose.position_m
     across = float(np.linalg.norm(np.cross(pose.antenna_axis, to_point)))
@@ -30,32 +26,20 @@ def null_angle_rad(pose: Pose, point_m: ArrayLike) -> float:
 
 
 def distance_m(pose: Pose, point_m: ArrayLike) -> float:
-    """Return how far the drone is from a point, metres.
-
-    Args:
-        pose: where the drone is.
-        point_m: a ground point, shape ``(3,)``, metres.
-    """
+    """Measure the distance of the drone from a point, shape ``(3,)``, metres."""
     return float(np.linalg.norm(np.asarray(point_m, dtype=float) - pose.position_m))
 
 
 def tilt_rad(pose: Pose) -> float:
-    """Return the angle between the antenna's axis and the vertical, from 0 to pi/2.
-
-    Args:
-        pose: how the drone is turned.
-    """
+    """Measure the angle between the antenna's axis and the vertical, from 0 to pi/2."""
     east, north, up = pose.antenna_axis
     return math.atan2(math.hypot(east, north), abs(up))
 
 
 def azimuth_rad(pose: Pose) -> float:
-    """Return the direction in which the upper end of the axis leans, from x (east) towards y (north).
+    """Measure the direction in which the upper end of the axis leans, from x (east) towards y (north).
 
     In (-pi, pi]; 0 for a vertical axis, which leans nowhere.
-
-    Args:
-        pose: how the drone is turned.
     """
     east, north, up = (float(component) for component in pose.antenna_axis)
     sign = -1.0 if up < 0.0 else 1.0
@@ -63,11 +47,7 @@ def azimuth_rad(pose: Pose) -> float:
 
 
 def outline_m(zone: NoFlyZone) -> FloatArray:
-    """Return a zone's corners seen from above, (n, 2), counter-clockwise, metres; of a cylinder, around it.
-
-    Args:
-        zone: any.
-    """
+    """List a zone's corners seen from above, (n, 2), counter-clockwise, metres; of a cylinder, around it."""
     if zone.centre_m is None or zone.radius_m is None:
         return zone.outline_m
     around = math.tau * np.arange(_SIDES) / _SIDES

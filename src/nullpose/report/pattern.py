@@ -6,36 +6,27 @@ import math
 
 from nullpose.antenna.summary import PatternSummary
 from nullpose.report.document import View, document, head, pairs
-from nullpose.report.numbers import fixed
 
 
 def pattern_view(summary: PatternSummary) -> View:
-    """Return what was read of a pattern, and what a user should know of how.
-
-    Args:
-        summary: of the pattern.
-    """
+    """Set what was read of a pattern, with notes on how."""
     table, largest_m = summary.table, summary.largest_m
-    known = "gains only" if table.field is None else "with phases"
+    field = "gains only" if table.field is None else "with phases"
+    polarisation = summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak"
+    fine = f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None
     rows = [
         ("quantity", table.quantity),
         ("frequency", None if table.frequency_hz is None else f"{table.frequency_hz / 1e6:.7g} MHz"),
-        ("peak", f"{fixed(summary.peak_dbi, 2)} dBi, at {_place(summary.peak_deg)}"),
-        ("average", f"{fixed(summary.mean_db, 2)} dB over the sphere"),
+        ("peak", f"{summary.peak_dbi:z.2f} dBi, at {_place(summary.peak_deg)}"),
+        ("average", f"{summary.mean_db:z.2f} dB over the sphere"),
         ("deepest null", _null_text(summary.null_db, summary.null_deg)),
         ("null used", _null_text(summary.used_null_db, summary.used_null_deg)),
         ("error of the fit", _error_text(summary)),
-        ("ripple round z", f"{fixed(summary.ripple_db, 2)} dB, at theta 90"),
-        (
-            "polarisation",
-            summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak",
-        ),
+        ("ripple round z", f"{summary.ripple_db:z.2f} dB, at theta 90"),
+        ("polarisation", polarisation),
         ("degree used", f"{summary.degree}; the grid resolves {summary.supported_degree}"),
-        ("grid", f"steps of {summary.step_deg:g} degrees, {known}"),
-        (
-            "",
-            None if largest_m is None else f"fine enough for antennas within {largest_m:.2g} m of the origin",
-        ),
+        ("grid", f"steps of {summary.step_deg:g} degrees, {field}"),
+        ("", fine),
     ]
     return document(head(table.source), pairs("", rows), *table.notes)
 
@@ -43,15 +34,15 @@ def pattern_view(summary: PatternSummary) -> View:
 def _null_text(depth_db: float, place_deg: tuple[float, float]) -> str:
     if depth_db == 0.0:
         return "none"
-    depth = f"{fixed(depth_db, 1)} dB below the peak" if math.isfinite(depth_db) else "exact"
+    depth = f"{depth_db:z.1f} dB below the peak" if math.isfinite(depth_db) else "exact"
     return f"{depth}, at {_place(place_deg)}"
 
 
 def _error_text(summary: PatternSummary) -> str:
     null_db = summary.null_error_db
-    at_null = f", {fixed(null_db, 2)} dB at the null" if math.isfinite(null_db) else ""
+    at_null = f", {null_db:z.2f} dB at the null" if math.isfinite(null_db) else ""
     return (
-        f"{fixed(summary.error_10_db, 2)} dB within 10 dB of the peak, {fixed(summary.error_20_db, 2)} dB "
+        f"{summary.error_10_db:z.2f} dB within 10 dB of the peak, {summary.error_20_db:z.2f} dB "
         f"within 20 dB, at {_place(summary.error_deg)}{at_null}"
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from nullpose.physics import (
@@ -14,220 +15,196 @@ from nullpose.physics import (
     received_power_w,
     to_db,
 )
-from nullpose.report.document import View, beside, document, head, pairs, rows, table
+from nullpose.report.document import View, beside, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
-from nullpose.report.numbers import (
-    begun,
-    bound_text,
-    bound_words,
-    count_of,
-    degrees_text,
-    fixed,
-    stated,
-    value_words,
-    with_unit,
-)
+from nullpose.report.numbers import bound_text, bound_words, capitalised, value_words, with_unit
 from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result, Rigour
 from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import GuardedPose, RobustDetails
+from nullpose.study import Evaluation
 from nullpose.study.evaluation import GivenDetails
 
 BINDING_RTOL = 1e-6
 """Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
 
-_UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth worth telling
+_UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth worth a number
 _NULLED_DB = -150.0  # what is below it is rounding of the angle
+_SHOWN = 40  # rows of a longer list are thinned out on the screen
 
 
-def binding_nodes(solution: Result) -> frozenset[str]:
-    """Return the names of the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``.
-
-    Args:
-        solution: what was found.
-    """
-    quantity = solution.objective.quantity
-    most = quantity.least(solution.links) * (1.0 + BINDING_RTOL)
-    return frozenset(link.node for link in solution.links if quantity.at(link) <= most)
+def binding_nodes(result: Result) -> frozenset[str]:
+    """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``."""
+    quantity = result.objective.quantity
+    most = quantity.least(result.links) * (1.0 + BINDING_RTOL)
+    return frozenset(link.node for link in result.links if quantity.at(link) <= most)
 
 
 def work_words(starts: int, boxes: int) -> str:
-    """Return how many searches and boxes there were, in words.
-
-    Args:
-        starts: of searches.
-        boxes: of a proof; 0 for no proof.
-    """
-    proof = f"; proof: {count_of(boxes, 'box', 'boxes')} examined" if boxes else ""
-    return f"search: {count_of(starts, 'start')}{proof}"
+    """Say how many searches there were, and how many boxes of a proof, if there was one."""
+    return f"search: {starts:,} starts{f'; proof: {boxes:,} boxes examined' if boxes else ''}"
 
 
 def azimuth_text(pose: Pose) -> str:
-    """Return the azimuth of the antenna's axis in degrees, a dash for an upright one.
+    """Write the azimuth of the antenna's axis in degrees, a dash for an upright one."""
+    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else f"{math.degrees(azimuth_rad(pose)):z.2f}"
 
-    Args:
-        pose: of the drone.
-    """
-    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else degrees_text(azimuth_rad(pose))
+
+def pose_cells(pose: Pose) -> dict[str, str]:
+    """Write position, attitude and axis of a pose as cells of a column."""
+    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
+    angles |= {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose)}
+    return {
+        **{f"{axis} (m)": f"{x:z.3f}" for axis, x in zip("xyz", pose.position_m, strict=True)},
+        **{f"{name} (deg)": f"{math.degrees(angle_rad):z.2f}" for name, angle_rad in angles.items()},
+        "axis azimuth (deg)": azimuth_text(pose),
+    }
+
+
+def result_view(result: Result) -> View:
+    """Set a result of any kind as tables: value, pose, links, and what the antenna's null is for."""
+    if isinstance(result.details, RobustDetails):
+        return _robust_view(result)
+    is_array = isinstance(result.details, ArrayDetails)
+    scenario, pose = result.scenario, result.pose
+    antenna = [("array", array_words(result.details))] if is_array else _antenna_rows(scenario, pose)
+    note = "Jamming does not depend on the pose. It is part of the nodes' noise."
+    return document(
+        _head(result, capitalised(result.label), requirement_words(result), result.note, _agreement(result)),
+        pairs("", [*_pose_rows(pose), *antenna, *frame_rows(scenario, pose)]),
+        _links_table(result, {} if is_array else _gain_columns(scenario, pose)),
+        None if is_array else _nulls_table(scenario, pose),
+        note if scenario.jammers and result.objective.quantity.is_rate and not is_array else None,
+        sensitivity_view(result),
+    )
+
+
+def evaluation_view(evaluation: Evaluation) -> View:
+    """Set the values of poses that were given: of one in full, of several in a row each."""
+    results, best = evaluation.results, evaluation.best
+    if len(results) == 1:
+        return result_view(results[0])
+    quantity = best.objective.quantity
+    step = -(-len(results) // _SHOWN)
+    shown, poses = results[::step], [result.pose for result in results[::step]]
+    attitudes = [(pose.roll_rad, pose.pitch_rad, pose.yaw_rad) for pose in poses]
+    columns: dict[str, list[str | None]] = {
+        "pose": [str(index) for index in range(1, len(results) + 1, step)],
+        "position (m)": [" ".join(f"{x:z.2f}" for x in pose.position_m) for pose in poses],
+        "attitude (deg)": [" ".join(f"{math.degrees(x):z.1f}" for x in angles) for angles in attitudes],
+        f"{quantity.short} ({quantity.unit})": [
+            f"{quantity.in_unit(result.objective.value):.4f}" for result in shown
+        ],
+        "worst node": [result.binding_node for result in shown],
+        f"to bound ({quantity.unit})": [
+            "not allowed" if result.not_allowed else cell(result.below_bound, ".4f") for result in shown
+        ],
+    }
+    value = with_unit(quantity.in_unit(best.objective.value), quantity)
+    lines = (bound_words(best.objective), best.objective.rigour.message, f"{len(results)} poses given")
+    return document(
+        head(best.scenario.name, "Best pose", f"{quantity.smallest} {value}", lines),
+        table("", rows(columns), left=["worst node"]),
+        f"One row in {step} is shown." if step > 1 else None,
+        "Not allowed: --pose and --json tell why." if any(result.not_allowed for result in results) else None,
+    )
 
 
 def _head(result: Result, label: str, *more: str) -> View:
-    """Return what stands above any result: value, bound, how sure it is, the work behind it, and more."""
-    objective = result.objective
-    stats = result.stats
+    """Write what stands above any result: value, bound, how sure it is, the work behind it, and more."""
+    objective, stats = result.objective, result.stats
+    sure = "" if objective.upper_bound is None else objective.rigour.message
+    status = result.status.message
+    if result.rigour is Rigour.FLOATING_POINT:  # there can be no certificate
+        status = status.removeprefix("certified ")
     lines: tuple[str, ...] = (
         bound_words(objective),
-        f"{_status_words(result)}{result.reason and f': {result.reason}'}",
-        "" if objective.upper_bound is None else objective.rigour.message,
+        f"{status}{result.reason and f': {result.reason}'}",
+        sure,
         f"{work_words(stats.starts, stats.boxes)}; {stats.wall_s:.2g} s",
         *more,
     )
     if isinstance(result.details, GivenDetails) and objective.upper_bound is not None:
         bound = f"{bound_text(result.details.best.objective)} {objective.quantity.unit}"
-        lines = (f"upper bound of every pose {bound}", objective.rigour.message, *more)
-    value = f"{objective.quantity.smallest} {value_words(objective)}"
-    return head(result.scenario.name, label, value, lines)
+        lines = (f"upper bound of every pose {bound}", sure, *more)
+    return head(result.scenario.name, label, f"{objective.quantity.smallest} {value_words(objective)}", lines)
 
 
-def _status_words(result: Result) -> str:
-    """Return how near value and bound are; *certified* is said where there can be a certificate."""
-    message = result.status.message
-    return message.removeprefix("certified ") if result.rigour is Rigour.FLOATING_POINT else message
+def _agreement(result: Result) -> str:
+    """Say how many of several independent searches ended at the value."""
+    searches = result.stats.searches or 0
+    return f"{result.stats.agreeing} of {searches} local searches ended at this value" if searches > 1 else ""
 
 
-def solution_view(solution: Result) -> View:
-    """Return one solution as tables: value, pose, links, jammers and eavesdroppers.
-
-    Args:
-        solution: what was found.
-    """
-    scenario, objective, pose = solution.scenario, solution.objective, solution.pose
-    rate = objective.quantity.is_rate
-    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
-    gains, gain_dbi = antenna_gain(*at, scenario.antenna_record), scenario.antenna_gain_dbi
-    columns = {"antenna gain (dB)": [fixed(gain_db, 2) for gain_db in gain_dbi + to_db(gains)]}
-    if scenario.node_antennas is not None:
-        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
-        columns["with the ground's (dB)"] = [fixed(gain_db, 2) for gain_db in gain_dbi + to_db(both)]
-    leaning = f"azimuth {azimuth_text(pose)} deg (0 east, 90 north)"
-    airframe = scenario.airframe
-    own = [
-        ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
-        ("antenna axis", f"{degrees_text(tilt_rad(pose), 3)} deg from vertical, {leaning}"),
-        ("", _in_brackets(pose.antenna_axis)),
-    ]
-    note = "Jamming does not depend on the pose. It is part of the nodes' noise."
-    return document(
-        _head(solution, solution.label, requirement_words(solution), solution.note),
-        pairs("", _pose_rows(scenario, pose, own)),
-        _links_table(solution, columns),
-        _nulls_table(scenario, pose),
-        note if scenario.jammers and rate else None,
-        sensitivity_view(solution),
-    )
-
-
-def result_view(result: Result) -> View:
-    """Return what was found, as tables: with one dipole, with an array, or under errors.
-
-    Args:
-        result: of any kind.
-    """
-    views = {RobustDetails: robust_view, ArrayDetails: array_view}
-    return views.get(type(result.details), solution_view)(result)
-
-
-def array_view(solution: Result) -> View:
-    """Return where an array hovers, its attitude, and what nodes get.
-
-    Args:
-        solution: what was found.
-    """
-    stats = solution.stats
-    searches = count_of(stats.searches or 0, "local search", "local searches")
-    agreeing = f"{stats.agreeing} of {searches} ended at this value" if (stats.searches or 0) > 1 else ""
-    return document(
-        _head(solution, begun(solution.label), requirement_words(solution), agreeing),
-        pairs("", _pose_rows(solution.scenario, solution.pose, [("array", array_words(solution.details))])),
-        _links_table(solution, {}),
-        sensitivity_view(solution),
-    )
-
-
-def robust_view(solution: Result) -> View:
-    """Return a robust solution as tables: the guarantee, its bound, and both poses side by side.
-
-    Args:
-        solution: what was found.
-    """
-    robust, nominal = solution.robust, solution.nominal
-    objective, quantity = solution.objective, solution.objective.quantity
-    cells = {"robust pose": robust, "best pose without errors": nominal}
+def _robust_view(result: Result) -> View:
+    """Set a robust pose as tables: the guarantee, its bound, and the best pose without errors beside it."""
+    robust, nominal, scenario = result.robust, result.nominal, result.scenario
+    objective, quantity = result.objective, result.objective.quantity
+    poses = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
-    combinations = f"upper bound from {count_of(solution.cases, 'combination')} of errors"
-    bound = "no upper bound on the guaranteed value" if solution.upper_bound is None else combinations
-    errors = f"errors: {error_words(solution.scenario)}; {bound}"
+    bound = "no upper bound on the guaranteed value"
+    if result.upper_bound is not None:
+        bound = f"upper bound from {result.cases} combinations of errors"
+    errors = f"errors: {error_words(scenario)}; {bound}"
+    cells = {name: _guarded_cells(objective, pose) for name, pose in poses.items()}
     return document(
-        _head(solution, "Robust, guaranteed", errors, solution.note),
-        table(
-            "",
-            beside({name: _guarded_cells(objective, one) for name, one in cells.items()}),
-            bold=[f"guaranteed ({quantity.unit})"],
-        ),
-        *(f"worst for the {name}: {one.worst_case}" for name, one in cells.items()),
+        _head(result, "Robust, guaranteed", errors, result.note),
+        table("", beside(cells), bold=[f"guaranteed ({quantity.unit})"]),
+        *(f"worst for the {name}: {pose.worst_case}" for name, pose in poses.items()),
         "Guaranteed: holds for all errors within the stated limits. "
         "Lowest found: over the errors that were tried.",
-        *(
-            pairs(begun(name), frame_rows(solution.scenario, one.pose))
-            for name, one in cells.items()
-            if solution.scenario.origin is not None
-        ),
+        *(pairs(capitalised(name), frame_rows(scenario, pose.pose)) for name, pose in poses.items()),
         f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.",
-        sensitivity_view(solution),
+        sensitivity_view(result),
     )
 
 
-def _guarded_cells(objective: Objective, one: GuardedPose) -> dict[str, str]:
-    """Return what a pose guarantees, what it gives without errors, and where it is."""
-    pose, quantity = one.pose, objective.quantity
-    values = {"guaranteed": one.guaranteed, "lowest found": one.worst, "without errors": one.nominal}
+def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]:
+    """Write what a pose guarantees, what it gives without errors, and where it is."""
+    pose, quantity = guarded.pose, objective.quantity
+    values = {
+        "guaranteed": guarded.guaranteed,
+        "lowest found": guarded.worst,
+        "without errors": guarded.nominal,
+    }
+    angles = (pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
     return {
         **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
-        "position (m)": ", ".join(fixed(float(x), 3) for x in pose.position_m),
-        "roll, pitch, yaw (deg)": ", ".join(map(degrees_text, (pose.roll_rad, pose.pitch_rad, pose.yaw_rad))),
+        "position (m)": ", ".join(f"{x:z.3f}" for x in pose.position_m),
+        "roll, pitch, yaw (deg)": ", ".join(f"{math.degrees(angle_rad):z.2f}" for angle_rad in angles),
         "axis azimuth (deg)": azimuth_text(pose),
-        "worst node": one.binding_node,
+        "worst node": guarded.binding_node,
     }
 
 
-def _pose_rows(
-    scenario: Scenario, pose: Pose, own: Iterable[tuple[str, str | None]]
-) -> list[tuple[str, str | None]]:
-    """Return where the drone is and its attitude: names and words, between them what the antenna has."""
-    place = ", ".join(
-        f"{axis} {fixed(float(at), 4)} m" for axis, at in zip("xyz", pose.position_m, strict=True)
-    )
-    return [("position", place), ("attitude", _attitude_words(pose)), *own, *frame_rows(scenario, pose)]
+def _pose_rows(pose: Pose) -> list[tuple[str, str | None]]:
+    place = ", ".join(f"{axis} {x:z.4f} m" for axis, x in zip("xyz", pose.position_m, strict=True))
+    return [("position", place), ("attitude", _attitude_words(pose))]
+
+
+def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
+    tilt = f"{math.degrees(tilt_rad(pose)):z.3f} deg from vertical"
+    airframe = scenario.airframe
+    return [
+        ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
+        ("antenna axis", f"{tilt}, azimuth {azimuth_text(pose)} deg (0 east, 90 north)"),
+        ("", _in_brackets(pose.antenna_axis)),
+    ]
 
 
 def _attitude_words(pose: Pose | FramePose) -> str:
     angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
-    return ", ".join(f"{name} {degrees_text(angle_rad, 3)} deg" for name, angle_rad in angles.items())
+    return ", ".join(f"{name} {math.degrees(angle_rad):z.3f} deg" for name, angle_rad in angles.items())
 
 
 def _in_brackets(numbers: Iterable[float]) -> str:
-    return f"({', '.join(fixed(float(number), 6) for number in numbers)})"
+    return f"({', '.join(f'{number:z.6f}' for number in numbers)})"
 
 
-def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str]]:
-    """Return a pose on the Earth, in NED and as quaternions: a name and words for each.
-
-    Args:
-        scenario: without an origin there is nothing to tell.
-        pose: of the drone.
-    """
+def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
+    """Write a pose on the Earth, in NED and as quaternions; nothing without an origin."""
     frames = pose_frames(scenario, pose)
     if frames.geodetic is None:
         return []
@@ -241,24 +218,38 @@ def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str]]:
     ]
 
 
-def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> View | None:
-    """Return a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
-    scenario, quantity, links = solution.scenario, solution.objective.quantity, solution.links
-    binding = binding_nodes(solution)
-    own: dict[str, Sequence[str | None]] = {}
+def _gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | None]]:
+    """Write the gain of the drone's antenna towards each node, and with the node's antenna if it has one."""
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
+    gains = {"antenna gain (dB)": antenna_gain(*at, scenario.antenna_record)}
+    if scenario.node_antennas is not None:
+        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
+        gains["with the ground's (dB)"] = both
+    return {
+        name: [f"{x:z.2f}" for x in scenario.antenna_gain_dbi + to_db(gain)] for name, gain in gains.items()
+    }
+
+
+def _links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> View | None:
+    """Set a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
+    scenario, quantity, links = result.scenario, result.objective.quantity, result.links
+    binding = binding_nodes(result)
+    counted: dict[str, Sequence[str | None]] = {}
     if quantity.noun != quantity.ratio:
         numbers = [quantity.in_unit(quantity.at(link)) for link in links]
-        own[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
-        own[f"required {quantity.ratio} (dB)"] = [stated(node.min_sinr_db, ".6g") for node in scenario.nodes]
-        own["weight"] = [stated(node.weight, ".6g") for node in scenario.nodes]
+        counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
+        counted[f"required {quantity.ratio} (dB)"] = [
+            cell(node.min_sinr_db, ".6g") for node in scenario.nodes
+        ]
+        counted["weight"] = [cell(node.weight, ".6g") for node in scenario.nodes]
     if quantity.is_rate:
-        own["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
-    distances_m = [distance_m(solution.pose, point_m) for point_m in scenario.node_positions_m]
+        counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
+    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.node_positions_m]
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
-        **own,
+        **counted,
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
-        quantity.ratio: [None if own else f"{link.sinr:.5g}" for link in links],
+        quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],
         "distance (m)": [f"{distance:.2f}" for distance in distances_m],
         **more,
         "": ["worst" if link.node in binding else "" for link in links],
@@ -267,21 +258,21 @@ def _links_table(solution: Result, more: Mapping[str, Sequence[str]]) -> View | 
 
 
 def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
-    """Return how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
+    """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
     noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
-    names = scenario.eavesdropper_names
+    names, orientation = scenario.eavesdropper_names, pose.orientation(scenario.antenna_record)
     if scenario.eavesdroppers:
-        ratios = eavesdropper_snr(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
+        ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
     else:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
-        names, powers_w, receiver = scenario.jammer_names, scenario.jammer_powers_w, scenario.receiver
-        orientation = pose.orientation(scenario.antenna_record)
+        names, powers_w = scenario.jammer_names, scenario.jammer_powers_w
         link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
         antennas = (scenario.antenna_record, scenario.jammer_antennas)
-        ratios = received_power_w(*link, *antennas) / receiver.noise_power_w
+        ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
+    angles_deg = [math.degrees(null_angle_rad(pose, point_m)) for point_m in points]
     columns = {
         noun: names,
-        f"axis to {noun} (deg)": [degrees_text(null_angle_rad(pose, point_m), 4) for point_m in points],
+        f"axis to {noun} (deg)": [f"{angle_deg:.4f}" for angle_deg in angles_deg],
         "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points],
         heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
     }

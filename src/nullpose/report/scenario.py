@@ -11,9 +11,8 @@ import numpy as np
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
-from nullpose.report.document import Row, View, document, head, pairs, rows, table
+from nullpose.report.document import Row, View, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import outline_m
-from nullpose.report.numbers import stated
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
 from nullpose.scenario import Antenna, Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
 
@@ -27,21 +26,18 @@ _EARTHLY = {
 
 
 def summarise(scenario: Scenario) -> dict[str, Any]:
-    """Return a scenario's numbers as plain data: powers in both units, and the most that each link can carry.
+    """Compute a scenario's numbers as plain data: powers in both units, and the most that a link can carry.
 
     The best a link can do is the drone as close as the airspace's box and the keep-out allow, the dipole
-    broadside: ``g0 P / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. A point with a noise
-    of its own receives from the drone; any other point transmits to it.
-
-    Args:
-        scenario: nodes, jammers, eavesdroppers, receiver and airspace.
+    broadside: ``g0 P / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. Points with a noise
+    of their own receive from the drone; any other point transmits to it.
     """
-    receiver, own_noise_w = scenario.receiver, None
+    receiver, node_noise_w = scenario.receiver, None
     if Quantity.of(scenario).is_rate:
-        own_noise_w = scenario.node_noise_w
+        node_noise_w = scenario.node_noise_w
     return {
         "scenario": scenario.to_dict(),
-        "nodes": _points(scenario, scenario.nodes, own_noise_w),
+        "nodes": _points(scenario, scenario.nodes, node_noise_w),
         "jammers": _points(scenario, scenario.jammers, None),
         "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
         "noise_w": receiver.noise_power_w,
@@ -52,7 +48,7 @@ def summarise(scenario: Scenario) -> dict[str, Any]:
 
 
 def _on_earth(scenario: Scenario, origin: Origin) -> list[dict[str, Any]]:
-    """Return the latitudes, longitudes and absolute altitudes of the points and of the areas' extents."""
+    """Compute latitudes, longitudes and absolute altitudes of the points and of the areas' extents."""
     airspace, points = scenario.airspace, (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
     box_m = np.transpose([airspace.x_m, airspace.y_m]) if airspace.x_m and airspace.y_m else np.empty((0, 2))
     areas = [
@@ -60,13 +56,15 @@ def _on_earth(scenario: Scenario, origin: Origin) -> list[dict[str, Any]]:
         *[("geofence", airspace.geofence_outline_m, airspace.altitude_m)] * (airspace.geofence_m is not None),
         *((zone.name, outline_m(zone), zone.altitude_m) for zone in airspace.no_fly),
     ]
-    told: list[dict[str, Any]] = [{"name": one.name} | origin.place(one.position_m) for one in points]
+    rows: list[dict[str, Any]]
+    rows = [{"name": point.name} | origin.place(point.position_m) for point in points]
     for name, outline, altitude_m in areas:
         corners = outline if len(outline) else [(0.0, 0.0)]  # of an airspace without sides
         places = [origin.place([*corner, end]) for corner in corners for end in altitude_m or (0.0,)]
         keys = [key for key in places[0] if (altitude_m if key.startswith("alt") else len(outline))]
-        told.append({"name": name} | {key: [f(at[key] for at in places) for f in (min, max)] for key in keys})
-    return told
+        ends = {key: sorted(place[key] for place in places) for key in keys}
+        rows.append({"name": name} | {key: [values[0], values[-1]] for key, values in ends.items()})
+    return rows
 
 
 def _dbm(power_w: float) -> float:
@@ -74,19 +72,19 @@ def _dbm(power_w: float) -> float:
 
 
 def _points(
-    scenario: Scenario, points: Sequence[_Point], own_noise_w: FloatArray | None
+    scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray | None
 ) -> list[dict[str, Any]]:
-    """Return each point with its power, its noise if it receives from the drone, and its best link."""
-    receiver, transmitter, told = scenario.receiver, scenario.transmitter, []
+    """List each point with its power, its noise if it receives from the drone, and its best link."""
+    receiver, transmitter, rows = scenario.receiver, scenario.transmitter, []
     for i, point in enumerate(points):
         power_w = getattr(point, "transmit_power_w", None) or None
         nearest_m = _nearest_m(scenario, np.asarray(point.position_m))
-        sent_w, noise_w, own = power_w or 0.0, receiver.noise_power_w, {}
-        if own_noise_w is not None and transmitter is not None:
-            sent_w, noise_w = transmitter.transmit_power_w, float(own_noise_w[i])
-            own = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
+        sent_w, noise_w, noise = power_w or 0.0, receiver.noise_power_w, {}
+        if noises_w is not None and transmitter is not None:
+            sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
+            noise = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
         ratio = point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
-        told.append(
+        rows.append(
             {
                 "name": point.name,
                 "position_m": list(point.position_m),
@@ -95,10 +93,10 @@ def _points(
                 "power_dbm": None if power_w is None else _dbm(power_w),
                 "nearest_m": nearest_m,
                 "best_power_to_noise_db": float(to_db(ratio)),
-                **own,
+                **noise,
             }
         )
-    return told
+    return rows
 
 
 def _nearest_m(scenario: Scenario, position_m: FloatArray) -> float:
@@ -110,11 +108,7 @@ def _nearest_m(scenario: Scenario, position_m: FloatArray) -> float:
 
 
 def scenario_view(scenario: Scenario) -> View:
-    """Return a scenario's points, airspace, vehicle and receiver, with what the links can carry at best.
-
-    Args:
-        scenario: any.
-    """
+    """Set a scenario's points, airspace and vehicle as tables, with the most that each link can carry."""
     numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
         "Nearest, highest: the drone as near as the airspace and the keep-out radius (around every point) "
@@ -122,8 +116,8 @@ def scenario_view(scenario: Scenario) -> View:
     )
     notes = [
         f"Node {node.name} requires more than the highest ratio of its link."
-        for node, told in zip(scenario.nodes, numbers["nodes"], strict=True)
-        if node.min_sinr_db is not None and node.min_sinr_db > told["best_power_to_noise_db"]
+        for node, link in zip(scenario.nodes, numbers["nodes"], strict=True)
+        if node.min_sinr_db is not None and node.min_sinr_db > link["best_power_to_noise_db"]
     ]
     if scenario.is_uncertain:
         notes.append("Errors and uncertainty are used for guaranteed values only.")
@@ -200,44 +194,40 @@ def _power_words(power_w: float) -> str:
 
 
 def _place_rows(places: Sequence[Mapping[str, Any]]) -> list[Row]:
-    """Return a row for each point on the Earth, and two for the ends of an area."""
-    single: list[dict[str, Any]] = []
-    for place in places:
-        spans = {key: value for key, value in place.items() if isinstance(value, list)}
-        for end, word in enumerate(("from", "to") if spans else ("",)):
-            name = f"{place['name']}, {word}" if word else place["name"]
-            single.append({**place, "name": name} | {key: ends[end] for key, ends in spans.items()})
-    columns: dict[str, list[str | None]] = {"": [one["name"] for one in single]}
+    """Set a row for each point and for each area on the Earth, of which both ends are given."""
+    columns: dict[str, list[str | None]] = {"": [place["name"] for place in places]}
     for heading, (key, digits) in _EARTHLY.items():
-        columns[heading] = [stated(one.get(key), f"z.{digits}f") for one in single]
+        ends = [place.get(key) for place in places]
+        ends = [end if end is None or isinstance(end, list) else [end] for end in ends]
+        columns[heading] = [end and " to ".join(f"{x:z.{digits}f}" for x in end) for end in ends]
     return rows(columns)
 
 
 def _points_table(
     noun: str, points: Sequence[_Point], numbers: Sequence[Mapping[str, Any]], best: str
 ) -> View | None:
-    """Return a row for each point: what points of its kind state, and what its link carries at best."""
+    """Set a row for each point: what points of its kind state, and what its link carries at best."""
     words = [_antenna_words(point) for point in points]
-    antennas = words if any(words) else []  # beside which there is room for one unit of power
+    antennas = words if any(words) else []  # beside which one unit of power has to do
     columns: dict[str, Sequence[str | None]] = {
         noun: [point.name for point in points],
         **{f"{axis} (m)": [f"{point.position_m[i]:g}" for point in points] for i, axis in enumerate("xyz")},
-        "noise (dBm)": [stated(each.get("noise_dbm"), ".2f") for each in numbers],
-        "power (dBm)": [stated(each["power_dbm"], ".2f") for each in numbers],
-        "power (W)": [None if antennas else stated(each["power_w"], ".6g") for each in numbers],
+        "noise (dBm)": [cell(each.get("noise_dbm"), ".2f") for each in numbers],
+        "power (dBm)": [cell(each["power_dbm"], ".2f") for each in numbers],
+        "power (W)": [None if antennas else cell(each["power_w"], ".6g") for each in numbers],
         "antenna": antennas or [None] * len(points),
-        "requires (dB)": [stated(getattr(point, "min_sinr_db", None), ".6g") for point in points],
-        "weight": [stated(getattr(point, "weight", None), ".6g") for point in points],
+        "requires (dB)": [cell(getattr(point, "min_sinr_db", None), ".6g") for point in points],
+        "weight": [cell(getattr(point, "weight", None), ".6g") for point in points],
         "uncertainty (m)": [_extents(point) for point in points],
     }
     if best:
-        columns["nearest (m)"] = [stated(each["nearest_m"], ".6g") for each in numbers]
-        columns[best] = [stated(each["best_power_to_noise_db"], ".2f") for each in numbers]
+        columns["nearest (m)"] = [cell(each["nearest_m"], ".6g") for each in numbers]
+        columns[best] = [cell(each["best_power_to_noise_db"], ".2f") for each in numbers]
     return table(f"{noun.capitalize()}s", rows(columns))
 
 
 def _antenna_words(point: _Point) -> str | None:
-    """Return which antenna a point has, how it lies and its gain; None for an isotropic one of 0 dBi."""
+    """Describe a point's antenna, how it lies and its gain; None for an isotropic one of 0 dBi."""
     axis = "" if point.antenna_axis is None else f" along {', '.join(f'{x:g}' for x in point.antenna_axis)}"
     null = "" if point.null_depth_db is None else f", null of {point.null_depth_db:g} dB"
     words = f"{point.antenna}{axis}{null}{_gain_words(point)}"
@@ -245,11 +235,11 @@ def _antenna_words(point: _Point) -> str | None:
 
 
 def _gain_words(antenna: _Point | Antenna | None) -> str:
-    """Return an antenna's gain after a comma, nothing where it is 0 dBi."""
+    """Write an antenna's gain after a comma, nothing where it is 0 dBi."""
     return "" if antenna is None or antenna.gain_dbi == 0.0 else f", {antenna.gain_dbi:g} dBi"
 
 
 def _extents(point: _Point) -> str | None:
-    """Return how far a point may be from where it is said to be; None if it is not."""
+    """Write how far a point may be from its position; None if it is not uncertain."""
     extents_m = np.atleast_1d(getattr(point, "uncertainty_m", None) or 0.0)
     return " x ".join(f"{size_m:g}" for size_m in extents_m) if np.any(extents_m > 0.0) else None

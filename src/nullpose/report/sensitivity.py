@@ -17,11 +17,7 @@ _NULL_GAIN = 0.1  # of the largest gain of a link: below it an interferer counts
 
 
 def sensitivity_view(result: Result) -> View | None:
-    """Return the smallest values found under errors as a table, with a sentence on a large loss.
-
-    Args:
-        result: of a solve, or of one pose that was given.
-    """
+    """Set the smallest values found under errors as a table, with a sentence on a large loss."""
     found = result.sensitivity
     if found is None:
         return None
@@ -35,26 +31,19 @@ def sensitivity_view(result: Result) -> View | None:
     }
     if not getattr(result.scenario, f"{point}s"):
         del kinds["jammers"]
+    nominal = quantity.in_unit(found.nominal)
     values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
     columns = {
         "error": list(kinds.values()),
         f"lowest {quantity.noun} found ({quantity.unit})": [number(value, quantity) for value in values],
-        f"change ({quantity.unit})": [
-            number(value - quantity.in_unit(found.nominal), quantity) for value in values
-        ],
+        f"change ({quantity.unit})": [number(value - nominal, quantity) for value in values],
     }
-    return document(
-        table("If things are off (by a search; the true lowest value can be lower)", rows(columns)),
-        sensitivity_words(result),
-    )
+    title = "If things are off (by a search; the true lowest value can be lower)"
+    return document(table(title, rows(columns)), sensitivity_words(result))
 
 
 def sensitivity_caption(result: Result) -> str:
-    """Return the smallest value found under all errors together, as a line for a figure; empty if none is.
-
-    Args:
-        result: of a solve, or of one pose that was given.
-    """
+    """Write the smallest value found under all errors together, as a line for a figure."""
     found = result.sensitivity
     if found is None:
         return ""
@@ -63,56 +52,34 @@ def sensitivity_caption(result: Result) -> str:
 
 
 def sizes_words(result: Result, sizes: ErrorSizes) -> str:
-    """Return the errors that are tried together, as in "1°, 1 m, jammers 10 m".
-
-    Args:
-        result: of a solve, or of one pose that was given.
-        sizes: the largest errors.
-    """
-    point = result.scenario.objective_record.interferers
-    moved = f", {point} {sizes.jammers_m:g} m" if getattr(result.scenario, point) else ""
+    """List the errors that are tried together, as in "1°, 1 m, jammers 10 m"."""
+    points = result.scenario.objective_record.interferers
+    moved = f", {points} {sizes.jammers_m:g} m" if getattr(result.scenario, points) else ""
     return f"{sizes.attitude_deg:g}°, {sizes.position_m:g} m{moved}"
 
 
 def sensitivity_words(result: Result) -> str | None:
-    """Say that a pose loses much under errors, and towards whom its null is; None if it does not.
-
-    Args:
-        result: of a solve, or of one pose that was given.
-    """
+    """Say that a pose loses much under errors, and towards whom its null is; None if it does not."""
     found = result.sensitivity
     if found is None or not found.loss_db() > NULL_LOSS_DB:
         return None
-    names = ", ".join(nulled_names(result))
+    names = ", ".join(_nulled_names(result))
     pose = f"The pose stands on a null (towards {names})" if names else "The value depends on these errors"
-    quantity = found.quantity
+    quantity, scenario = found.quantity, result.scenario
     loss = quantity.in_unit(found.nominal) - quantity.in_unit(found.all)
     words = with_unit(loss, quantity) if math.isfinite(loss) else "all of its value"
-    robust = f"--robust finds the best pose for {_robust_errors(result)}." if _has_robust_pose(result) else ""
-    return f"{pose}: under these errors it can lose {words} or more. {robust}".rstrip()
+    sentence = f"{pose}: under these errors it can lose {words} or more."
+    is_dipole = scenario.array is None and scenario.antenna_record.is_quadratic
+    if not is_dipole or isinstance(result.details, RobustDetails):
+        return sentence
+    errors = "such errors" if result.error_sizes == ErrorSizes() else "such errors, with the same --off"
+    errors = "the errors that the scenario states" if scenario.is_uncertain else errors
+    return f"{sentence} --robust finds the best pose for {errors}."
 
 
-def nulled_names(result: Result) -> list[str]:
-    """Return the names of the jammers or eavesdroppers whose link is in a null of the antenna.
-
-    Args:
-        result: with its pose.
-    """
+def _nulled_names(result: Result) -> list[str]:
+    """List the jammers or eavesdroppers whose link is in a null of the antenna."""
     scenario, pose = result.scenario, result.pose
     names = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_names")
     gains = interferer_gains(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
     return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN]
-
-
-def _robust_errors(result: Result) -> str:
-    """Return the errors that a robust solve takes."""
-    if result.scenario.is_uncertain:
-        return "the errors that the scenario states"
-    return "such errors" if result.error_sizes == ErrorSizes() else "such errors, with the same --off"
-
-
-def _has_robust_pose(result: Result) -> bool:
-    """Return whether a robust solve of the scenario can be asked for, and is not what was done."""
-    scenario = result.scenario
-    is_dipole = scenario.array is None and scenario.antenna_record.is_quadratic
-    return is_dipole and not isinstance(result.details, RobustDetails)

@@ -7,25 +7,23 @@ from pathlib import Path
 from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.document import View, document, grouped, table
-from nullpose.report.figures.style import write_figure
+from nullpose.report.figures.style import CURVES, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
-from nullpose.report.numbers import begun, bound_text
+from nullpose.report.numbers import bound_text, capitalised
 from nullpose.solver import Status
 from nullpose.study import SweepRow, SweepTable
 
+_SHARED = (
+    "Points without a certificate reuse the bound of another point, which is valid there too. "
+    "Solved alone, each of them has a certificate."
+)
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
 
 
 def write_sweep(
     sweep: SweepTable, folder: Path, *, log: bool = False, width: str | None = None
 ) -> tuple[Path, ...]:
-    """Return the paths of a sweep's CSV, PNG, SVG and PDF files after writing them.
-
-    Args:
-        sweep: what was found.
-        folder: an existing folder.
-        log: draw the swept setting on a logarithmic axis.
-        width: of the figure in print, a key of ``WIDTHS_MM``; None for a screen.
+    """Write a sweep as CSV, PNG, SVG and PDF to an existing folder; return the paths.
 
     Raises:
         OutputError: a file cannot be written.
@@ -36,11 +34,7 @@ def write_sweep(
 
 
 def sweep_view(sweep: SweepTable) -> View:
-    """Return a sweep as a table of the objective, one column per scheme, and what is proved of it.
-
-    Args:
-        sweep: what was found.
-    """
+    """Set a sweep as a table of the objective, a column for each scheme, and how certain it is."""
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
     labelled = [(Scheme(row.scheme).label, row) for row in sweep.rows]
@@ -50,28 +44,22 @@ def sweep_view(sweep: SweepTable) -> View:
         *([f"One row in {step} is shown."] if step > 1 else []),
         *(f"{line}." for line in certainty_lines(sweep)),
         *rigour_lines((label, row.objective.rigour) for label, row in labelled),
-        *_shared_lines(sweep),
+        *(
+            [_SHARED]
+            if any(row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows)
+            else []
+        ),
         *grouped((label, row.reason) for label, row in labelled),
     ]
-    title = f"{begun(quantity.smallest)} over the nodes ({quantity.unit})"
+    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
     return document(table(title, _rows(sweep, sweep.path)[::step]), "\n".join(lines))
 
 
-def _shared_lines(sweep: SweepTable) -> list[str]:
-    """Return why some points have no certificate, if they share the bound of another."""
-    shared = any(row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows)
-    words = (
-        "Points without a certificate reuse the bound of another point, which is valid there too. "
-        "Solved alone, each of them has a certificate."
-    )
-    return [words] if shared else []
-
-
 def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:
-    """Return a row for each value of a sweep."""
+    """Set a row for each value of a sweep."""
     rows = {value: {heading: f"{value:.6g}"} for value in sweep.values}
     for row in sweep.rows:
-        rows[row.value][Scheme(row.scheme).record.curve.label] = _cell(row)
+        rows[row.value][CURVES[row.scheme].label] = _cell(row)
     return list(rows.values())
 
 

@@ -5,21 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 from nullpose.report.document import View, head
+from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.style import write_figure
-from nullpose.report.figures.value_map import draw_value_map
-from nullpose.report.numbers import bound_words, count_of, fixed, value_words
+from nullpose.report.numbers import bound_words, value_words
 from nullpose.solver import Result
 from nullpose.study import Field
 
 
 def write_map(result: Result, field: Field, folder: Path, width: str | None = None) -> tuple[Path, ...]:
-    """Return the paths of a map's CSV, PNG and PDF files after writing them.
-
-    Args:
-        result: that the map is of.
-        field: the map.
-        folder: an existing folder.
-        width: of the figure in print, a key of ``WIDTHS_MM``; None for a screen.
+    """Write the map of a result as CSV, PNG and PDF to an existing folder; return the paths.
 
     Raises:
         OutputError: a file cannot be written.
@@ -29,20 +23,15 @@ def write_map(result: Result, field: Field, folder: Path, width: str | None = No
 
 
 def map_view(result: Result, field: Field) -> View:
-    """Return the best value of a map, where it is, and what is proved of the best pose.
-
-    Args:
-        result: that the map is of.
-        field: the map.
-    """
+    """Write the best value of a result's map, where it is, and what is proved of the best pose."""
     objective = result.objective
     value, position_m = field.best
-    place = ", ".join(fixed(x, 3) for x in position_m)
+    place = ", ".join(f"{x:z.3f}" for x in position_m)
     rows, columns = field.values.shape
     lines = (
         bound_words(objective),
         result.status.message,
-        f"map: {count_of(rows * columns, 'place')} {field.altitude_m:.4g} m up, "
+        f"map: {rows * columns:,} places {field.altitude_m:.4g} m up, "
         f"{field.east_m[1] - field.east_m[0]:.3g} m apart; best {value:.7g} {field.unit} at ({place}) m",
     )
     words = f"{objective.quantity.smallest} {value_words(objective)}"

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from html import escape
 from typing import NamedTuple
 
-from nullpose.problem.schemes import Curve, Scheme
-from nullpose.report.figures.style import CURVES
+from nullpose.problem.schemes import Scheme
+from nullpose.report.figures.style import CURVES, Curve
 from nullpose.studio.colours import round_steps
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.look import either, lit

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from nullpose import OutputError, UsageError
-from nullpose.report.plain import json_text
+from nullpose.files import json_text
 from nullpose.report.study import report_study
 from nullpose.study.monte_carlo import StudySpec, extra, read_study, run_study
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 from nullpose.errors import UsageError
 from nullpose.problem.schemes.maximum_gain import MAXIMUM_GAIN
 from nullpose.problem.schemes.optimum import OPTIMUM
-from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.record import SchemeRecord
 from nullpose.problem.schemes.vertical import VERTICAL
 from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
-__all__ = ["Curve", "Scheme", "SchemeRecord", "as_scheme"]
+__all__ = ["Scheme", "SchemeRecord", "as_scheme"]
 
 RECORDS = {record.name: record for record in (OPTIMUM, ZERO_INTERFERENCE, MAXIMUM_GAIN, VERTICAL)}
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.record import SchemeRecord
 
 if TYPE_CHECKING:
     from nullpose.problem.axis_field import AxisField
@@ -36,7 +36,6 @@ MAXIMUM_GAIN = SchemeRecord(
     name="maximum-gain",
     label="Maximum gain",
     short="max. gain",
-    curve=Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
     sentence=lambda scenario, null_jammer: "with an antenna broadside to both nodes",
     fields=_fields,
     note=_note,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.record import SchemeRecord
 
 if TYPE_CHECKING:
     from nullpose.problem.axis_field import AxisField
@@ -36,7 +36,6 @@ OPTIMUM = SchemeRecord(
     name="optimum",
     label="Optimum",
     short="optimum",
-    curve=Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
     sentence=_sentence,
     fields=_fields,
     any_objective=True,

@@ -11,27 +11,6 @@ if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """How a curve is drawn: told apart by colour, by line and by marker, so that any one is enough.
-
-    Args:
-        label: its name in words.
-        colour: as in ``#0a3fd6``.
-        line: a Matplotlib line style.
-        marker: a Matplotlib marker, or nothing.
-        width: line width, points.
-        order: drawing order, later ones on top.
-    """
-
-    label: str
-    colour: str
-    line: str | tuple[int, tuple[float, ...]]
-    marker: str
-    width: float
-    order: float
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchemeRecord:
     """One way to choose the pose.
@@ -43,7 +22,6 @@ class SchemeRecord:
         name: as in a file or an option.
         label: for tables.
         short: for the narrowest legends.
-        curve: how it is drawn.
         sentence: from a scenario and the jammer to be nulled: which axes a certificate speaks of, in words.
         fields: from a scenario and the jammer to be nulled: the axis fields by the names that they have in a
             certificate; None where the scheme names none.
@@ -59,7 +37,6 @@ class SchemeRecord:
     name: str
     label: str
     short: str
-    curve: Curve
     sentence: Callable[[Scenario, str | None], str]
     fields: Callable[[Scenario, str | None], Mapping[str, AxisField] | None]
     note: Callable[[Scenario, tuple[str, ...], int], str] = field(default=lambda *_: "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.record import SchemeRecord
 
 if TYPE_CHECKING:
     from nullpose.problem.axis_field import AxisField
@@ -21,7 +21,6 @@ VERTICAL = SchemeRecord(
     name="vertical",
     label="Vertical",
     short="vertical",
-    curve=Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
     sentence=lambda scenario, null_jammer: "with a vertical antenna",
     fields=_fields,
     reason_against=lambda scenario: (

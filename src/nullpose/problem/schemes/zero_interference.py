@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.problem.schemes.record import Curve, SchemeRecord
+from nullpose.problem.schemes.record import SchemeRecord
 
 if TYPE_CHECKING:
     from nullpose.problem.axis_field import AxisField
@@ -35,7 +35,6 @@ ZERO_INTERFERENCE = SchemeRecord(
     name="zero-interference",
     label="Zero interference",
     short="zero interf.",
-    curve=Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
     sentence=_sentence,
     fields=_fields,
     note=_note,

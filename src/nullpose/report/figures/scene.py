@@ -1,4 +1,4 @@
-"""A scene in 3-D: its points with their names, its fence and zones, and a vehicle."""
+"""A scene in 3-D: its points with their names, its fence, zones and sets, and a vehicle."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
+from mpl_toolkits.mplot3d import Axes3D, proj3d
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.bodies import draw_set, draw_zone, set_box_m
-from nullpose.report.figures.labels import Label, place_labels
 from nullpose.report.figures.style import GREY
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
@@ -34,6 +37,17 @@ KINDS = {
 }
 """Colour, marker and drawing order of points."""
 
+_SIDES = {
+    "above": (0.0, 7.0, "center", "bottom"),
+    "right": (7.0, 0.0, "left", "center"),
+    "left": (-7.0, 0.0, "right", "center"),
+    "below": (0.0, -7.0, "center", "top"),
+    "on": (0.0, 0.0, "center", "center"),
+}
+"""Where a name may stand: how far from its point, in points, and by which part of it it is held."""
+
+_MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
@@ -46,7 +60,7 @@ class View:
         pattern: radius drawn where the gain is largest; a pattern has no size of its own.
         azimuth_deg: where the camera stands, from x (east) towards y (north).
         zoom: how much of its place a scene fills.
-        pad_pt: more room between numbers and names of the level axes, points.
+        pad_pt: more space between numbers and names of the level axes, points.
     """
 
     inches: tuple[float, float]
@@ -110,77 +124,73 @@ class Stage:
         """The fence (None) and the no-fly zones with their corners, those left out that reach far away."""
         airspace, places_m = self.scenario.airspace, self.places_m[:, :2]
         middle_m, far_m = 0.5 * (places_m.min(axis=0) + places_m.max(axis=0)), _FAR * self.extent_m
-        outlines: list[tuple[NoFlyZone | None, FloatArray]] = []
-        outlines += [(zone, outline_m(zone)) for zone in airspace.no_fly]
+        outlines: list[tuple[NoFlyZone | None, FloatArray]]
+        outlines = [(zone, outline_m(zone)) for zone in airspace.no_fly]
         if airspace.geofence_m is not None:
             outlines.append((None, airspace.geofence_outline_m))
-        return [each for each in outlines if np.all(np.abs(each[1] - middle_m) <= far_m)]
+        return [outline for outline in outlines if np.all(np.abs(outline[1] - middle_m) <= far_m)]
 
 
-def draw_line(axes: Any, start: ArrayLike, stop: ArrayLike, **style: Any) -> None:
-    """Draw a straight line.
+def write_name(axes: Axes | Axes3D, name: str, point_m: FloatArray, colour: str, side: str = "right") -> None:
+    """Write a name at its point, on the first side where it is whole and over no other name.
 
     Args:
-        axes: where to draw.
-        start: shape ``(3,)``, metres.
-        stop: shape ``(3,)``, metres.
-        style: of the line.
+        axes: in 3-D or seen from above, with its limits, its view and its place in the figure set.
+        name: as it is; no part of it is a formula.
+        point_m: shape ``(2,)`` or ``(3,)``, metres.
+        colour: of the letters.
+        side: a key of ``_SIDES``, tried before the others.
     """
+    x, y = float(point_m[0]), float(point_m[1])
+    if isinstance(axes, Axes3D):
+        x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
+    look: dict[str, Any] = {"fontsize": rcParams["xtick.labelsize"], "color": colour, "zorder": 8}
+    look |= {"textcoords": "offset points", "annotation_clip": False, "parse_math": False}
+    halo = [withStroke(linewidth=2.0, foreground="white")]
+    others = [text.get_window_extent().shrunk(0.9, 0.7) for text in axes.texts]  # letters without rims
+    text = axes.annotate(name, (x, y), xytext=(0.0, 0.0), path_effects=halo, **look)
+    for place in (side, "above", "right", "left", "below"):
+        x_pt, y_pt, across, up = _SIDES[place]
+        text.set(position=(x_pt, y_pt), ha=across, va=up)
+        box = text.get_window_extent()
+        is_whole = isinstance(axes, Axes3D) or (axes.bbox.contains(*box.min) and axes.bbox.contains(*box.max))
+        if is_whole and not any(box.shrunk(0.9, 0.7).overlaps(other) for other in others):
+            break
+
+
+def draw_line(axes: Axes3D, start: ArrayLike, stop: ArrayLike, **style: object) -> None:
+    """Draw a straight line between two points, each of shape ``(3,)``, metres."""
     axes.plot(*np.stack([start, stop]).T, **style)
 
 
-def draw_panel(axes: Any, stage: Stage, pose: Pose, draw_vehicle: Callable[[Any, Stage, Pose], None]) -> None:
-    """Draw the scene, the vehicle at a pose, and the names of points.
-
-    Args:
-        axes: where to draw, three-dimensional, its place in the figure set.
-        stage: what is to be seen.
-        pose: of the vehicle.
-        draw_vehicle: draws it.
-    """
+def draw_panel(
+    axes: Axes3D, stage: Stage, pose: Pose, draw_vehicle: Callable[[Axes3D, Stage, Pose], None]
+) -> None:
+    """Draw the scene, the vehicle at a pose, and the names of points in axes whose place is set."""
     axes.computed_zorder = False
-    labels = _draw_scene(axes, stage, pose)
-    draw_vehicle(axes, stage, pose)
-    place_labels(axes, labels, pose.position_m, stage.view.pattern * stage.extent_m)
-
-
-def _draw_scene(axes: Any, stage: Stage, pose: Pose) -> list[Label]:
-    """Return the names of points and zones, after drawing the scene around a pose, all but the vehicle."""
     _frame(axes, stage)
     position, floor_m = pose.position_m, axes.get_zlim()[0]
     ground = np.array([*position[:2], floor_m])
     draw_line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
-    labels = []
     for kind, point in stage.points:
         place, (colour, marker, order) = np.asarray(point.position_m), KINDS[kind]
         axes.scatter(*place, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=kind)
-        around_m = 0.0
         if isinstance(point, Node):
             draw_line(axes, place, position, color=colour, linewidth=0.8, alpha=0.7, zorder=2)
         else:
-            look = {
-                "linewidth": 1.5,
-                "linestyle": (0, (3, 1.5)),
-                "zorder": 6.6,
-                "label": f"line to the {kind}",
-            }
-            draw_line(axes, position, place, color=colour, **look)
+            line = {"linewidth": 1.5, "linestyle": (0, (3, 1.5)), "zorder": 6.6}
+            draw_line(axes, position, place, color=colour, label=f"line to the {kind}", **line)
             draw_line(axes, place, [*place[:2], floor_m], color=colour, linewidth=0.8, linestyle=":")
-            around_m = point.uncertainty_reach_m if stage.uncertain else 0.0
-            if around_m > 0.0:
+            if stage.uncertain and point.uncertainty_reach_m > 0.0:
                 draw_set(axes, point, colour, f"where the {kind} may be")
-        labels.append(Label(point.name, place, colour, beside=kind != "node", around_m=around_m))
+        write_name(axes, point.name, place, colour, "above" if kind == "node" else "right")
     for zone, corners_m in stage.zones:
-        labels += draw_zone(axes, zone, corners_m, FORBIDDEN)
-    return labels
+        _draw_zone(axes, zone, corners_m)
+    draw_vehicle(axes, stage, pose)
 
 
 def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
-    """Return the low and the high corner of the space drawn, each (3,), metres.
-
-    Args:
-        stage: what is to be seen.
-    """
+    """Compute the low and the high corner of the space drawn, each (3,), metres."""
     extent_m, points = stage.extent_m, stage.places_m
     hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
@@ -190,11 +200,11 @@ def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
     flat += [corners_m for _, corners_m in stage.zones]
     low, high = np.vstack(flat).min(axis=0), np.vstack(flat).max(axis=0)
     top_m = max(pose.position_m[2] for pose in stage.poses) + 1.3 * stage.view.pattern * extent_m
-    low_m = min(0.0, points[:, 2].min())
-    return np.append(low, low_m), np.append(high, top_m)
+    return np.append(low, min(0.0, points[:, 2].min())), np.append(high, top_m)
 
 
-def _frame(axes: Any, stage: Stage) -> None:
+def _frame(axes: Axes3D, stage: Stage) -> None:
+    """Set limits, names and ticks of the axes, and the camera."""
     low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
@@ -211,3 +221,40 @@ def _frame(axes: Any, stage: Stage) -> None:
         axis.set_major_locator(FixedLocator(inside))
         axis.set_pane_color((0.97, 0.97, 0.97, 1.0))
     axes.view_init(elev=stage.view.elevation_deg, azim=stage.view.azimuth_deg)
+
+
+def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray) -> None:
+    """Draw a zone as a body that can be seen through, or the geofence (None) as a line on the ground."""
+    bottom_m, top_m = axes.get_zlim()
+    if zone is None:
+        ring = np.vstack([corners_m, corners_m[:1]])
+        axes.plot(*ring.T, bottom_m, color=GREY, linewidth=1.2, linestyle=(0, (6, 2)), label="geofence")
+        return
+    low_m, high_m = max(zone.floor_m, bottom_m), min(zone.ceiling_m, top_m)
+    if not high_m > low_m:
+        return
+    lower, upper = (np.column_stack([corners_m, np.full(len(corners_m), z)]) for z in (low_m, high_m))
+    walls = np.stack([lower, np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0), upper], axis=1)
+    for faces, edge in ((walls, "none"), ([lower, upper], FORBIDDEN)):
+        look = {"facecolor": (FORBIDDEN, 0.10), "edgecolor": edge, "linewidth": 0.8, "zorder": 1.0}
+        axes.add_collection3d(Poly3DCollection(faces, **look))
+    axes.plot([], [], [], color=FORBIDDEN, linewidth=0.8, label="no-fly zone")
+    write_name(axes, zone.name, np.append(corners_m.mean(axis=0), high_m), FORBIDDEN, "on")
+
+
+def set_box_m(point: Jammer | Eavesdropper) -> FloatArray:
+    """Compute the corners of the box around the set that a point may be anywhere in, ``(2, 3)``, metres."""
+    half_m = np.linalg.norm(point.uncertainty_matrix_m, axis=1)
+    return np.asarray(np.asarray(point.position_m) + np.stack([-half_m, half_m]))
+
+
+def draw_set(axes: Axes3D, point: Jammer | Eavesdropper, colour: str, label: str) -> None:
+    """Draw wires on the surface ``{position + A x : |x| = 1}`` of the set that a point may be anywhere in."""
+    around, down = np.meshgrid(
+        np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1),
+        np.linspace(0.0, math.pi, (_PARALLELS + 1) * _STEPS + 1),
+    )
+    ball = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=-1)
+    surface_m = np.asarray(point.position_m) + ball @ point.uncertainty_matrix_m.T
+    look = {"color": colour, "linewidth": 0.6, "alpha": 0.75, "zorder": 5.5, "label": label}
+    axes.plot_wireframe(*np.moveaxis(surface_m, -1, 0), rstride=_STEPS, cstride=_STEPS, **look)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,6 @@ from numpy.typing import ArrayLike
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing
 from nullpose.physics.types import FloatArray
-from nullpose.problem.schemes import Curve, Scheme
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,11 +23,38 @@ if TYPE_CHECKING:
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
 _FORMATS = (".png", ".svg", ".pdf")
-_NAMED = ".png, .svg or .pdf"
 
 
-CURVES: Mapping[str, Curve] = MappingProxyType({scheme.value: scheme.record.curve for scheme in Scheme})
-"""How schemes are drawn."""
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """How a curve is drawn: told apart by colour, by line and by marker, so that any one is enough.
+
+    Args:
+        label: its name in words.
+        colour: as in ``#0a3fd6``.
+        line: a Matplotlib line style.
+        marker: a Matplotlib marker, or nothing.
+        width: line width, points.
+        order: drawing order, later ones on top.
+    """
+
+    label: str
+    colour: str
+    line: str | tuple[int, tuple[float, ...]]
+    marker: str
+    width: float
+    order: float
+
+
+CURVES: Mapping[str, Curve] = MappingProxyType(
+    {
+        "optimum": Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
+        "zero-interference": Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
+        "maximum-gain": Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
+        "vertical": Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
+    }
+)
+"""How schemes are drawn, by name."""
 
 VEHICLES: Mapping[str, Curve] = MappingProxyType(
     {
@@ -79,13 +106,7 @@ WIDTHS_MM: Mapping[str, float] = MappingProxyType({"column": 88.0, "page": 181.0
 
 
 def inches(usual: tuple[float, float], width: str | None, share: float) -> tuple[float, float]:
-    """Return the width and height of a figure.
-
-    Args:
-        usual: those on a screen, inches.
-        width: a key of ``WIDTHS_MM``, or None for the usual.
-        share: height over width in print.
-    """
+    """Choose the width and height of a figure: the usual, or in print its width and a share of it."""
     if width is None:
         return usual
     wide = WIDTHS_MM[width] / 25.4
@@ -94,11 +115,7 @@ def inches(usual: tuple[float, float], width: str | None, share: float) -> tuple
 
 @contextmanager
 def house_style(width: str | None = None) -> Iterator[None]:
-    """Apply the shared look to every figure made inside.
-
-    Args:
-        width: a key of ``WIDTHS_MM`` for the letters of a figure in print; None for a screen's.
-    """
+    """Apply the shared look to every figure made inside, with the letters of a screen or of print."""
     import matplotlib
 
     with matplotlib.rc_context(_RC if width is None else _RC | _PRINT):
@@ -106,11 +123,7 @@ def house_style(width: str | None = None) -> Iterator[None]:
 
 
 def line_style(look: Curve) -> dict[str, Any]:
-    """Return how a line with markers is drawn, as Matplotlib's arguments.
-
-    Args:
-        look: of the line.
-    """
+    """Translate a look into Matplotlib's arguments of a line with markers."""
     line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}
     return line | {"marker": look.marker, "markersize": 4.2, "markerfacecolor": "white", "zorder": look.order}
 
@@ -140,50 +153,33 @@ def draw_curve(
     drawstyle = "steps-post" if steps else "default"
     axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **line_style(look))
     if band is not None:
-        known = np.isfinite(band[0]) & np.isfinite(band[1])
+        finite = np.isfinite(band[0]) & np.isfinite(band[1])
         shade: dict[str, Any] = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}
-        if np.any(known):
-            axes.fill_between(across, *band, where=known, step="post" if steps else None, **shade)
+        if np.any(finite):
+            axes.fill_between(across, *band, where=finite, step="post" if steps else None, **shade)
 
 
 def write_figure(
     figure: Figure, folder: Path, stem: str, kinds: Iterable[str] = ("png", "svg")
 ) -> tuple[Path, ...]:
-    """Return the paths of a figure's files after writing them.
-
-    Args:
-        figure: what to write.
-        folder: an existing folder.
-        stem: file name without its suffix.
-        kinds: suffixes.
-
-    Raises:
-        OutputError: a file cannot be written.
-    """
+    """Write a figure to a file of each kind in an existing folder; return their paths."""
     return tuple(write_figure_file(figure, folder / f"{stem}.{kind}") for kind in kinds)
 
 
 def prepare_figure_file(path: Path) -> None:
     """Make sure that a figure can be written later, its folder made if need be.
 
-    Args:
-        path: ends in .png, .svg or .pdf.
-
     Raises:
-        UsageError: it ends otherwise.
+        UsageError: the name ends in none of .png, .svg and .pdf.
         OutputError: its folder cannot be made or written.
     """
     if path.suffix.lower() not in _FORMATS:
-        raise UsageError(f"figure: given {path}; allowed: a name that ends in {_NAMED}")
+        raise UsageError(f"figure: given {path}; allowed: a name that ends in .png, .svg or .pdf")
     prepare_folder(path.parent)
 
 
 def write_figure_file(figure: Figure, path: Path) -> Path:
-    """Return the path of a figure after writing it, as PNG, SVG or PDF by the path's suffix.
-
-    Args:
-        figure: what to write.
-        path: ends in .png, .svg or .pdf; an existing file is replaced.
+    """Write a figure as PNG, SVG or PDF, by the path's suffix; an existing file is replaced.
 
     Raises:
         OutputError: the file cannot be written.

@@ -15,11 +15,11 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style, inches
-from nullpose.report.numbers import axis_label, begun
+from nullpose.report.numbers import axis_label, capitalised
 from nullpose.study import SweepRow, SweepTable
 
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
-_ROOM = 3.0  # at least so many dB above the curves are shown
+_FREE = 3.0  # at least so many dB above the curves are shown
 _CARET_DOWN = 7  # Matplotlib's name for it
 _CAPTION_LETTERS = 125  # letters in a line of the caption
 _ABOVE_CURVES = 5.0
@@ -27,28 +27,19 @@ _MARKERS = 13  # at most so many markers on a curve, so that they do not merge i
 
 
 def quantity_of(table: SweepTable) -> Quantity:
-    """Return the quantity that a sweep maximised.
-
-    Args:
-        table: the sweep, with at least one row.
-    """
+    """Look up the quantity that a sweep of at least one row maximised."""
     return table.rows[0].objective.quantity
 
 
 def _in_unit(rows: Iterable[SweepRow], name: str) -> FloatArray:
-    """Return values or bounds in their unit; NaN, which Matplotlib draws as a gap, for no number."""
+    """Convert values or bounds to their unit; NaN, which Matplotlib draws as a gap, for no number."""
     numbers = [(row.objective.quantity, getattr(row.objective, name)) for row in rows]
     found = [math.nan if number is None else quantity.in_unit(number) for quantity, number in numbers]
     return np.where(np.isfinite(found), found, math.nan)
 
 
 def draw_curves(axes: Axes, table: SweepTable) -> bool:
-    """Return whether bounds can be seen apart from their values, after drawing curves and bounds.
-
-    Args:
-        axes: where to draw.
-        table: the sweep.
-    """
+    """Draw curves and bounds; return whether bounds can be seen apart from their values."""
     apart = _VISIBLE
     if quantity_of(table).is_rate:
         apart = 0.01 * float(np.max(_in_unit(table.rows, "value")))
@@ -57,16 +48,11 @@ def draw_curves(axes: Axes, table: SweepTable) -> bool:
 
 
 def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bool:
-    """Return whether a curve has bounds that lie apart, after drawing it with a band up to them."""
+    """Draw a curve with a band up to its bounds; return whether they can be seen apart."""
     look, rows = CURVES[scheme], table.of(scheme)
-    levels, values, bounds = (
-        [row.value for row in rows],
-        _in_unit(rows, "value"),
-        _in_unit(rows, "upper_bound"),
-    )
-    first = list(CURVES).index(
-        scheme
-    )  # staggered, so that curves of many points which coincide both stay visible
+    values, bounds = _in_unit(rows, "value"), _in_unit(rows, "upper_bound")
+    levels = [row.value for row in rows]
+    first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
     step = math.ceil(len(rows) / _MARKERS)
     every = 1 if step == 1 else (first, max(len(CURVES), step))
     draw_curve(axes, look, levels, values, (values, bounds), every=every)
@@ -78,12 +64,7 @@ def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bo
 
 
 def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
-    """Write sentences in small letters under the axes, broken into lines.
-
-    Args:
-        figure: with its axes.
-        lines: sentences.
-    """
+    """Write sentences in small letters under the axes, broken into lines."""
     text = "\n".join(wrapped for line in lines for wrapped in textwrap.wrap(line, _CAPTION_LETTERS))
     figure.supxlabel(text, x=0.01, ha="left", fontsize=7.5, color=GREY, linespacing=1.35)
 
@@ -92,20 +73,14 @@ def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
     values, bounds = _in_unit(table.rows, "value"), _in_unit(table.rows, "upper_bound")
     low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # unlike the maximum, they pass over NaN
-    least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _ROOM
-    room = max(least, high - low)
-    if np.fmax.reduce(bounds) > high + room:
-        axes.set_ylim(low - 0.05 * room, high + room)
+    least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _FREE
+    free = max(least, high - low)
+    if np.fmax.reduce(bounds) > high + free:
+        axes.set_ylim(low - 0.05 * free, high + free)
 
 
 def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None) -> Figure:
-    """Return the figure of a sweep, its legend above the axes and what is proved below them.
-
-    Args:
-        table: what the sweep found.
-        log: draw the swept setting on a logarithmic axis.
-        width: in print, where nothing is said below the axes, a key of ``WIDTHS_MM``; None for a screen.
-    """
+    """Draw a sweep, its legend above the axes and, but in print (``WIDTHS_MM``), what is proved below."""
     lines = [f"{line}." for line in certainty_lines(table)]
     with house_style(width):
         size = inches((7.0, 4.6), width, 0.8 if width == "column" else 0.5)
@@ -113,26 +88,19 @@ def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None
         if draw_sweep_axes(figure.add_subplot(), table, log=log):
             lines.append("Each band ends at the upper bound, a small triangle.")
         columns = 2 if width == "column" else 4
-        figure.legend(
-            loc="outside upper center", ncols=columns, frameon=False, handlelength=3.2, columnspacing=1.4
-        )
+        look: dict[str, Any] = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
+        figure.legend(loc="outside upper center", ncols=columns, **look)
         if width is None:
             draw_caption(figure, lines)
     return figure
 
 
 def draw_sweep_axes(axes: Axes, table: SweepTable, *, log: bool = False) -> bool:
-    """Return whether bounds can be seen apart from their values, after drawing a sweep with its labels.
-
-    Args:
-        axes: where to draw.
-        table: what the sweep found.
-        log: draw the swept setting on a logarithmic axis.
-    """
+    """Draw a sweep with the names of its axes; return whether bounds can be seen apart."""
     quantity = quantity_of(table)
     seen = draw_curves(axes, table)
     _keep_curves_large(axes, table)
     axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
-    axes.set_ylabel(f"{begun(quantity.smallest)} over the nodes  ({quantity.unit})")
+    axes.set_ylabel(f"{capitalised(quantity.smallest)} over the nodes  ({quantity.unit})")
     axes.margins(x=0.02)
     return seen

@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from nullpose.problem.schemes import Curve
-from nullpose.report.figures.style import INK
+from nullpose.report.figures.style import INK, Curve
 from nullpose.report.numbers import percent
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.figures.panels import (

@@ -12,8 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from nullpose.problem.schemes import Curve
-from nullpose.report.figures.style import GREY, VEHICLES, house_style, line_style
+from nullpose.report.figures.style import GREY, VEHICLES, Curve, house_style, line_style
 from nullpose.report.study.cases import ReportCase
 from nullpose.report.study.summary import Summary
 

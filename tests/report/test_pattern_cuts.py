@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from nullpose.antenna.table import PatternTable
-from nullpose.report.figures.cuts import draw_pattern
+from nullpose.report.figures.pattern import draw_pattern
 
 
 def table_of(step_deg: float = 5.0) -> PatternTable:
@@ -36,16 +36,6 @@ def test_the_cuts_are_the_tables(figure: Figure) -> None:
         assert line[36:73, 1] == pytest.approx(gain_dbi[::-1, column + 36])
     for line in (azimuth, front, side):
         assert np.degrees(line[:-1, 0]) == pytest.approx(np.arange(0.0, 360.0, 5.0))
-
-
-def test_angles_grow_as_they_are_told(figure: Figure) -> None:
-    """Ahead is up and left is left, as seen from above; polar angles grow to both sides of the zenith."""
-    azimuth, front, _ = figure.axes[:3]
-    assert [axes.get_theta_direction() for axes in (azimuth, front)] == [1, -1]
-    assert [axes.get_theta_offset() for axes in (azimuth, front)] == pytest.approx([np.pi / 2.0] * 2)
-    words = [label.get_text() for label in front.get_xticklabels()]
-    assert words == ["0°", "45°", "90°", "135°", "180°", "135°", "90°", "45°"]
-    assert azimuth.get_xticklabels()[2].get_text() == "90°"
 
 
 def test_no_word_touches_another(figure: Figure) -> None:
