@@ -1,6 +1,6 @@
 """How fast a study goes: ``python -m benchmarks.study``.
 
-The rate of one process without Dask, of the embedded cluster with two workers, and of one and two workers
+The rate of one process, of a pool of two, and of one and two workers
 that are started by hand, on the same scenes. The first fifth of each run, in which kernels are loaded, does
 not count. Beside scenes per second there are scenes per second of processor time, of client, scheduler and
 workers together, which other work on the machine disturbs less.
@@ -141,8 +141,8 @@ def compare(scenes: int, chunk: int) -> None:
             flush=True,
         )
 
-    add("one process, no Dask", 1, lambda: measured(spec, chunk, [], workers=0))
-    add("embedded cluster", 2, lambda: measured(spec, chunk, [], workers=2))
+    add("one process", 1, lambda: measured(spec, chunk, [], workers=0))
+    add("pool of processes", 2, lambda: measured(spec, chunk, [], workers=2))
     for workers in (1, 2):
         with by_hand(workers) as (address, others):
             add("by hand", workers, lambda a=address, o=others: measured(spec, chunk, o, scheduler=a))

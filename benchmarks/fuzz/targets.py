@@ -121,7 +121,7 @@ def _folder_targets(folder: Path, paper: bytes) -> list[Target]:
     run_study(load_spec(folder / "s.toml"), folder / "out", workers=0, chunk=1)
     held = {
         str(path.relative_to(folder)): path.read_bytes()
-        for path in ((folder / "out" / name) for name in ("manifest.json", "parts.jsonl"))
+        for path in (folder / "out" / "manifest.json", *sorted((folder / "out" / "parts").iterdir())[:1])
     }
     held["out/lock"] = json.dumps({"pid": 1, "host": "elsewhere"}).encode()
     shutil.rmtree(folder / "out")

@@ -206,7 +206,7 @@ def test_a_study_without_its_extra(
     run: Run, paper: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The message has the command that installs it for the interpreter that runs."""
-    monkeypatch.setattr("nullpose.study.monte_carlo.extra.find_spec", lambda name: None)
+    monkeypatch.setattr("nullpose.study.monte_carlo.folder.find_spec", lambda name: None)
     refused(
         run("study", "run", paper, "--out", tmp_path / "out"),
         "a study needs pyarrow",

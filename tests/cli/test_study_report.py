@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from nullpose.study.monte_carlo import StudySpec, extra, run_study
+from nullpose.study.monte_carlo import StudySpec, folder as folder_module, run_study
 
 Run = Callable[..., Result]
 
@@ -70,7 +70,7 @@ def test_no_study_and_no_extra(run: Run, tmp_path: Path, monkeypatch: pytest.Mon
     result = run("study", "report", tmp_path)
     assert result.exit_code == 2
     assert "no study is here" in result.stderr
-    monkeypatch.setattr(extra, "find_spec", lambda name: None)
+    monkeypatch.setattr(folder_module, "find_spec", lambda name: None)
     result = run("study", "report", tmp_path)
     assert result.exit_code == 2
     assert "-m pip install 'nullpose[study]'" in result.stderr

@@ -39,7 +39,7 @@ def run(
             "--scheduler",
             metavar="ADDRESS",
             help="A running Dask scheduler, as in tcp://host:8786.",
-            show_default="a cluster of this machine's processors",
+            show_default="processes on this machine",
         ),
     ] = None,
     workers: Annotated[
@@ -63,7 +63,7 @@ def run(
 
     It runs on this machine or a cluster. If it is interrupted, run the same command again to resume.
     """
-    from nullpose.study.monte_carlo.extra import require_extra
+    from nullpose.study.monte_carlo.folder import require_extra
 
     require_extra()
     from nullpose.study.monte_carlo import load_spec, run_study

@@ -13,9 +13,8 @@ from nullpose.report.study.cases import report_cases
 from nullpose.report.study.summary import Summary, summarise
 from nullpose.report.study.values import gather
 from nullpose.study.monte_carlo import StudySpec, read_study
-from nullpose.study.monte_carlo.chunk import packed
-from nullpose.study.monte_carlo.rows import Row, row_of
-from nullpose.study.monte_carlo.store import Store
+from nullpose.study.monte_carlo.folder import Folder
+from nullpose.study.monte_carlo.rows import Row, as_parquet, row_of
 
 TABLES: dict[str, Any] = {
     "name": "made up",
@@ -86,18 +85,18 @@ def make(tmp_path: Path) -> Make:
         whole = copy.deepcopy(TABLES) | {"scenes": scenes or max(1, len(cells)), "cases": list(cases)}
         whole = {key: value for key, value in (whole | tables).items() if value is not None}
         spec = StudySpec.from_dict(whole)
-        store = Store(tmp_path / "study")
-        store.parts_folder.mkdir(parents=True)
-        store.begin(spec, 4)
-        for first in range(0, len(cells), 4):
-            last = min(first + 4, len(cells)) - 1
+        folder, chunk = Folder(tmp_path / "study"), 4 if scenes is None else 1
+        folder.parts_folder.mkdir(parents=True)
+        folder.write_manifest(spec, chunk, {"nullpose": "0"})
+        for first in range(0, len(cells), chunk):
+            last = min(first + chunk, len(cells)) - 1
             rows = [
                 made_row(scene, point, case, cell)
                 for scene in range(first, last + 1)
                 for point, at_point in enumerate(cells[scene])
                 for case, cell in zip(spec.case_names, at_point, strict=True)
             ]
-            store.add(*packed(spec, rows, first, last, 1.0))
+            folder.add(first, last, as_parquet(spec, rows, 0, 1.0))
         return tmp_path / "study"
 
     return made

@@ -138,6 +138,15 @@ class Farm:
             assert time.monotonic() < deadline, "it did not happen in time"
             time.sleep(0.02)
 
+    @staticmethod
+    def is_there(group: int) -> bool:
+        """Tells whether a group has a process."""
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return False
+        return True
+
     def end(self) -> None:
         """Kills what is still there, with what it started."""
         for process in self.started:

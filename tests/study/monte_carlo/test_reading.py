@@ -91,15 +91,6 @@ def test_arrays_have_a_dimension_for_each_choice(table: StudyTable) -> None:
         assert float(arrays["value"].sel(scene=row.scene, case=row.case, **at)) == row.value
 
 
-def test_a_damaged_part_is_not_read(spec: Spec, tmp_path: Path) -> None:
-    """A part whose bytes are not those listed is told, with what mends it."""
-    run_study(spec(scenes=2), tmp_path, workers=0, chunk=1)
-    part = tmp_path / "parts" / "part-000000001-000000001.parquet"
-    part.write_bytes(part.read_bytes()[:-1])
-    with pytest.raises(UsageError, match=r"damaged or missing.*study run"):
-        read_study(tmp_path).frame()
-
-
 def test_no_study_is_there(tmp_path: Path) -> None:
     """A folder without a manifest is told apart from an empty study."""
     with pytest.raises(UsageError, match="no study is here"):

@@ -1,8 +1,7 @@
-"""Studies: many random scenes, each solved in several cases over swept values, here or on a cluster."""
+"""Studies: many random scenes, each solved in several cases over swept values."""
 
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import draw_scene, scene_at
-from nullpose.study.monte_carlo.ledger import StudyProgress
 from nullpose.study.monte_carlo.loading import load_spec
 from nullpose.study.monte_carlo.reading import (
     StudyStatus,
@@ -11,7 +10,7 @@ from nullpose.study.monte_carlo.reading import (
     study_spec,
     study_status,
 )
-from nullpose.study.monte_carlo.run import run_study
+from nullpose.study.monte_carlo.run import StudyProgress, run_study
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = [

@@ -6,65 +6,41 @@ import hashlib
 import json
 import time
 from collections.abc import Collection, Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib.metadata import version
 from itertools import product
-from typing import Annotated
-
-from pydantic import BaseModel, ConfigDict, Field
+from pathlib import Path
+from typing import NamedTuple
 
 from nullpose.errors import ClusterError, ScenarioError
 from nullpose.scenario import Scenario
-from nullpose.study.grid import solved_grid
-from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, row_of
 from nullpose.study.monte_carlo.solving import At, reason_of, solved_row, solved_together
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.versions import fingerprint
 
 # The reason of the rows of a scene that no worker survives.
 KILLED = "every worker that took this scene died; it may need more memory than they have"
 
 _TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
-_CALIBRATED_S = 0.3  # so much work tells how long a scene takes
-_CALIBRATING = tuple(2**doubled for doubled in range(10))  # scenes, until they take so long
-
-# Below 10^15, which is above all counts that there are, and below what a float cannot hold.
-Count = Annotated[int, Field(ge=0, lt=10**15)]
+_CALIBRATED_S = 0.3  # this much work tells the time of a scene
+_CALIBRATING = tuple(1 << doubled for doubled in range(10))  # scenes, until they take that long
 
 
-class Part(BaseModel):
-    """The rows of some scenes in a file, as the journal lists it.
+class SolvedChunk(NamedTuple):
+    """The rows of some scenes.
 
     Args:
-        first: the first scene.
-        last: the last scene.
-        rows: how many rows there are.
+        content: of their Parquet file.
+        rows: how many there are.
         failed: how many of them are failures.
-        seconds: how long a worker took for it.
-        size: the file's size in bytes.
-        sha256: the file's checksum.
+        seconds: time of the work.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
-    first: Count
-    last: Count
-    rows: Count
-    failed: Count
-    seconds: Annotated[float, Field(ge=0.0, lt=1e15)]
-    size: Count
-    sha256: str
-
-    @property
-    def scenes(self) -> int:
-        """How many scenes it has."""
-        return self.last - self.first + 1
-
-    @property
-    def name(self) -> str:
-        """The file's name."""
-        return f"part-{self.first:09d}-{self.last:09d}.parquet"
+    content: bytes
+    rows: int
+    failed: int
+    seconds: float
 
 
 def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()) -> Iterator[Row]:
@@ -80,58 +56,31 @@ def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()
     block = max(1, _TOGETHER // len(points))
     for start in range(first, last + 1, block):
         places = list(product(range(start, min(start + block, last + 1)), points))
-        drawn = {at: KILLED if at[0] in deadly else _drawn(draws, at) for at in places}
-        yield from _block_rows(spec, drawn)
+        yield from _block_rows(spec, {at: KILLED if at[0] in deadly else _drawn(draws, at) for at in places})
 
 
 def _block_rows(spec: StudySpec, drawn: dict[At, Scenario | str]) -> Iterator[Row]:
-    """Yield the rows of scenes that are in memory together; of one that is none the reason is given."""
+    """Yield the rows of scenes that are in memory together; a text is why there is no scene."""
     scenes = {at: scene for at, scene in drawn.items() if not isinstance(scene, str)}
     together = solved_together(spec, scenes)
-
-    def solved(at: At, case: StudyCase) -> Row:
+    for at, case in product(drawn, spec.cases):
         if at not in scenes:
-            return row_of(*at, case.name, FAILED, reason=str(drawn[at]))
-        return together.get((*at, case.name)) or solved_row(spec, scenes[at], *at, case)
-
-    return solved_grid(list(drawn), spec.cases, solved)
+            yield row_of(*at, case.name, FAILED, reason=str(drawn[at]))
+        else:
+            yield together.get((*at, case.name)) or solved_row(spec, scenes[at], *at, case)
 
 
 def _drawn(draws: Draws, at: At) -> Scenario | str:
-    """Return a scene at a combination of swept values, or why there is none."""
     try:
         return draws.at(*at)
     except ScenarioError as error:
         return reason_of(error)
 
 
-def packed(spec: StudySpec, rows: list[Row], first: int, last: int, seconds: float) -> tuple[Part, bytes]:
-    """Return rows as a part, and the content of its file.
-
-    Args:
-        spec: the study.
-        rows: all rows of the scenes.
-        first: the first scene.
-        last: the last scene.
-        seconds: how long the work took.
-    """
-    content = as_parquet(spec, rows)
-    part = Part(
-        first=first,
-        last=last,
-        rows=len(rows),
-        failed=sum(row["status"] == FAILED for row in rows),
-        seconds=seconds,
-        size=len(content),
-        sha256=hashlib.sha256(content).hexdigest(),
-    )
-    return part, content
-
-
 def solve_chunk(
     spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()
-) -> tuple[Part, bytes]:
-    """Return the rows of some scenes as a part; this is what is sent to a worker.
+) -> SolvedChunk:
+    """Solve some scenes; this is the work that a worker is sent.
 
     Args:
         spec_json: the study as JSON.
@@ -141,34 +90,37 @@ def solve_chunk(
         deadly: scenes among them that no worker survives.
 
     Raises:
-        ClusterError: another nullpose is here, or what goes wrong is beyond a scene of its own.
+        ClusterError: the worker has another nullpose, or the fault is beyond a single scene.
     """
     began = time.perf_counter()
     spec = _spec(spec_json, expected)
     try:
         rows = list(rows_of(spec, first, last, deadly))
-        return packed(spec, rows, first, last, time.perf_counter() - began)
-    except Exception as error:  # not every exception finds its way from one process to another
+        seconds = time.perf_counter() - began
+        failed = sum(row["status"] == FAILED for row in rows)
+        content = as_parquet(spec, rows, failed, seconds)
+        return SolvedChunk(content, len(rows), failed, seconds)
+    except Exception as error:  # not every exception can be sent from one process to another
         reason = reason_of(error)
     raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {reason}")
 
 
 def seconds_per_scene(spec_json: str, expected: str) -> float:
-    """Return how long a scene takes here, from the first few, once all is compiled.
+    """Measure the time of a scene on the first few, once all is compiled.
 
     Args:
         spec_json: the study as JSON.
         expected: the fingerprint of the client's nullpose.
 
     Raises:
-        ClusterError: another nullpose is here.
+        ClusterError: the worker has another nullpose.
     """
     solve_chunk(spec_json, expected, 0, 0)
     for scenes in _CALIBRATING:
-        part, _ = solve_chunk(spec_json, expected, 0, scenes - 1)
-        if part.seconds >= _CALIBRATED_S:
+        seconds = solve_chunk(spec_json, expected, 0, scenes - 1).seconds
+        if seconds >= _CALIBRATED_S:
             break
-    return part.seconds / part.scenes
+    return seconds / scenes
 
 
 @lru_cache(maxsize=4)
@@ -179,3 +131,14 @@ def _spec(spec_json: str, expected: str) -> StudySpec:
             "and start the workers again"
         )
     return StudySpec.from_dict(json.loads(spec_json))
+
+
+@cache
+def fingerprint() -> str:
+    """Join the version of nullpose and a digest of its code: two that agree make the same rows."""
+    root = Path(__file__).parents[2]
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode())
+        digest.update(path.read_bytes().replace(b"\r\n", b"\n"))
+    return f"{version('nullpose')}+{digest.hexdigest()[:12]}"

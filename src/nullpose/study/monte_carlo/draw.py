@@ -17,7 +17,7 @@ from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
-from nullpose.study.monte_carlo.spec import StudySpec, known
+from nullpose.study.monte_carlo.spec import StudySpec, require_number
 
 FloatArray = NDArray[np.float64]
 _Swept = tuple[dict[str, Points], list[tuple[str, float]]]  # what is drawn, and what is set after that
@@ -55,7 +55,7 @@ def draw_scene(spec: StudySpec, index: int) -> Scenario:
         UsageError: there is no such scene.
         ScenarioError: no valid scene was drawn.
     """
-    return Draws(spec).base(known("scene", index, 0, spec.n_scenes - 1))
+    return Draws(spec).base(require_number("scene", index, 0, spec.n_scenes - 1))
 
 
 def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
@@ -70,8 +70,8 @@ def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
         UsageError: there is no such scene or combination.
         ScenarioError: no valid scene was drawn, or a swept value makes it invalid.
     """
-    scene = known("scene", index, 0, spec.n_scenes - 1)
-    return Draws(spec).at(scene, known("point", point, 0, len(spec.points) - 1))
+    scene = require_number("scene", index, 0, spec.n_scenes - 1)
+    return Draws(spec).at(scene, require_number("point", point, 0, len(spec.points) - 1))
 
 
 def quantity_of(spec: StudySpec) -> Quantity:

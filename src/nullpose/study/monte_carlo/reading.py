@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,12 +12,9 @@ from typing import TYPE_CHECKING, Any
 from nullpose.errors import UsageError
 from nullpose.notebook import html_table
 from nullpose.solver import Rigour
-from nullpose.study.monte_carlo.chunk import Part
-from nullpose.study.monte_carlo.extra import require_extra
-from nullpose.study.monte_carlo.lock import holder
-from nullpose.study.monte_carlo.rows import schema_of
+from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, Part, require_extra
+from nullpose.study.monte_carlo.rows import read_parquet, schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.store import QUANTITIES, Store
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,14 +27,14 @@ class StudyTable:
     """The rows of a study that are done, by scene, combination of swept values and case.
 
     Args:
-        store: the study's folder.
+        folder: of the study.
     """
 
-    def __init__(self, store: Store) -> None:
-        self._store, self._parts = store, store.parts()
-        self.manifest: dict[str, Any] = store.manifest()
+    def __init__(self, folder: Folder) -> None:
+        self._parts = folder.parts()
+        self.manifest: dict[str, Any] = folder.manifest()
         """What made the study: spec, its hash, versions, seed, objective."""
-        self.spec = StudySpec.from_dict(self.manifest["spec"], str(store.folder))
+        self.spec = StudySpec.from_dict(self.manifest["spec"], str(folder.path))
         """The study's spec."""
         self.quantity = QUANTITIES[self.manifest["objective"]]
         """The maximised quantity."""
@@ -94,22 +92,11 @@ class StudyTable:
         return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
 
     def _read(self, part: Part) -> pd.DataFrame:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        content, again = self._store.content_of(part), "nullpose study run, given the same spec and folder"
-        path = self._store.parts_folder / part.name
-        if content is None:
-            raise UsageError(
-                f"{path}: damaged or missing (its checksum is not the one listed); {again}, does it anew"
-            )
         try:
-            table = pq.read_table(pa.BufferReader(content))
-            if not table.schema.equals(schema_of(self.spec)):
-                raise ValueError("it has other columns than this study")
-        except (OSError, ValueError) as error:
-            raise UsageError(f"{path}: cannot be read ({error}); remove it; {again}, does it anew") from None
-        return self._as_frame(table)
+            return self._as_frame(read_parquet(self.spec, part.path))
+        except ValueError as error:
+            again = "nullpose study run, given the same spec and folder, does it anew"
+            raise UsageError(f"{part.path}: damaged ({error}); {again}") from None
 
     def _as_frame(self, table: Any) -> pd.DataFrame:
         frame = table.to_pandas()
@@ -127,7 +114,7 @@ def read_study(out: str | os.PathLike[str]) -> StudyTable:
         UsageError: no study is there, or an extra is missing.
     """
     require_extra()
-    return StudyTable(Store(Path(out)))
+    return StudyTable(Folder(Path(out)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,21 +166,24 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
     Raises:
         UsageError: no study is there.
     """
-    store = Store(Path(out))
-    manifest = store.manifest()
-    parts = store.parts()
+    folder = Folder(Path(out))
+    manifest, done, counts = folder.manifest(), [], []
+    for part in folder.parts():
+        with suppress(ValueError):  # a damaged part is done anew by the next run
+            counts.append(part.counts())
+            done.append(part)
     return StudyStatus(
         folder=str(out),
         name=manifest["name"],
         scenes=manifest["scenes"],
-        done=sum(part.scenes for part in parts),
-        rows=sum(part.rows for part in parts),
-        failed=sum(part.failed for part in parts),
-        parts=len(parts),
+        done=sum(part.scenes for part in done),
+        rows=sum(rows for rows, _, _ in counts),
+        failed=sum(failed for _, failed, _ in counts),
+        parts=len(done),
         chunk=manifest["chunk"],
-        size=sum(part.size for part in parts),
-        worked_s=sum(part.seconds for part in parts),
-        running=holder(Path(out)),
+        size=sum(part.path.stat().st_size for part in done),
+        worked_s=sum(seconds for _, _, seconds in counts),
+        running=folder.owner,
     )
 
 
@@ -206,4 +196,4 @@ def study_spec(out: str | os.PathLike[str]) -> StudySpec:
     Raises:
         UsageError: no study is there.
     """
-    return StudySpec.from_dict(Store(Path(out)).manifest()["spec"], str(out))
+    return StudySpec.from_dict(Folder(Path(out)).manifest()["spec"], str(out))

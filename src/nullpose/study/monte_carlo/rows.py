@@ -1,9 +1,10 @@
-"""The rows of a study: their columns, and how they are packed into Parquet."""
+"""The rows of a study: their columns, and the Parquet files that hold them."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -11,7 +12,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 if TYPE_CHECKING:
     import pyarrow as pa
 
-# What one case gives in one scene at one combination of swept values: what is known, by column.
+# Columns by name: what a case reaches in a scene at a combination of swept values.
 Row = dict[str, Any]
 
 FAILED = "failed"  # the status of a row that has a reason in place of a pose
@@ -36,26 +37,22 @@ _COLUMNS = {
 }
 
 
-def row_of(scene: int, point: int, case: str, status: str, **known: Any) -> Row:
-    """Return a row.
+def row_of(scene: int, point: int, case: str, status: str, **columns: Any) -> Row:
+    """Make a row.
 
     Args:
         scene: the scene's number.
         point: the combination's number.
         case: the case's name.
         status: certified, gap-not-reached, best-found, given or failed.
-        known: further columns.
+        columns: further columns.
     """
     at = {"scene": scene, "point": point, "case": case, "status": status}
-    return at | {"boxes": 0, "seconds": 0.0, "reason": ""} | known
+    return at | {"boxes": 0, "seconds": 0.0, "reason": ""} | columns
 
 
 def schema_of(spec: StudySpec) -> pa.Schema:
-    """Return the columns of a study's rows.
-
-    Args:
-        spec: the study.
-    """
+    """List the columns of a study's rows."""
     import pyarrow as pa
 
     swept = [(path, pa.float64()) for path in spec.swept]
@@ -64,17 +61,57 @@ def schema_of(spec: StudySpec) -> pa.Schema:
     return pa.schema([("scene", pa.int64()), ("point", pa.int32()), *swept, ("case", case), *results])
 
 
-def as_parquet(spec: StudySpec, rows: Iterable[Row]) -> bytes:
-    """Return rows as the content of a Parquet file.
+def as_parquet(spec: StudySpec, rows: Sequence[Row], failed: int, seconds: float) -> bytes:
+    """Pack rows into a Parquet file; its pages have checksums, its footer the counts.
 
     Args:
         spec: the study.
-        rows: in the order in which they are to stand.
+        rows: in the order of the file.
+        failed: number of failures among them.
+        seconds: time that the work took.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    points, content = spec.points, io.BytesIO()
-    whole = [row | points[row["point"]] for row in rows]
-    pq.write_table(pa.Table.from_pylist(whole, schema=schema_of(spec)), content, compression="zstd")
+    schema = schema_of(spec).with_metadata({"failed": str(failed), "seconds": repr(seconds)})
+    table = pa.Table.from_pylist([row | spec.points[row["point"]] for row in rows], schema=schema)
+    content = io.BytesIO()
+    # statistics of pages are for searching; without them there is less that no checksum covers
+    pq.write_table(table, content, compression="zstd", write_page_checksum=True, write_statistics=False)
     return content.getvalue()
+
+
+def read_parquet(spec: StudySpec, path: Path) -> pa.Table:
+    """Read a part of a study, every page by its checksum.
+
+    Raises:
+        ValueError: a page has another checksum, or this is no file of the study's columns.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        # threads that meet damage may never end
+        table = pq.read_table(path, page_checksum_verification=True, use_threads=False, partitioning=None)
+    except (OSError, pa.ArrowException) as error:
+        raise ValueError(str(error)) from None
+    if not table.schema.equals(schema_of(spec)):
+        raise ValueError("it has other columns than this study")
+    return table
+
+
+def read_counts(path: Path) -> tuple[int, int, float]:
+    """Read the numbers of rows and failures, and the seconds of work, from a part's footer.
+
+    Raises:
+        ValueError: it has no such footer.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        footer = pq.read_metadata(path)
+        stated = footer.metadata or {}
+        return footer.num_rows, int(stated[b"failed"]), float(stated[b"seconds"])
+    except (OSError, KeyError, pa.ArrowException) as error:
+        raise ValueError(str(error)) from None

@@ -2,26 +2,93 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable
+import platform
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
-from nullpose.study.monte_carlo.engine import solver_of
-from nullpose.study.monte_carlo.extra import require_extra
-from nullpose.study.monte_carlo.ledger import Ledger, StudyProgress
+from nullpose.study.monte_carlo.chunk import SolvedChunk, fingerprint, seconds_per_scene, solve_chunk
+from nullpose.study.monte_carlo.folder import Folder, require_extra
 from nullpose.study.monte_carlo.loading import require_sound
-from nullpose.study.monte_carlo.lock import locked
 from nullpose.study.monte_carlo.mounts import with_best_mounts
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
-from nullpose.study.monte_carlo.spec import StudySpec, known
-from nullpose.study.monte_carlo.store import Store
+from nullpose.study.monte_carlo.spec import StudySpec, require_number
+from nullpose.study.monte_carlo.workers import LOOK_S, WorkerDiedError, Workers, workers_of
 
 MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
 
 _PART_S = 1.0
 _MOST_WORKERS = 1024
+_LIBRARIES = ("nullpose", "numpy", "scipy", "numba", "pyarrow")
+
+Scenes = tuple[int, int]  # the first and the last
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyProgress:
+    """How far a run is, for its callback.
+
+    Args:
+        scenes: how many there are.
+        done: how many are in parts, those of earlier runs too.
+        rows: how many rows these have.
+        failed: how many of them are failures.
+        workers: threads that work; 0 while there is none.
+        rate: scenes per second of this run so far; 0 before the first part.
+        note: news besides; empty while scenes are solved.
+    """
+
+    scenes: int
+    done: int = 0
+    rows: int = 0
+    failed: int = 0
+    workers: int = 0
+    rate: float = 0.0
+    note: str = ""
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Time that the rest takes at this rate; None before the first part."""
+        return (self.scenes - self.done) / self.rate if self.rate > 0.0 else None
+
+
+class _Tally:
+    """Counts of what is done, and the callback that hears of them."""
+
+    def __init__(self, scenes: int, on_progress: Callable[[StudyProgress], None] | None) -> None:
+        self.at = StudyProgress(scenes=scenes)
+        self._on_progress = on_progress
+        self._began, self._before = time.monotonic(), 0
+
+    def start(self) -> None:
+        """Count what is done from now on towards the rate."""
+        self._began, self._before = time.monotonic(), self.at.done
+
+    def count(self, scenes: int, rows: int, failed: int) -> None:
+        """Count a part."""
+        at = self.at
+        self.at = replace(at, done=at.done + scenes, rows=at.rows + rows, failed=at.failed + failed)
+
+    def look(self, workers: int, note: str) -> None:
+        """Take the number of workers, and tell a note."""
+        self.at = replace(self.at, workers=workers)
+        if note:
+            self.tell(note)
+
+    def tell(self, note: str = "") -> None:
+        """Call the callback."""
+        fresh, spent = self.at.done - self._before, time.monotonic() - self._began
+        if self._on_progress is not None:
+            rate = fresh / spent if fresh and spent > 0.0 else 0.0
+            self._on_progress(replace(self.at, rate=rate, note=note))
 
 
 def run_study(
@@ -41,55 +108,110 @@ def run_study(
     Args:
         spec: the study.
         out: its folder; made if it is missing.
-        scheduler: address of a running Dask scheduler, as in ``tcp://host:8786``; without it an embedded
-            cluster on this machine.
-        workers: processes of the embedded cluster; without it one for each processor; 0 for none, which
-            solves everything in this process.
-        chunk: scenes of a part; without it so many as take about a second. A study that is resumed keeps
-            the size it was begun with.
+        scheduler: address of a running Dask scheduler, as in ``tcp://host:8786``; without it processes on
+            this machine.
+        workers: number of processes; without it one for each processor; 0 for none, which solves everything
+            in this process.
+        chunk: scenes of a part; without it as many as take about a second. A study that is resumed keeps
+            its first size.
         on_progress: called after every part.
 
     Raises:
-        UsageError: another study is in the folder, a bad option, an extra is missing, or workers with
-            another nullpose.
+        UsageError: another study is in the folder, a bad option, or an extra is missing.
         ScenarioError: the parts of the spec do not fit together.
-        OutputError: the folder cannot be written, or another client writes it.
-        ClusterError: the scheduler is not there, or went away.
+        OutputError: the folder cannot be written, or another process writes it.
+        ClusterError: the scheduler is not there, or went away, or workers have another nullpose.
     """
-    require_extra()
+    require_extra(*(() if scheduler is None else ("distributed",)))
     if scheduler is not None and workers is not None:
         raise UsageError(
             "workers: given together with a scheduler, whose cluster has workers of its own; leave out "
             "one of the two"
         )
-    known("workers", 0 if workers is None else workers, 0, _MOST_WORKERS)
-    known("chunk", 1 if chunk is None else chunk, 1, MOST_IN_A_PART)
-    store = Store(Path(out))
-    if not store.is_begun():
+    require_number("workers", 0 if workers is None else workers, 0, _MOST_WORKERS)
+    require_number("chunk", 1 if chunk is None else chunk, 1, MOST_IN_A_PART)
+    folder, tally = Folder(Path(out)), _Tally(spec.n_scenes, on_progress)
+    if not folder.has_manifest:
         require_sound(spec)
-    with locked(prepare_folder(store.folder)):
-        begun = store.is_begun()
-        before = store.require_same(spec) if begun else {}
-        spec = (
-            study_spec(store.folder)
-            if begun
-            else with_best_mounts(spec, Ledger(spec, store, on_progress).tell)
-        )
-        ledger = Ledger(spec, store, on_progress)
-        to_do = ledger.open(int(before["chunk"])) if begun else iter(())
-        if begun and ledger.is_complete:
-            ledger.tell()
-            return study_status(store.folder)
-        with solver_of(ledger, scheduler, workers) as solver:
-            if not begun:
-                size = _size(spec, solver.seconds_per_scene()) if chunk is None else chunk
-                store.begin(spec, size)
-                to_do = ledger.open(size)
-            for part, content in solver.solved(to_do):
-                ledger.add(part, content)
-    return study_status(store.folder)
+    prepare_folder(folder.path)
+    with folder.locked():
+        is_new = not folder.has_manifest
+        if is_new:
+            spec = with_best_mounts(spec, tally.tell)
+        else:
+            folder.require_same(spec, version("nullpose"))
+            spec = study_spec(folder.path)
+            to_do = _resume(folder, spec, tally)
+            if tally.at.done == tally.at.scenes:
+                tally.tell()
+                return study_status(folder.path)
+        study = json.dumps(spec.to_dict()), fingerprint()
+        with workers_of(scheduler, workers, tally.look) as crew:
+            if is_new:
+                size = _size(spec, crew, study) if chunk is None else chunk
+                folder.write_manifest(spec, size, versions())
+                to_do = _resume(folder, spec, tally)
+            for (first, last), solved in _solved(crew, study, to_do, tally):
+                folder.add(first, last, solved.content)
+                tally.count(last - first + 1, solved.rows, solved.failed)
+                tally.tell()
+    return study_status(folder.path)
 
 
-def _size(spec: StudySpec, seconds: float) -> int:
-    """Return the scenes of a part that takes about a second, given how long one takes."""
+def _resume(folder: Folder, spec: StudySpec, tally: _Tally) -> Iterator[Scenes]:
+    """Count the sound parts of earlier runs; return the scenes of each part to do."""
+    sound, damaged = folder.clean(spec)
+    for part in sound:
+        rows, failed, _ = part.counts()
+        tally.count(part.scenes, rows, failed)
+    tally.start()
+    if damaged:
+        tally.tell(f"{damaged} part{'s' * (damaged > 1)} damaged, to be done anew")
+    done = {part.first for part in sound}
+    scenes, chunk = spec.n_scenes, int(folder.manifest()["chunk"])
+    return ((at, min(at + chunk, scenes) - 1) for at in range(0, scenes, chunk) if at not in done)
+
+
+def _solved(
+    crew: Workers, study: tuple[str, str], to_do: Iterable[Scenes], tally: _Tally
+) -> Iterator[tuple[Scenes, SolvedChunk]]:
+    """Yield the parts as they are solved; a few are with the workers at a time, earlier scenes first."""
+    queue, pending = iter(to_do), dict[Future[SolvedChunk], Scenes]()
+    while True:
+        for scenes in islice(queue, max(0, crew.in_flight - len(pending))):
+            pending[crew.submit(solve_chunk, *study, *scenes)] = scenes
+        if not pending:
+            return
+        for future in wait(pending, LOOK_S, FIRST_COMPLETED).done:
+            first, last = scenes = pending.pop(future)
+            try:
+                solved = crew.outcome(future)
+            except WorkerDiedError:
+                tally.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
+                deadly = [scene for scene in range(first, last + 1) if _is_deadly(crew, study, scene)]
+                solved = crew.outcome(crew.submit(solve_chunk, *study, first, last, deadly))
+            yield scenes, solved
+        crew.look()
+
+
+def _is_deadly(crew: Workers, study: tuple[str, str], scene: int) -> bool:
+    try:
+        crew.outcome(crew.submit(solve_chunk, *study, scene, scene))
+    except WorkerDiedError:
+        return True
+    return False
+
+
+def _size(spec: StudySpec, crew: Workers, study: tuple[str, str]) -> int:
+    """Choose the scenes of a part, which takes about a second."""
+    try:
+        seconds = crew.outcome(crew.submit(seconds_per_scene, *study))
+    except WorkerDiedError:  # of a scene that will show again in its own part
+        return 1
     return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))
+
+
+def versions() -> dict[str, str]:
+    """List the versions that a manifest records."""
+    libraries = {name: version(name) for name in _LIBRARIES}
+    return libraries | {"python": platform.python_version(), "code": fingerprint()}

@@ -168,17 +168,17 @@ class StudySpec(Section):
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-def known(noun: str, number: int, least: int, most: int) -> int:
-    """Return a number of a scene, of workers and the like, if it is one of those that there are.
+def require_number(noun: str, number: int, least: int, most: int) -> int:
+    """Refuse a number of a scene, of workers and the like that is out of range.
 
     Args:
-        noun: what it is.
-        number: as given.
-        least: the smallest.
-        most: the largest.
+        noun: in the message.
+        number: to check.
+        least: the smallest allowed.
+        most: the largest allowed.
 
     Raises:
-        UsageError: there is no such number.
+        UsageError: it is out of range.
     """
     if isinstance(number, bool) or not isinstance(number, int) or not least <= number <= most:
         raise UsageError(f"{noun}: given {number!r}; allowed: {least} to {most}")
