@@ -13,8 +13,7 @@ import nullpose
 from nullpose.paper.reproduce import reproduce
 from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import write_figure_file
-from nullpose.solver import solve_array
-from nullpose.solver.robust import solve_robust
+from nullpose.solver import solve
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
@@ -25,8 +24,8 @@ def draw_examples() -> None:
     """Draw the poses of the examples that pages show, as ``nullpose solve --figure`` does."""
     plain = ("eavesdropper", "geodetic", "no-fly")
     results = {name: nullpose.solve(nullpose.load(EXAMPLES / f"{name}.toml")) for name in plain}
-    results["robust"] = solve_robust(nullpose.load(EXAMPLES / "robust.toml"))
-    results["array"] = solve_array(nullpose.load(EXAMPLES / "array.toml"))
+    results["robust"] = solve(nullpose.load(EXAMPLES / "robust.toml"), robust=True)
+    results["array"] = solve(nullpose.load(EXAMPLES / "array.toml"))
     for name, result in results.items():
         write_figure_file(draw_result(result), IMAGES / f"{name}.png")
 

@@ -18,7 +18,7 @@ from rich.progress import track
 
 from benchmarks.soundness.search import feasible, nearest_in_band
 from nullpose.scenario import Scenario
-from nullpose.solver.robust import solve_robust
+from nullpose.solver import solve
 
 __all__ = ["Errors", "Verdict", "check_robust", "main", "make_robust_scene", "worst"]
 
@@ -158,14 +158,14 @@ def check_robust(number: int, *, gap: float = 0.02, time_limit_s: float = 10.0) 
     scenario = make_robust_scene(number)
     rng = np.random.default_rng([20263, number])
     began = time.perf_counter()
-    solution = solve_robust(scenario, gap=gap, time_limit_s=time_limit_s)
+    solution = solve(scenario, robust=True, gap=gap, time_limit_s=time_limit_s)
     seconds = time.perf_counter() - began
-    pose, guaranteed = solution.robust.pose, solution.robust.guaranteed
+    pose, guaranteed = solution.details.robust.pose, solution.details.robust.guaranteed
     faults = []
     least = _least(scenario, rng, pose.position_m, pose.antenna_axis)
     if least < guaranteed * (1.0 - 1e-12):
         faults.append(f"an error leaves {least!r}, less than the guaranteed {guaranteed!r}")
-    bound = solution.upper_bound
+    bound = solution.objective.upper_bound
     assert bound is not None
     near = (np.array(pose.position_m), np.array(pose.antenna_axis))
     reached = _best_pose(scenario, rng, near)

@@ -17,8 +17,8 @@ import numpy as np
 
 import nullpose
 from nullpose.physics.types import FloatArray
-from nullpose.solver import solve_array
-from nullpose.solver.robust import guarantee, solve_robust
+from nullpose.solver import solve
+from nullpose.solver.robust import guarantee
 from nullpose.study import AIRFRAME_CASES, AirframeCase, spaced
 
 FOLDER = Path(__file__).parent
@@ -54,7 +54,7 @@ def at(level: float) -> nullpose.Scenario:
     return nullpose.apply_overrides(PAPER, [f"{POWER}={level!r}"])
 
 
-def certified(case: AirframeCase, scenario: nullpose.Scenario, gap: float = 1e-6) -> nullpose.Solution:
+def certified(case: AirframeCase, scenario: nullpose.Scenario, gap: float = 1e-6) -> nullpose.Result:
     """Return what a vehicle reaches, certified.
 
     Args:
@@ -83,8 +83,8 @@ def array_value(scenario: nullpose.Scenario, elements: int, *, certify: bool = T
         elements: how many dipoles.
         certify: whether to prove what can be.
     """
-    array = {"elements": elements, "layout": "linear", "spacing_wavelengths": 0.5}
-    return solve_array(scenario, **array, certify=certify).objective.value
+    array = nullpose.Array(elements=elements, layout="linear", spacing_wavelengths=0.5)
+    return solve(scenario.model_copy(update={"array": array}), certify=certify).objective.value
 
 
 def tilt_rows() -> Iterator[Row]:
@@ -119,9 +119,9 @@ def error_rows() -> Iterator[Row]:
             scenario = case.on(nullpose.Scenario.from_dict(data))
             pose = certified(case, scenario).pose
             nominal = guarantee(scenario, pose.position_m, pose.antenna_axis).lower
-            robust = solve_robust(scenario)
-            best = max(nominal, robust.robust.guaranteed)
-            yield [case.name, degrees, radius_m, nominal, best, robust.upper_bound]
+            robust = solve(scenario, robust=True)
+            best = max(nominal, robust.details.robust.guaranteed)
+            yield [case.name, degrees, radius_m, nominal, best, robust.objective.upper_bound]
 
 
 def field(nodes: int, jammers: int, index: int) -> nullpose.Scenario:

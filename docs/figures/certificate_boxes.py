@@ -46,7 +46,7 @@ WINDOW_M = 1.25  # half the width of the closer views
 MOST_M = 43.0
 
 
-def solved(scheme: str, gap: float, power: int) -> nullpose.Solution:
+def solved(scheme: str, gap: float, power: int) -> nullpose.Result:
     """Return the paper's scenario solved at a jamming power.
 
     Args:
@@ -69,7 +69,7 @@ def write_table() -> None:
                 writer.writerow([scheme.replace("-", " "), f"$10^{{{exponent}}}$", *counts])
 
 
-def draw_floor(axes: Axes, solution: nullpose.Solution, size: float) -> set[int]:
+def draw_floor(axes: Axes, solution: nullpose.Result, size: float) -> set[int]:
     """Draw the leaves that touch the floor in plan view; return the tests among them.
 
     Args:
@@ -101,7 +101,7 @@ def draw_floor(axes: Axes, solution: nullpose.Solution, size: float) -> set[int]
     return set(tests.tolist())
 
 
-def draw_whole(axes: Axes, solution: nullpose.Solution) -> None:
+def draw_whole(axes: Axes, solution: nullpose.Result) -> None:
     """Draw the whole floor, with the nodes.
 
     Args:
@@ -119,7 +119,7 @@ def draw_whole(axes: Axes, solution: nullpose.Solution) -> None:
     axes.set_ylabel("y (m)")
 
 
-def draw_near(axes: Axes, solution: nullpose.Solution, exponent: int) -> set[int]:
+def draw_near(axes: Axes, solution: nullpose.Result, exponent: int) -> set[int]:
     """Draw the floor around the pose; return the tests that the proof's leaves use.
 
     Args:

@@ -39,24 +39,18 @@ from .scenario import (
     load as load,
 )
 from .solver import (
-    ArraySolution as ArraySolution,
     ErrorSizes as ErrorSizes,
     ManySolutions as ManySolutions,
+    Result as Result,
     Scheme as Scheme,
-    Solution as Solution,
     Status as Status,
     compare as compare,
     sensitivity as sensitivity,
     solve as solve,
-    solve_array as solve_array,
     solve_many as solve_many,
 )
 from .solver.certificate_from_proof import certificate_of as certificate_of
-from .solver.robust import (
-    RobustSolution as RobustSolution,
-    guarantee as guarantee,
-    solve_robust as solve_robust,
-)
+from .solver.robust import guarantee as guarantee
 from .studio.show import (
     show as show,
 )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
-from nullpose import Scenario, load, solve, solve_many, solve_robust
+from nullpose import Scenario, load, solve, solve_many
 from nullpose.certificate import verify
 from nullpose.physics import ErrorCase, objective_under, objective_value, rotation_between
 from nullpose.scenario import apply_overrides
@@ -66,7 +66,7 @@ def test_many_scenes_with_antennas_of_their_own() -> None:
 def test_robust_pose() -> None:
     """No error case tried leaves less than the pose guarantees."""
     scene = apply_overrides(load("examples/robust.toml"), ["antenna.null_depth_db=25"])
-    solution = solve_robust(scene, gap=3e-2)
+    solution = solve(scene, robust=True, gap=3e-2)
     assert solution.status == "certified"
     pose, guaranteed, rng = solution.pose, solution.details.robust.guaranteed, np.random.default_rng(3)
     reach_m, radius_m = scene.receiver.position_error_m, scene.jammers[0].uncertainty_m

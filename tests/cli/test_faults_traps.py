@@ -109,7 +109,7 @@ def test_latitude_and_longitude_exchanged(run: Run, tmp_path: Path) -> None:
     assert len(told.splitlines()) == 2
 
 
-@pytest.mark.parametrize("verb", ["solve", "compare", "solve_robust", "solve_array"])
+@pytest.mark.parametrize("verb", ["solve", "compare"])
 def test_a_path_given_to_a_function(paper: str, verb: str) -> None:
     """A function that takes a scenario says how to read one from a path."""
     with pytest.raises(TypeError, match=r"must be a Scenario; try Scenario\.from_file\('"):

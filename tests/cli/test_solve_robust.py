@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from nullpose import load, solve_robust
+from nullpose import load, solve
 
 Run = Callable[..., Result]
 
@@ -17,7 +17,7 @@ ROBUST = str(Path(__file__).parents[2] / "examples" / "robust.toml")
 @pytest.fixture(scope="module", autouse=True)
 def _kernels() -> None:
     """Compiles the kernels of robust solves, so that no test meets the notice by chance."""
-    solve_robust(load(ROBUST), gap=0.5)
+    solve(load(ROBUST), robust=True, gap=0.5)
 
 
 QUICK = ("--set", "receiver.position_error_m=0", "--gap", "0.05")

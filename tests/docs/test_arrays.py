@@ -8,7 +8,7 @@ import pytest
 
 import nullpose
 from nullpose.scenario import Array
-from nullpose.solver import Status, solve_array
+from nullpose.solver import Status, solve
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "arrays.md").read_text(encoding="utf-8")
@@ -23,8 +23,8 @@ ROWS = {
 }
 
 
-def _paper(ratio: float) -> nullpose.Scenario:
-    scenario = nullpose.load(ROOT / "examples" / "paper.toml")
+def _paper(ratio: float, array: Array) -> nullpose.Scenario:
+    scenario = nullpose.load(ROOT / "examples" / "paper.toml").model_copy(update={"array": array})
     return nullpose.apply_overrides(scenario, [f"jammers.M.power_w={ratio}"])
 
 
@@ -38,7 +38,7 @@ def test_every_ratio_is_there() -> None:
 def test_numbers_are_those_of_the_program(ratio: float) -> None:
     """Each value of a row is found again to its last digit, with a proof."""
     for elements, printed in zip((1, 2, 4, 8), ROWS[ratio], strict=True):
-        solution = solve_array(_paper(ratio), elements=elements, layout="linear", spacing_wavelengths=0.5)
+        solution = solve(_paper(ratio, Array(elements=elements, layout="linear", spacing_wavelengths=0.5)))
         assert solution.objective.value == pytest.approx(printed, abs=6e-5)
         assert solution.status is Status.CERTIFIED
 
@@ -49,4 +49,4 @@ def test_the_example_is_what_the_page_shows() -> None:
     assert shown is not None
     scenario = nullpose.load(EXAMPLE)
     assert scenario.array == Array(**tomllib.loads(shown[1])["array"])
-    assert solve_array(scenario).objective.value == pytest.approx(ROWS[10.0][2], abs=6e-5)
+    assert solve(scenario).objective.value == pytest.approx(ROWS[10.0][2], abs=6e-5)

@@ -229,7 +229,7 @@ def test_the_best_equidistant_position_is_proved(reproduction: Reproduction) -> 
         row = study.equidistant_at("maximum-gain", level)
         values = maximum_gain_sinr(with_jamming(level), plane).min(axis=-1)
         assert row.status == "certified"
-        assert values.max() <= row.upper_bound
+        assert values.max() <= row.objective.upper_bound
         assert row.min_sinr == pytest.approx(values.max(), rel=1e-3)
         best_m = plane.reshape(-1, 3)[np.argmax(values)]
         assert row.pose.position_m == pytest.approx(best_m, abs=0.1)

@@ -14,18 +14,18 @@ TURNS_RAD = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 @pytest.fixture(scope="module")
-def solution() -> nullpose.Solution:
+def solution() -> nullpose.Result:
     """The optimum of the paper's scenario under strong jamming."""
     scenario = nullpose.load(ROOT / "examples" / "paper.toml")
     return nullpose.solve(nullpose.apply_overrides(scenario, ["jammers.M.power_w=100"]))
 
 
-def test_value_without_error(solution: nullpose.Solution) -> None:
+def test_value_without_error(solution: nullpose.Result) -> None:
     """The value that the page starts from is the optimum."""
     assert f"reaches a smallest SINR of {solution.objective.value:.3f}" in PAGE
 
 
-def test_axis_two_degrees_off(solution: nullpose.Solution) -> None:
+def test_axis_two_degrees_off(solution: nullpose.Result) -> None:
     """The value left with the axis 2 degrees off is the worst over all directions of the error."""
     axis = solution.pose.antenna_axis
     across = np.cross(axis, [0.0, 0.0, 1.0])
@@ -36,7 +36,7 @@ def test_axis_two_degrees_off(solution: nullpose.Solution) -> None:
     assert f"only {worst:.3f} with its axis 2 degrees off" in PAGE
 
 
-def test_jammer_one_metre_off(solution: nullpose.Solution) -> None:
+def test_jammer_one_metre_off(solution: nullpose.Result) -> None:
     """The value left with the jammer 1 m aside is the worst over all horizontal directions."""
     x, y, z = solution.scenario.jammers[0].position_m
     moved = ([x + float(np.cos(turn)), y + float(np.sin(turn)), z] for turn in TURNS_RAD[::2])

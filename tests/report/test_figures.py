@@ -46,7 +46,7 @@ def test_visible_bounds_are_drawn(paper: Scenario) -> None:
     assert [len(near.axes[0].lines), len(bands_of(near))] == [1, 1]
     assert near.get_supxlabel().startswith("Each point is certified optimal within 1e-6")
     far = sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"], gap=0.5)
-    assert all(row.relative_gap > 0.1 for row in far.rows)
+    assert all(row.objective.relative_gap > 0.1 for row in far.rows)
     figure = draw_sweep(far)
     _, marks = figure.axes[0].lines
     assert list(marks.get_ydata()) == pytest.approx([row.upper_bound_db for row in far.rows])

@@ -5,36 +5,35 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import load
+from nullpose import apply_overrides, load
 from nullpose.physics.array import element_positions
 from nullpose.report.figures.pattern import beam_surface_m
 from nullpose.report.figures.poses import draw_array
-from nullpose.solver import ArraySolution, solve_array
+from nullpose.solver import Result, solve
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "array.toml"
 
 
 @pytest.fixture(scope="module")
-def solution() -> ArraySolution:
+def solution() -> Result:
     """The example."""
-    return solve_array(load(EXAMPLE), certify=False)
+    return solve(load(EXAMPLE), certify=False)
 
 
-def _elements(solution: ArraySolution) -> np.ndarray:
-    return element_positions(
-        solution.elements, solution.layout, solution.spacing_wavelengths, solution.yaw_rad
-    )
+def _elements(solution: Result) -> np.ndarray:
+    array = solution.scenario.array
+    return element_positions(array.elements, array.layout, array.spacing_wavelengths, solution.pose.yaw_rad)
 
 
-def _drawn_elements(solution: ArraySolution) -> np.ndarray:
+def _drawn_elements(solution: Result) -> np.ndarray:
     axes = draw_array(solution).axes[0]
     (dots,) = [
         each for each in axes.collections if str(each.get_label()).startswith("elements, not to scale")
     ]
-    return np.transpose(dots._offsets3d) - solution.position_m
+    return np.transpose(dots._offsets3d) - solution.pose.position_m
 
 
-def test_elements_stand_as_they_are_laid_out(solution: ArraySolution) -> None:
+def test_elements_stand_as_they_are_laid_out(solution: Result) -> None:
     """The dots are the elements, turned by the yaw, all enlarged by one factor."""
     drawn, real = _drawn_elements(solution), _elements(solution)
     factor = np.linalg.norm(drawn) / np.linalg.norm(real)
@@ -44,18 +43,18 @@ def test_elements_stand_as_they_are_laid_out(solution: ArraySolution) -> None:
 
 def test_a_circle_is_drawn_as_one() -> None:
     """Elements of a circular array are as far from the vehicle as each other."""
-    found = solve_array(load(EXAMPLE), elements=5, layout="circular", certify=False)
+    circle = apply_overrides(load(EXAMPLE), ["array.elements=5", "array.layout=circular"])
+    found = solve(circle, certify=False)
     distances = np.linalg.norm(_drawn_elements(found), axis=1)
     assert distances == pytest.approx([distances[0]] * 5)
 
 
-def test_the_beam_has_its_null_on_the_jammer(solution: ArraySolution) -> None:
+def test_the_beam_has_its_null_on_the_jammer(solution: Result) -> None:
     """Towards the jammer the surface drawn comes close to the vehicle, towards the node it does not."""
-    scenario, position = solution.scenario, solution.position_m
+    scenario, position = solution.scenario, solution.pose.position_m
     node = [link.node for link in solution.links].index(solution.binding_node)
-    surface = (
-        beam_surface_m(position, _elements(solution), solution.weights[node], 1.0).reshape(3, -1).T - position
-    )
+    weights = solution.details.weights[node]
+    surface = beam_surface_m(position, _elements(solution), weights, 1.0).reshape(3, -1).T - position
     reach = np.linalg.norm(surface, axis=1)
     assert reach.max() == pytest.approx(1.0)
 

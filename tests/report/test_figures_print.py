@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nullpose import Scenario, compare_airframes, load, solve, solve_array, solve_robust, sweep
+from nullpose import Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.comparison import compare_all
 from nullpose.report.figures.bars import draw_airframes, draw_comparison
 from nullpose.report.figures.plan import draw_value_map
@@ -40,8 +40,7 @@ def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
 @pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
 def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
     """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
-    solvers = {"array": solve_array, "robust": solve_robust}
-    solved = solvers.get(name, solve)(load(EXAMPLES / f"{name}.toml"), certify=False)
+    solved = solve(load(EXAMPLES / f"{name}.toml"), robust=name == "robust", certify=False)
     figure = draw_result(solved, width)
     figure.canvas.draw()
     legend = figure.legends[0].get_window_extent()

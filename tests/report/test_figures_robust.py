@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from nullpose import Scenario, load
 from nullpose.report.figures.poses import draw_robust
 from nullpose.report.figures.scene import draw_set, set_box_m
-from nullpose.solver.robust import RobustSolution, solve_robust
+from nullpose.solver import Result, solve
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "robust.toml"
 
@@ -22,17 +22,17 @@ def _turned() -> Scenario:
 
 
 @pytest.fixture(scope="module")
-def solution() -> RobustSolution:
+def solution() -> Result:
     """The example, searched alone."""
-    return solve_robust(load(EXAMPLE), certify=False)
+    return solve(load(EXAMPLE), robust=True, certify=False)
 
 
-def test_both_poses_with_what_they_guarantee(solution: RobustSolution) -> None:
+def test_both_poses_with_what_they_guarantee(solution: Result) -> None:
     """A panel for each, with its values in dB; the errors above them."""
     figure = draw_robust(solution)
     for axes, one, name in zip(
         figure.axes,
-        (solution.robust, solution.nominal),
+        (solution.details.robust, solution.details.nominal),
         ("robust pose", "best pose without errors"),
         strict=True,
     ):
@@ -45,17 +45,17 @@ def test_both_poses_with_what_they_guarantee(solution: RobustSolution) -> None:
     assert "smallest SINR; errors: axis 2 deg, position 0.5 m, M up to 3 m" in figure.get_suptitle()
 
 
-def test_both_panels_show_the_same_space(solution: RobustSolution) -> None:
+def test_both_panels_show_the_same_space(solution: Result) -> None:
     """Places can be compared: limits are the same, and both drones are inside."""
     first, second = draw_robust(solution).axes
     for name in ("get_xlim3d", "get_ylim3d", "get_zlim3d"):
         assert getattr(first, name)() == getattr(second, name)()
     low, high = first.get_ylim3d()
-    for one in (solution.robust, solution.nominal):
+    for one in (solution.details.robust, solution.details.nominal):
         assert low < one.pose.position_m[1] < high
 
 
-def test_the_set_is_drawn_around_its_jammer(solution: RobustSolution) -> None:
+def test_the_set_is_drawn_around_its_jammer(solution: Result) -> None:
     """Every wire is as far from the jammer as it may be off, in its colour, and in the legend once."""
     figure = draw_robust(solution)
     for axes in figure.axes:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nullpose import Pose, Solution, evaluate, solve
+from nullpose import Pose, Result, evaluate, solve
 from nullpose.errors import UsageError
 from nullpose.report.geojson import require_origin, solution_geojson, write_geojson
 from nullpose.scenario import Scenario, load
@@ -31,13 +31,13 @@ AIRSPACE = {
 
 
 @pytest.fixture(scope="module")
-def solution(paper: Scenario) -> Solution:
+def solution(paper: Scenario) -> Result:
     """The paper's solution, told of an origin and a richer airspace afterwards: neither moves a number."""
     scenario = Scenario.from_dict(paper.to_dict() | {"origin": ORIGIN, "airspace": AIRSPACE})
     return replace(solve(paper, certify=False), scenario=scenario)
 
 
-def features(solution: Solution, kind: str) -> list[dict[str, Any]]:
+def features(solution: Result, kind: str) -> list[dict[str, Any]]:
     """Returns the features of a kind, as JSON has them."""
     collection = json.loads(json.dumps(solution_geojson(solution), allow_nan=False))
     assert collection["type"] == "FeatureCollection"
@@ -50,7 +50,7 @@ def local_m(coordinates: list[float], alt_m: float = 238.0) -> np.ndarray:
     return enu_from_geodetic([lat_deg, lon_deg, *(height or [alt_m])], list(ORIGIN.values()))
 
 
-def test_every_part_is_there(solution: Solution) -> None:
+def test_every_part_is_there(solution: Result) -> None:
     """One feature for each point and each outline, each of the type that its kind has."""
     found = Counter(
         (each["properties"]["kind"], each["geometry"]["type"])
@@ -66,7 +66,7 @@ def test_every_part_is_there(solution: Solution) -> None:
     }
 
 
-def test_points_are_where_the_scenario_has_them(solution: Solution) -> None:
+def test_points_are_where_the_scenario_has_them(solution: Result) -> None:
     """Longitude, latitude and altitude, in this order, lead back to the positions within a millimetre."""
     (pose,) = features(solution, "pose")
     np.testing.assert_allclose(
@@ -80,7 +80,7 @@ def test_points_are_where_the_scenario_has_them(solution: Solution) -> None:
             assert feature["properties"]["position_m"] == list(point.position_m)
 
 
-def test_properties_are_the_solutions(solution: Solution) -> None:
+def test_properties_are_the_solutions(solution: Result) -> None:
     """Value, attitude and links are those of the solution, angles in degrees."""
     properties = features(solution, "pose")[0]["properties"]
     frames = solution.to_dict()["pose"]["frames"]
@@ -98,7 +98,7 @@ def test_properties_are_the_solutions(solution: Solution) -> None:
     assert features(solution, "jammer")[0]["properties"]["power_w"] == 1.0
 
 
-def test_the_antennas_bearing_is_clockwise_from_north(solution: Solution) -> None:
+def test_the_antennas_bearing_is_clockwise_from_north(solution: Result) -> None:
     """A dipole that leans to the east bears 90 degrees, one that leans to the north 0."""
     for axis, bearing in (((0.6, 0.0, 0.8), 90.0), ((0.0, 0.6, 0.8), 0.0), ((-0.6, 0.0, 0.8), 270.0)):
         pose = Pose.from_axis(solution.pose.position_m, axis)
@@ -107,7 +107,7 @@ def test_the_antennas_bearing_is_clockwise_from_north(solution: Solution) -> Non
         assert properties["antenna_tilt_deg"] == pytest.approx(math.degrees(math.acos(0.8)))
 
 
-def test_outlines_are_rings(solution: Solution) -> None:
+def test_outlines_are_rings(solution: Result) -> None:
     """Each outline is closed and runs counter-clockwise, as RFC 7946 asks for an outer ring."""
     for kind in ("airspace", "geofence", "no-fly"):
         for feature in features(solution, kind):
@@ -117,7 +117,7 @@ def test_outlines_are_rings(solution: Solution) -> None:
             assert sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(ring)) > 0.0
 
 
-def test_a_cylinder_is_enclosed(solution: Solution) -> None:
+def test_a_cylinder_is_enclosed(solution: Result) -> None:
     """The polygon that stands for a cylinder lies outside it, by less than 0.1 % of its radius."""
     mast, other = features(solution, "no-fly")
     assert (mast["properties"]["name"], other["properties"]["name"]) == ("mast", "Z2")
@@ -131,7 +131,7 @@ def test_a_cylinder_is_enclosed(solution: Solution) -> None:
     assert outer.max() < 10.01 + 1e-3
 
 
-def test_who_listens_in_is_on_the_map(solution: Solution, paper: Scenario) -> None:
+def test_who_listens_in_is_on_the_map(solution: Result, paper: Scenario) -> None:
     """Eavesdroppers are points too, with how far they may be from there; nodes tell their secrecy rate."""
     listener = {"name": "E", "position_m": [17.0, 15.0, 4.0], "uncertainty_m": [3.0, 2.0, 1.0]}
     threat = {"objective": "secrecy-rate", "transmitter": {"power_w": 1.0}, "eavesdroppers": [listener]}
@@ -145,7 +145,7 @@ def test_who_listens_in_is_on_the_map(solution: Solution, paper: Scenario) -> No
     assert features(secret, "jammer") == []
 
 
-def test_without_an_origin(solution: Solution, paper: Scenario, tmp_path: Path) -> None:
+def test_without_an_origin(solution: Result, paper: Scenario, tmp_path: Path) -> None:
     """A scenario that lies nowhere on the Earth is refused, with what to add, and nothing is written."""
     nowhere = replace(solution, scenario=paper)
     for refused in (lambda: require_origin(paper), lambda: write_geojson(nowhere, tmp_path / "x.geojson")):
@@ -154,7 +154,7 @@ def test_without_an_origin(solution: Solution, paper: Scenario, tmp_path: Path) 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_written_file_is_the_collection(solution: Solution, tmp_path: Path) -> None:
+def test_a_written_file_is_the_collection(solution: Result, tmp_path: Path) -> None:
     """The file holds the same, a feature a line; a number that JSON lacks is null."""
     silent = replace(solution, links=(replace(solution.links[0], sinr_db=-math.inf), solution.links[1]))
     path = write_geojson(silent, tmp_path / "out.geojson")
@@ -166,7 +166,7 @@ def test_a_written_file_is_the_collection(solution: Solution, tmp_path: Path) ->
     assert collection["features"][3:] == json.loads(json.dumps(solution_geojson(solution)))["features"][3:]
 
 
-def test_its_nodes_can_be_read_as_nodes(solution: Solution, tmp_path: Path) -> None:
+def test_its_nodes_can_be_read_as_nodes(solution: Result, tmp_path: Path) -> None:
     """The places of the nodes, given a power, are nodes of a scenario again, at the same positions."""
     nodes = [
         {**each, "properties": {"name": each["properties"]["name"], "power_w": 1.0}}

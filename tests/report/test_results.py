@@ -7,7 +7,7 @@ import re
 import pytest
 from rich.console import Console, RenderableType
 
-from nullpose import Scenario, Solution, solve
+from nullpose import Result, Scenario, solve
 from nullpose.report.comparison import compare_all, comparison_view
 from nullpose.report.numbers import bound_words
 from nullpose.report.results import binding_nodes, result_view
@@ -21,12 +21,12 @@ def text_of(view: RenderableType, width: int = 200) -> str:
 
 
 @pytest.fixture(scope="module")
-def optimum(paper: Scenario) -> Solution:
+def optimum(paper: Scenario) -> Result:
     """The optimum of the paper's scenario."""
     return solve(paper)
 
 
-def test_numbers_of_a_solution(optimum: Solution) -> None:
+def test_numbers_of_a_solution(optimum: Result) -> None:
     """The value is told in dB and as a ratio, the pose in metres and degrees, the axis by two angles."""
     text = text_of(result_view(optimum))
     for words in ("0.9836997 dB (1.254209)", "x -2.2423 m", "roll -17.180 deg", "79.565 deg from vertical"):
@@ -34,13 +34,13 @@ def test_numbers_of_a_solution(optimum: Solution) -> None:
     assert "azimuth 162.52 deg" in text
 
 
-def test_both_nodes_bind_on_the_kink(optimum: Solution) -> None:
+def test_both_nodes_bind_on_the_kink(optimum: Result) -> None:
     """At the optimum both nodes have the smallest SINR, and both are marked."""
     assert binding_nodes(optimum) == {"S1", "S2"}
     assert text_of(result_view(optimum)).count("worst") == 2
 
 
-def test_the_bound_is_told_with_its_gap(optimum: Solution, paper: Scenario) -> None:
+def test_the_bound_is_told_with_its_gap(optimum: Result, paper: Scenario) -> None:
     """The bound stands below the value, never rounded below what is proved; without one there is no line."""
     words = bound_words(optimum.objective)
     found = re.fullmatch(r"upper bound (-?\d+\.\d+) dB \(relative gap (.*)\)", words)

@@ -5,20 +5,20 @@ from dataclasses import replace
 
 import pytest
 
-from nullpose import Pose, Solution, solve
+from nullpose import Pose, Result, solve
 from nullpose.report.results import frame_rows
 from nullpose.scenario import Origin, Scenario
 
 
 @pytest.fixture(scope="module")
-def solution(paper: Scenario) -> Solution:
+def solution(paper: Scenario) -> Result:
     """A pose whose numbers are round, on the Earth."""
     scenario = paper.model_copy(update={"origin": Origin(lat_deg=0.0, lon_deg=0.0, alt_m=0.0)})
     found = solve(paper, certify=False)
     return replace(found, scenario=scenario, pose=Pose((0.0, 0.0, 20.0), 0.0, math.pi / 2.0))
 
 
-def test_the_lines_of_a_round_pose(solution: Solution) -> None:
+def test_the_lines_of_a_round_pose(solution: Result) -> None:
     """Straight above the origin, pitched by a quarter turn: every number can be told by heart."""
     assert frame_rows(solution.scenario, solution.pose) == [
         ("on the Earth", "lat 0.00000000 deg, lon 0.00000000 deg, alt 20.000 m over the WGS-84 ellipsoid"),
@@ -29,6 +29,6 @@ def test_the_lines_of_a_round_pose(solution: Solution) -> None:
     ]
 
 
-def test_nothing_without_an_origin(solution: Solution, paper: Scenario) -> None:
+def test_nothing_without_an_origin(solution: Result, paper: Scenario) -> None:
     """A scenario that lies nowhere on the Earth has no such lines."""
     assert frame_rows(paper, solution.pose) == []

@@ -9,7 +9,7 @@ from rich.console import Console
 from nullpose import Scenario, apply_overrides, load
 from nullpose.report.results import result_view
 from nullpose.report.words import error_words
-from nullpose.solver.robust import solve_robust
+from nullpose.solver import solve
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -17,7 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def text_of(scenario: Scenario) -> str:
     """Returns what is printed of a robust solution that nothing is proved of."""
     console = Console(width=160, file=StringIO())
-    console.print(result_view(solve_robust(scenario, certify=False)))
+    console.print(result_view(solve(scenario, robust=True, certify=False)))
     return str(console.file.getvalue())
 
 

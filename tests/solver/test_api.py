@@ -13,8 +13,8 @@ from nullpose.errors import SolveError, UsageError
 from nullpose.physics import evaluate, min_sinr, sinr
 from nullpose.scenario import Scenario, load
 from nullpose.solver import (
+    Result,
     Scheme,
-    Solution,
     Status,
     best_axis,
     compare,
@@ -25,7 +25,7 @@ from nullpose.solver import (
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def check(solution: Solution) -> None:
+def check(solution: Result) -> None:
     """Checks what every solution promises: the value is the pose's, the pose allowed, the status earned."""
     scene = solution.scenario
     assert evaluate(scene, solution.pose) == solution.links

@@ -10,7 +10,7 @@ import pytest
 from nullpose.errors import UsageError
 from nullpose.physics import sinr
 from nullpose.scenario import Scenario, apply_overrides
-from nullpose.solver import Scheme, Solution, Status, best_axis, compare, default_gap, solve
+from nullpose.solver import Result, Scheme, Status, best_axis, compare, default_gap, solve
 
 
 def refuse(*_: object) -> None:
@@ -109,7 +109,7 @@ def test_after_an_interrupt_nothing_more_is_proved(twelve: Scenario, monkeypatch
     """Interrupted in its first proof, a comparison still has a pose for each scheme, the others by search."""
     api = sys.modules["nullpose.solver.api"]
 
-    def interrupted(*arguments: object, **options: object) -> Solution:
+    def interrupted(*arguments: object, **options: object) -> Result:
         return solve(*arguments, **options, on_progress=refuse)
 
     monkeypatch.setattr(api, "solve", interrupted)

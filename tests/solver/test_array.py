@@ -11,28 +11,32 @@ import pytest
 from scipy.optimize import differential_evolution
 
 import nullpose
-from nullpose.errors import ScenarioError, SolveError, UsageError
+from nullpose.errors import SolveError, UsageError
 from nullpose.physics.array import beam_sinr, digital_sinr, element_positions
 from nullpose.scenario import Array, Scenario
-from nullpose.solver import ArraySolution, Status, solve
-from nullpose.solver.array import solve_array
+from nullpose.solver import Result, Status, solve
 from nullpose.solver.array_task import ArrayTask
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-HALF_WAVE = {"layout": "linear", "spacing_wavelengths": 0.5}
+
+
+def with_array(scenario: Scenario, elements: int, layout: str = "linear", spacing: float = 0.5) -> Scenario:
+    """The scenario with an array, of half-wave spacing in a row unless stated otherwise."""
+    array = Array(elements=elements, layout=layout, spacing_wavelengths=spacing)
+    return scenario.model_copy(update={"array": array})
 
 
 @pytest.fixture(scope="module")
-def solution(random_scene: Callable) -> ArraySolution:
+def solution(random_scene: Callable) -> Result:
     """One scene solved."""
     scenario = random_scene(np.random.default_rng(11), 3, 2, 10.0)
-    return solve_array(scenario, elements=4, **HALF_WAVE)
+    return solve(with_array(scenario, 4))
 
 
-def test_the_links_are_those_of_pose_and_weights(solution: ArraySolution) -> None:
+def test_the_links_are_those_of_pose_and_weights(solution: Result) -> None:
     """The SINRs follow from the reported position, yaw and weights by the plain equation."""
-    places = element_positions(4, "linear", 0.5, solution.yaw_rad)
-    expected = beam_sinr(solution.scenario, solution.position_m, places, solution.weights)
+    places = element_positions(4, "linear", 0.5, solution.pose.yaw_rad)
+    expected = beam_sinr(solution.scenario, solution.pose.position_m, places, solution.details.weights)
     np.testing.assert_allclose([link.sinr for link in solution.links], expected, rtol=1e-9)
     assert [link.node for link in solution.links] == list(solution.scenario.node_names)
     assert solution.objective.value == min(link.sinr for link in solution.links)
@@ -42,17 +46,17 @@ def test_the_links_are_those_of_pose_and_weights(solution: ArraySolution) -> Non
         solution.objective.upper_bound / solution.objective.value - 1.0, abs=1e-12
     )
     assert (solution.pose.roll_rad, solution.pose.pitch_rad) == (0.0, 0.0)
-    assert -math.pi <= solution.yaw_rad <= math.pi
-    np.testing.assert_allclose(np.linalg.norm(solution.weights, axis=-1), 1.0, rtol=1e-12)
+    assert -math.pi <= solution.pose.yaw_rad <= math.pi
+    np.testing.assert_allclose(np.linalg.norm(solution.details.weights, axis=-1), 1.0, rtol=1e-12)
 
 
-def test_the_status_says_what_is_proved(solution: ArraySolution) -> None:
+def test_the_status_says_what_is_proved(solution: Result) -> None:
     """A small scene is certified to the gap that it asks for."""
     assert (solution.status, solution.reason) == (Status.CERTIFIED, "")
     assert solution.objective.relative_gap <= solution.provenance["gap"] == 1e-6
 
 
-def test_solutions_are_plain_data(solution: ArraySolution) -> None:
+def test_solutions_are_plain_data(solution: Result) -> None:
     """A solution survives pickling, turns into JSON, and refuses to be written to."""
     assert (solution.scheme, solution.label) == ("array-digital", "array of 4, digital")
     data = json.loads(json.dumps(solution.to_dict(), allow_nan=False))
@@ -60,19 +64,19 @@ def test_solutions_are_plain_data(solution: ArraySolution) -> None:
     assert data["objective"]["value"] == solution.objective.value
     assert data["stats"]["searches"] >= data["stats"]["agreeing"] >= 1
     weights = np.array(data["array"]["weights"]) @ [1.0, 1.0j]
-    np.testing.assert_array_equal(weights, solution.weights)
+    np.testing.assert_array_equal(weights, solution.details.weights)
     assert Scenario.from_dict(data["scenario"]) == solution.scenario
     again = pickle.loads(pickle.dumps(solution))
     assert again.to_dict() == solution.to_dict()
     with pytest.raises(ValueError, match="read-only"):
-        solution.weights[0] = 1.0
+        solution.details.weights[0] = 1.0
 
 
 @pytest.mark.parametrize("ratio", [0.01, 100.0])
 def test_one_element_is_the_vertical_case(ratio: float, paper: Callable) -> None:
     """One dipole gives what the certified vertical case gives, within its gap."""
     vertical = solve(paper(ratio), "vertical")
-    alone = solve_array(paper(ratio), elements=1, **HALF_WAVE)
+    alone = solve(with_array(paper(ratio), 1))
     assert alone.objective.value == pytest.approx(vertical.objective.value, rel=2e-6)
     assert alone.status is Status.CERTIFIED
 
@@ -81,7 +85,7 @@ def test_without_jammers_the_elements_add_up(paper: Callable) -> None:
     """K elements and no jammer give K times the vertical case, which is the bound."""
     silent = paper(1.0).model_copy(update={"jammers": ()})
     vertical = solve(silent, "vertical")
-    array = solve_array(silent, elements=6, layout="circular", spacing_wavelengths=0.4)
+    array = solve(with_array(silent, 6, "circular", 0.4))
     assert array.objective.value == pytest.approx(6.0 * vertical.objective.value, rel=3e-6)
     assert array.status is Status.CERTIFIED
 
@@ -89,16 +93,14 @@ def test_without_jammers_the_elements_add_up(paper: Callable) -> None:
 def test_more_elements_are_never_worse(random_scene: Callable) -> None:
     """A longer row holds the shorter ones, so nothing is lost by it."""
     scenario = random_scene(np.random.default_rng(12), 3, 2, 10.0)
-    values = [solve_array(scenario, elements=elements, **HALF_WAVE).objective.value for elements in (1, 2, 4)]
+    values = [solve(with_array(scenario, elements)).objective.value for elements in (1, 2, 4)]
     assert np.all(np.diff(values) >= -1e-6)
     assert values[-1] > 2.0 * values[0]
 
 
 def test_without_proof_it_is_the_best_found(paper: Callable) -> None:
     """Without a proof there is no bound, several searches agree, and the value is the same."""
-    proved, found = (
-        solve_array(paper(1.0), elements=2, certify=certify, **HALF_WAVE) for certify in (True, False)
-    )
+    proved, found = (solve(with_array(paper(1.0), 2), certify=certify) for certify in (True, False))
     assert found.status is Status.BEST_FOUND
     assert found.objective.upper_bound is found.objective.relative_gap is None
     assert (found.stats.boxes, found.reason) == (0, "")
@@ -113,10 +115,7 @@ def test_digital_combining_is_certified(layout: str, jamming_w: float, random_sc
     rng = np.random.default_rng(int(jamming_w))
     for _ in range(2):
         scenario = random_scene(rng, 3, 2, jamming_w)
-        close, wide = (
-            solve_array(scenario, elements=3, layout=layout, spacing_wavelengths=0.5, gap=gap)
-            for gap in (1e-6, 1e-2)
-        )
+        close, wide = (solve(with_array(scenario, 3, layout), gap=gap) for gap in (1e-6, 1e-2))
         assert close.status is wide.status is Status.CERTIFIED
         assert close.objective.relative_gap <= 1e-6
         assert wide.stats.boxes <= close.stats.boxes
@@ -126,9 +125,8 @@ def test_digital_combining_is_certified(layout: str, jamming_w: float, random_sc
 def test_another_optimiser_finds_nothing_better(random_scene: Callable) -> None:
     """Differential evolution over position and yaw does not exceed it, and comes close."""
     scenario = random_scene(np.random.default_rng(13), 3, 1, 10.0)
-    solution = solve_array(scenario, elements=3, **HALF_WAVE)
-    array = Array(elements=3, **HALF_WAVE)
-    task = ArrayTask.of(scenario, array)
+    solution = solve(with_array(scenario, 3))
+    task = ArrayTask.of(scenario, with_array(scenario, 3).array)
     sides = list(zip(*task.reach(math.log(solution.objective.value)), strict=True))
 
     def cost(state: np.ndarray) -> float:
@@ -147,29 +145,29 @@ def test_another_optimiser_finds_nothing_better(random_scene: Callable) -> None:
 def test_seeds_repeat_and_agree(random_scene: Callable) -> None:
     """A seed repeats to the last bit; another seed comes to the same value."""
     scenario = random_scene(np.random.default_rng(14), 3, 2, 10.0)
-    first, again, other = (solve_array(scenario, elements=3, seed=seed, **HALF_WAVE) for seed in (0, 0, 1))
-    np.testing.assert_array_equal(first.position_m, again.position_m)
-    np.testing.assert_array_equal(first.weights, again.weights)
+    first, again, other = (solve(with_array(scenario, 3), seed=seed) for seed in (0, 0, 1))
+    np.testing.assert_array_equal(first.pose.position_m, again.pose.position_m)
+    np.testing.assert_array_equal(first.details.weights, again.details.weights)
     assert first.objective == again.objective
     assert other.objective.value == pytest.approx(first.objective.value, rel=1e-4)
 
 
 def test_the_airspace_is_kept(paper: Callable) -> None:
     """Bounds, zones, fence and keep-out balls hold, and a zone on the optimum costs something."""
-    free = solve_array(paper(10.0), elements=3, **HALF_WAVE)
-    drum = {"centre_m": tuple(free.position_m[:2]), "radius_m": 9.0}
+    free = solve(with_array(paper(10.0), 3))
+    drum = {"centre_m": tuple(free.pose.position_m[:2]), "radius_m": 9.0}
     fence = [(-30.0, -10.0), (40.0, -10.0), (40.0, 60.0), (-30.0, 60.0)]
     tight = paper(10.0, no_fly=(drum,), geofence_m=fence, keep_out_m=15.0, altitude_m=(8.0, 20.0))
-    solution = solve_array(tight, elements=3, **HALF_WAVE)
+    solution = solve(with_array(tight, 3))
     points_m = np.vstack([tight.node_positions_m, tight.jammer_positions_m])
-    assert tight.airspace.allows(solution.position_m)
-    assert np.min(np.linalg.norm(points_m - solution.position_m, axis=1)) >= 15.0
+    assert tight.airspace.allows(solution.pose.position_m)
+    assert np.min(np.linalg.norm(points_m - solution.pose.position_m, axis=1)) >= 15.0
     assert solution.objective.value < free.objective.value
 
 
 def test_requirements_are_margins(paper: Callable) -> None:
     """The smallest margin is maximised: asking all for twice as much halves it, asking one moves the pose."""
-    plain = solve_array(paper(1.0), elements=2, **HALF_WAVE)
+    plain = solve(with_array(paper(1.0), 2))
 
     def asking(first: float, second: float) -> Scenario:
         nodes = [
@@ -178,69 +176,49 @@ def test_requirements_are_margins(paper: Callable) -> None:
         ]
         return paper(1.0).model_copy(update={"nodes": tuple(nodes)})
 
-    both = solve_array(asking(2.0, 2.0), elements=2, **HALF_WAVE)
+    both = solve(with_array(asking(2.0, 2.0), 2))
     assert both.objective.name == "min_margin"
     assert both.objective.value == pytest.approx(0.5 * plain.objective.value, rel=1e-6)
     assert both.objective.upper_bound == pytest.approx(0.5 * plain.objective.upper_bound, rel=1e-4)
-    one = solve_array(asking(1.0, 5.0), elements=2, **HALF_WAVE)
+    one = solve(with_array(asking(1.0, 5.0), 2))
     assert one.links[1].sinr > plain.links[1].sinr > one.links[0].sinr
     assert one.objective.value == min(one.links[0].sinr, one.links[1].sinr / 5.0)
     assert one.binding_node in one.scenario.node_names
 
 
-def test_the_scenario_states_the_array(paper: Callable) -> None:
-    """What is not given comes from the scenario's [array]; what is given wins."""
-    stated = Array(elements=2, layout="circular", spacing_wavelengths=0.3)
-    scenario = paper(1.0).model_copy(update={"array": stated})
-    solution = solve_array(scenario)
-    assert (solution.elements, solution.layout, solution.spacing_wavelengths) == (2, "circular", 0.3)
-    places = element_positions(2, "circular", 0.3, solution.yaw_rad)
-    expected = digital_sinr(scenario, solution.position_m, places)
+def test_layout_and_spacing_are_the_scenarios(paper: Callable) -> None:
+    """The SINRs are those of the elements where the scenario has them."""
+    solution = solve(with_array(paper(1.0), 2, "circular", 0.3))
+    places = element_positions(2, "circular", 0.3, solution.pose.yaw_rad)
+    expected = digital_sinr(solution.scenario, solution.pose.position_m, places)
     np.testing.assert_allclose([link.sinr for link in solution.links], expected, rtol=1e-9)
-    assert solve_array(scenario, elements=1).elements == 1
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("options", "message"),
     [
-        ({"elements": 2, "layout": "linear"}, "spacing_wavelengths not given"),
-        ({}, "elements, layout, spacing_wavelengths not given"),
-        ({"elements": 2, "seed": -1, **HALF_WAVE}, "seed: given -1"),
-        ({"elements": 2, "seed": True, **HALF_WAVE}, "seed: given True"),
-        ({"elements": 2, "gap": 0.0, **HALF_WAVE}, "gap: given 0.0"),
+        ({"seed": -1}, "seed: given -1"),
+        ({"gap": 0.0}, "gap: given 0.0"),
+        ({"scheme": "vertical"}, r"scheme vertical for a scenario with an \[array\]"),
+        ({"null_jammer": "M"}, r"null jammer 'M' for a scenario with an \[array\]"),
+        ({"robust": True}, "array: guarantees are for one dipole"),
     ],
 )
-def test_bad_requests_are_refused(arguments: dict, message: str, paper: Callable) -> None:
-    """Each with what was given, what is allowed and what to try."""
+def test_bad_requests_are_refused(options: dict, message: str, paper: Callable) -> None:
+    """Options that are wrong, or that arrays do not have."""
     with pytest.raises(UsageError, match=message):
-        solve_array(paper(1.0), **arguments)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"elements": 0},
-        {"elements": 65},
-        {"elements": 2.5},
-        {"layout": "square"},
-        {"spacing_wavelengths": 0.0},
-    ],
-)
-def test_impossible_arrays_are_refused(wrong: dict, paper: Callable) -> None:
-    """Elements, layout and spacing have the limits of the scenario's [array]."""
-    with pytest.raises(ScenarioError, match=next(iter(wrong))):
-        solve_array(paper(1.0), **({"elements": 2, **HALF_WAVE} | wrong))
+        solve(with_array(paper(1.0), 2), **options)
 
 
 def test_other_objectives_are_refused() -> None:
     """An array listens; a scenario that asks for a secrecy rate is told so."""
     secret = nullpose.load(EXAMPLES / "eavesdropper.toml")
     with pytest.raises(UsageError, match="secrecy-rate"):
-        solve_array(secret, elements=2, **HALF_WAVE)
+        solve(with_array(secret, 2))
 
 
 def test_a_scene_without_an_answer_is_said(scene: Callable) -> None:
     """Where the only position has the node in every dipole's null, that is said."""
     point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
     with pytest.raises(SolveError, match="widen the airspace"):
-        solve_array(point, elements=2, **HALF_WAVE)
+        solve(with_array(point, 2))

@@ -8,13 +8,13 @@ import pytest
 from nullpose.certificate import verify
 from nullpose.errors import UsageError
 from nullpose.scenario import Airframe, Eavesdropper, Scenario, Transmitter
-from nullpose.solver import Solution, solve
+from nullpose.solver import Result, solve
 from nullpose.solver.certificate_from_proof import certificate_of
 
 ENOUGH_S = 600.0
 
 
-def solved(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-2) -> Solution:
+def solved(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-2) -> Result:
     """Return a solution with its proof, however long the kernels take to be compiled."""
     return solve(scenario, scheme, gap=gap, time_limit_s=ENOUGH_S)
 

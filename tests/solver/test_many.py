@@ -191,5 +191,5 @@ def test_arrays_and_rates_are_for_other_verbs() -> None:
     array = Scenario.from_dict(
         plain.to_dict() | {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5}}
     )
-    with pytest.raises(UsageError, match=r"scenarios\[1\]: asks for an array.*solve_array"):
+    with pytest.raises(UsageError, match=r"scenarios\[1\]: asks for an array.*use solve"):
         solve_many([plain, array])

@@ -15,7 +15,6 @@ from nullpose.problem.build import build_family
 from nullpose.solver.certificate_from_proof import certificate_of, verified
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.pattern import PatternRun, reach_of
-from nullpose.solver.robust import solve_robust
 
 PAPER = load("examples/paper.toml")
 
@@ -137,5 +136,5 @@ def test_what_is_there_for_dipoles_alone_says_so() -> None:
     with pytest.raises(UsageError, match="a dipole"):
         solve_many([scenario])
     with pytest.raises(UsageError, match="a dipole"):
-        solve_robust(apply_overrides(scenario, ["receiver.attitude_error_deg=1"]))
+        solve(apply_overrides(scenario, ["receiver.attitude_error_deg=1"]), robust=True)
     assert [result.scheme for result in compare(scenario, gap=0.1)] == ["optimum"]

@@ -10,17 +10,17 @@ import pytest
 
 from nullpose.physics import Link, Pose, evaluate
 from nullpose.scenario import Scenario
-from nullpose.solver import Objective, Scheme, Solution, Stats, Status, solve
+from nullpose.solver import Objective, Result, Scheme, Stats, Status, solve
 from nullpose.solver.proof import INTERRUPT
 
 
 @pytest.fixture(scope="module")
-def solution(paper: Callable) -> Solution:
+def solution(paper: Callable) -> Result:
     """Returns the paper's solution at P_M/P = 1."""
     return solve(paper(1.0))
 
 
-def test_the_json_object_is_the_contract(solution: Solution) -> None:
+def test_the_json_object_is_the_contract(solution: Result) -> None:
     """The JSON object has the keys that files and programs rely on, in order, and nothing else."""
     data = solution.to_dict()
     assert list(data) == [
@@ -46,7 +46,7 @@ def test_the_json_object_is_the_contract(solution: Solution) -> None:
     assert {"nullpose", "seed", "gap"} <= set(data["provenance"])
 
 
-def test_the_json_object_survives_json(solution: Solution) -> None:
+def test_the_json_object_survives_json(solution: Result) -> None:
     """The object goes through strict JSON unchanged, and its scenario loads as the one that was solved."""
     data = solution.to_dict()
     assert json.loads(json.dumps(data, allow_nan=False)) == data
@@ -58,7 +58,7 @@ def test_the_json_object_survives_json(solution: Solution) -> None:
     )
 
 
-def test_a_certified_solution_has_its_bound(solution: Solution) -> None:
+def test_a_certified_solution_has_its_bound(solution: Result) -> None:
     """Bound and gap are numbers that agree, boxes were examined, and no reason is given."""
     data = solution.to_dict()
     objective = data["objective"]
@@ -92,14 +92,14 @@ def test_statuses_have_sentences() -> None:
     assert "not reached" in Status.GAP_NOT_REACHED.message
 
 
-def test_an_interrupt_is_told_by_its_reason(solution: Solution) -> None:
+def test_an_interrupt_is_told_by_its_reason(solution: Result) -> None:
     """Ctrl-C is one reason among others."""
     assert not solution.interrupted
     assert dataclasses.replace(solution, reason=INTERRUPT).interrupted
     assert not dataclasses.replace(solution, reason="the time limit of 1 s").interrupted
 
 
-def test_the_value_is_that_of_the_reported_angles(solution: Solution) -> None:
+def test_the_value_is_that_of_the_reported_angles(solution: Result) -> None:
     """From the numbers of the JSON object alone, roll, pitch and yaw, the physics gives the value again."""
     data = solution.to_dict()
     pose = Pose(
@@ -113,7 +113,7 @@ def test_the_value_is_that_of_the_reported_angles(solution: Solution) -> None:
     assert data["pose"]["yaw_rad"] == 0.0
 
 
-def test_a_number_that_json_lacks_is_null(solution: Solution) -> None:
+def test_a_number_that_json_lacks_is_null(solution: Result) -> None:
     """A link in the null is minus infinity in dB, which JSON cannot hold: it becomes null."""
     silent = dataclasses.replace(
         solution,
@@ -125,7 +125,7 @@ def test_a_number_that_json_lacks_is_null(solution: Solution) -> None:
     assert data["links"][0]["sinr_db"] is None
 
 
-def test_a_solution_is_frozen(solution: Solution) -> None:
+def test_a_solution_is_frozen(solution: Result) -> None:
     """Neither fields nor provenance can be set, and what to_dict returns is a copy."""
     with pytest.raises(dataclasses.FrozenInstanceError):
         solution.note = "other"
@@ -138,7 +138,7 @@ def test_a_solution_is_frozen(solution: Solution) -> None:
     assert solution.to_dict() == before
 
 
-def test_the_binding_node_has_the_smallest_ratio(solution: Solution) -> None:
+def test_the_binding_node_has_the_smallest_ratio(solution: Result) -> None:
     """The binding node is the one with the smallest SINR, the first of equals."""
     links = tuple(
         Link(node=name, sinr=ratio, sinr_db=0.0) for name, ratio in zip("abc", (2.0, 1.0, 1.0), strict=True)

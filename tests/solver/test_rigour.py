@@ -9,7 +9,7 @@ import pytest
 
 from nullpose import Scenario, SolveError, UsageError, apply_overrides, load, solve
 from nullpose.scenario import Array
-from nullpose.solver import Rigour, solve_array, solve_many
+from nullpose.solver import Rigour, solve_many
 from nullpose.solver.certificate_from_proof import verified
 from nullpose.solver.rigour import bound_above
 
@@ -60,7 +60,7 @@ def test_a_bound_of_another_case_is_floating_point() -> None:
 def test_arrays_and_many_scenes_are_floating_point(paper: Scenario) -> None:
     """What has no certificate says so."""
     level = paper.model_copy(update={"array": Array(elements=2, layout="linear", spacing_wavelengths=0.5)})
-    assert solve_array(level, gap=1e-2).objective.rigour is Rigour.FLOATING_POINT
+    assert solve(level, gap=1e-2).objective.rigour is Rigour.FLOATING_POINT
     assert solve_many([paper], gap=1e-2).rigour is Rigour.FLOATING_POINT
     assert solve_many([paper], certify=False).rigour is Rigour.NONE
 

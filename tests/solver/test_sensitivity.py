@@ -81,7 +81,7 @@ def test_no_random_error_is_worse_by_more_than_a_twentieth_of_a_decibel(seed):
         ratios = partial(ratios_under, scenario, pose.position_m, pose.orientation(scenario.antenna_record))
         found = sensitivity(scenario, pose, sizes)
     else:
-        result = nullpose.solve_array(scenario, certify=False)
+        result = nullpose.solve(scenario, certify=False)
         ratios = partial(result.details.ratios_under, scenario, result.pose)
         found = sensitivity(scenario, result.pose, sizes, ratios=ratios)
     for kind in KINDS:
@@ -123,7 +123,7 @@ def test_a_node_at_the_arrays_height_is_no_fault():
             "jammers": [{"position_m": [20.0, 30.0, 1.0]} | point],
         }
     )
-    result, pose = nullpose.solve_array(scenario, certify=False), Pose([30.0, 0.0, 8.0], 0.0, 0.0, 0.0)
+    result, pose = nullpose.solve(scenario, certify=False), Pose([30.0, 0.0, 8.0], 0.0, 0.0, 0.0)
     found = sensitivity(scenario, pose, ratios=partial(result.details.ratios_under, scenario, pose))
     assert 0.0 < found.all <= found.jammers <= found.nominal
 

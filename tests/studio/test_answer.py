@@ -2,7 +2,6 @@
 
 from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
-from nullpose.solver.robust import solve_robust
 from nullpose.studio.answer import answer_of, signed, status_words, with_errors
 from nullpose.studio.case import OPTIMUM, case_named
 
@@ -24,9 +23,9 @@ def test_a_robust_answer_is_what_is_guaranteed(paper: Scenario) -> None:
     """Its value lies at or below what the pose gives without errors, and is the solver's."""
     unsure = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
     scenario = paper.model_copy(update={"jammers": (unsure,)})
-    solution = solve_robust(scenario, certify=False)
+    solution = solve(scenario, robust=True, certify=False)
     answer = answer_of(1, case_named("Robust pose"), solution)
-    assert answer.result.objective.value == solution.robust.guaranteed
+    assert answer.result.objective.value == solution.details.robust.guaranteed
     assert answer.result.objective.value <= min(link.sinr for link in answer.result.links) * (1.0 + 1e-9)
     assert status_words(answer) == "best so far"
 
@@ -45,5 +44,5 @@ def test_the_loss_under_errors_is_that_of_the_result(paper: Scenario) -> None:
         assert errors[0].startswith(f"can lose {signed(loss_db)} dB or more")
         assert (len(errors) > 1 and "null (towards M)" in errors[1]) == (loss_db > 3.0)
     unsure = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
-    robust = solve_robust(paper.model_copy(update={"jammers": (unsure,)}), certify=False)
+    robust = solve(paper.model_copy(update={"jammers": (unsure,)}), robust=True, certify=False)
     assert with_errors(answer_of(1, case_named("Robust pose"), robust)).errors == ()

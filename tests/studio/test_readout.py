@@ -12,7 +12,7 @@ from nullpose.errors import ScenarioError
 from nullpose.report.numbers import MINUS, fixed
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.solver.robust import solve_robust
+from nullpose.solver import solve
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.readout import about_html, failure_html, readout_html
@@ -70,7 +70,7 @@ def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenar
     idle.take(first)
     idle.take(replace(first, case=robust))
     assert 'data-np="difference"' not in readout_html(idle)
-    known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
+    known = answer_of(idle.version, robust, solve(unsure, robust=True, certify=False))
     idle.take(known)
     difference = fixed(first.shown_value - known.shown_value, 2)
     text = _Text(readout_html(idle)).text
@@ -82,7 +82,7 @@ def test_the_worst_node_has_the_smallest_number(idle: Session, unsure: Scenario)
     """Beside each node of a robust case stands what it is guaranteed, and the smallest is the value."""
     robust = case_named("Robust pose")
     idle.change(lambda view: view.with_scenario(unsure).with_case(robust))
-    known = answer_of(idle.version, robust, solve_robust(unsure, certify=False))
+    known = answer_of(idle.version, robust, solve(unsure, robust=True, certify=False))
     idle.take(known)
     (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)

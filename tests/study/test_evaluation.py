@@ -21,9 +21,9 @@ def test_distances_are_to_the_bound(paper: Scenario) -> None:
     for pose, one in zip(poses, evaluate_against(best, poses).results, strict=True):
         assert one.objective.value == min_sinr(paper, pose)
         assert one.objective.upper_bound == best.objective.upper_bound
-        assert one.below_bound == pytest.approx(bound_db - one.objective.value_db, abs=1e-9)
-        assert one.below_bound > 0.0
-        assert one.not_allowed == ()
+        assert one.details.below_bound == pytest.approx(bound_db - one.objective.value_db, abs=1e-9)
+        assert one.details.below_bound > 0.0
+        assert one.details.not_allowed == ()
 
 
 def test_the_best_pose_is_at_the_bound(paper: Scenario) -> None:
@@ -31,7 +31,7 @@ def test_the_best_pose_is_at_the_bound(paper: Scenario) -> None:
     best = solve(paper)
     (same,) = evaluate_against(best, [best.pose]).results
     assert same.objective.value == pytest.approx(best.objective.value, rel=1e-12)
-    assert 0.0 <= same.below_bound < 1e-5
+    assert 0.0 <= same.details.below_bound < 1e-5
     assert set(best.to_dict()) <= set(same.to_dict())
 
 
@@ -42,10 +42,10 @@ def test_a_pose_that_is_not_allowed_has_no_bound(paper: Scenario) -> None:
     poses = [Pose([3.0, 24.0, 4.0], 0.0, 0.5, 0.0, level.mount_rad), Pose([0.0, 0.5, 0.0], 0.0, 0.1)]
     low, close = evaluate_against(best, poses).results
     assert low.objective.upper_bound is None
-    assert low.below_bound is None
-    assert low.not_allowed[0] == "the position is 4 m outside altitude_m"
-    assert "more than the airframe's 10 deg" in low.not_allowed[1]
-    assert "closer than keep_out_m" in close.not_allowed[1]
+    assert low.details.below_bound is None
+    assert low.details.not_allowed[0] == "the position is 4 m outside altitude_m"
+    assert "more than the airframe's 10 deg" in low.details.not_allowed[1]
+    assert "closer than keep_out_m" in close.details.not_allowed[1]
 
 
 def test_a_pose_in_a_zone_names_it(paper: Scenario) -> None:
@@ -59,11 +59,11 @@ def test_a_pose_in_a_zone_names_it(paper: Scenario) -> None:
     both, fence = evaluate_against(
         best, [Pose([11.0, 10.0, 9.0], 0.0, 0.1), Pose([15.0, 40.0, 9.0], 0.0, 0.1)]
     ).results
-    assert both.not_allowed == (
+    assert both.details.not_allowed == (
         "the position is 4 m inside the no-fly zone mast",
         "the position is 3 m inside the no-fly zone wood",
     )
-    assert fence.not_allowed == ("the position is 3 m outside the geofence",)
+    assert fence.details.not_allowed == ("the position is 3 m outside the geofence",)
 
 
 def test_a_ground_point_is_no_place(paper: Scenario) -> None:
@@ -78,4 +78,4 @@ def test_rates_are_held_against_their_bound(paper: Scenario) -> None:
     changes = ["objective=secrecy-rate", "transmitter.power_w=2", "eavesdroppers=[{position_m=[-20,15,4]}]"]
     best = solve(apply_overrides(paper, changes))
     (one,) = evaluate_against(best, [Pose([3.0, 24.0, 9.0], 0.2, -1.1)]).results
-    assert one.below_bound == pytest.approx(best.objective.upper_bound - one.objective.value)
+    assert one.details.below_bound == pytest.approx(best.objective.upper_bound - one.objective.value)

@@ -82,13 +82,15 @@ def test_every_row_is_certified_unless_told_otherwise(paper: Scenario) -> None:
     """Each case has a bound within the gap; a wider gap may be asked for, and no proof at all."""
     for row in sweep(paper, POWER, [1e-2, 1.0, 1e3]).rows:
         assert (row.status, row.reason) == ("certified", "")
-        assert row.min_sinr <= row.upper_bound <= row.min_sinr * (1.0 + 1e-6)
-        assert row.relative_gap == pytest.approx(row.upper_bound / row.min_sinr - 1.0, abs=1e-15)
+        assert row.min_sinr <= row.objective.upper_bound <= row.min_sinr * (1.0 + 1e-6)
+        assert row.objective.relative_gap == pytest.approx(
+            row.objective.upper_bound / row.min_sinr - 1.0, abs=1e-15
+        )
         assert row.upper_bound_db > row.min_sinr_db
     (wide,) = sweep(paper, POWER, [1.0], schemes=["optimum"], gap=0.1).rows
-    assert 1e-6 < wide.relative_gap <= 0.1
+    assert 1e-6 < wide.objective.relative_gap <= 0.1
     (fast,) = sweep(paper, POWER, [1.0], schemes=["optimum"], certify=False).rows
-    assert (fast.status, fast.upper_bound, fast.upper_bound_db) == ("best-found", None, None)
+    assert (fast.status, fast.objective.upper_bound, fast.upper_bound_db) == ("best-found", None, None)
 
 
 def test_a_limit_is_told_in_its_row(paper: Scenario) -> None:
@@ -96,14 +98,14 @@ def test_a_limit_is_told_in_its_row(paper: Scenario) -> None:
     (best,) = sweep(paper, POWER, [1.0], schemes=["optimum"]).rows
     (row,) = sweep(paper, POWER, [1.0], schemes=["optimum"], node_limit=5).rows
     assert (row.status, row.reason) == ("gap-not-reached", "the node limit of 5")
-    assert row.upper_bound >= best.min_sinr
+    assert row.objective.upper_bound >= best.min_sinr
     field = load(EXAMPLES / "field.toml")
     best, row = (
         sweep(field, "jammers.van.power_w", [1.0], schemes=["optimum"], **limits).rows[0]
         for limits in ({"certify": False}, {"time_limit_s": 1e-9})
     )
     assert (row.status, row.reason) == ("gap-not-reached", "the time limit of 1e-09 s")
-    assert row.upper_bound >= best.min_sinr
+    assert row.objective.upper_bound >= best.min_sinr
 
 
 def test_an_interrupted_proof_ends_the_sweep(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:

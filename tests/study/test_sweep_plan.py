@@ -28,10 +28,10 @@ def test_a_plan_runs(paper: Scenario) -> None:
 
 def test_a_plan_has_limits(paper: Scenario) -> None:
     """The gap goes by the number of nodes unless given; without certifying there are no limits at all."""
-    assert {row.relative_gap <= 1e-6 for row in plan(paper).run().rows} == {True}
+    assert {row.objective.relative_gap <= 1e-6 for row in plan(paper).run().rows} == {True}
     given = plan(paper, gap=0.5, time_limit_s=7.0, node_limit=9000, schemes=["vertical"])
     assert given.options == {"gap": 0.5, "time_limit_s": 7.0, "node_limit": 9000}
-    assert [row.relative_gap <= 0.5 for row in given.run().rows] == [True, True]
+    assert [row.objective.relative_gap <= 0.5 for row in given.run().rows] == [True, True]
     fast = plan(paper, certify=False, schemes=["vertical"])
     assert {row.status for row in fast.run().rows} == {"best-found"}
 

@@ -20,7 +20,7 @@ from nullpose.scenario import Scenario, apply_overrides, load
 from nullpose.solver import solve
 
 if TYPE_CHECKING:
-    from nullpose.solver import Solution
+    from nullpose.solver import Result
 
 __all__ = ["GAP", "NULLPOSE", "certify", "missing", "paper_scene", "run_nullpose", "run_prover"]
 
@@ -40,7 +40,7 @@ def paper_scene(jamming_ratio: float) -> Scenario:
     return apply_overrides(scene, [f"jammers.M.power_w={power_w!r}"])
 
 
-def certify(scene: Scenario) -> Solution:
+def certify(scene: Scenario) -> Result:
     """Return nullpose's solution with its proof: all that the workload asks of nullpose."""
     return solve(scene, gap=GAP)
 

@@ -100,6 +100,12 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
     Args:
         certificate: what to check.
         on_progress: called with the leaves checked and how many there are.
+
+    Example:
+        >>> import nullpose
+        >>> result = nullpose.solve(nullpose.load("examples/paper.toml"))
+        >>> nullpose.verify(nullpose.certificate_of(result)).proved
+        True
     """
     total = sum(len(tree.leaves) for tree in certificate.trees)
     family = build_family(certificate.scenario, any_antenna=True)

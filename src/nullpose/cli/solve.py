@@ -98,10 +98,10 @@ def solve(
         found = _solve_robustly(scenario, sizes, options)
     elif scenario.array is not None:
         refuse("for a scenario with an [array]", geojson=geojson, **of_one_dipole)
-        from nullpose.solver import solve_array
+        from nullpose.solver import solve as solve_scenario
 
         with compiling_announced():
-            found = solve_array(scenario, **{name: options[name] for name in ("gap", "certify", "seed")})
+            found = solve_scenario(scenario, **options)
     else:
         refuse("with --fast, which proves nothing,", certificate=certificate and fast, verify=verify and fast)
         found = _solve_dipole(scenario, scheme, null_jammer, options, checked)
@@ -115,8 +115,9 @@ def solve(
 def _solve_robustly(scenario: Scenario, sizes: ErrorSizes, options: dict[str, Any]) -> Result:
     """Return the pose that guarantees most under the scenario's errors, or those of the sizes."""
     from nullpose.scenario.overrides import Override, apply_overrides
+    from nullpose.solver import solve as solve_scenario
     from nullpose.solver.options import SolveOptions
-    from nullpose.solver.robust import ROBUST_GAP, solve_robust
+    from nullpose.solver.robust import ROBUST_GAP
 
     note, disc_m = "", [sizes.jammers_m, sizes.jammers_m, 0.0]
     if not scenario.is_uncertain:
@@ -130,7 +131,7 @@ def _solve_robustly(scenario: Scenario, sizes: ErrorSizes, options: dict[str, An
         note = "The scenario states no errors. These are taken in their place; --off changes them."
     target = SolveOptions(**options).of(scenario, ROBUST_GAP).target
     with compiling_announced(), GapBar(target) as bar:
-        found = solve_robust(scenario, on_progress=bar, **options)
+        found = solve_scenario(scenario, robust=True, on_progress=bar, **options)
     return replace(found, note=" ".join(filter(None, (note, found.note))))
 
 

@@ -36,7 +36,7 @@ class Certainty:
         """Count the rows of a sweep, of any schemes."""
         rows = tuple(rows)
         counts = Counter(row.status for row in rows)
-        gaps = [row.relative_gap for row in rows if row.relative_gap is not None]
+        gaps = [row.objective.relative_gap for row in rows if row.objective.relative_gap is not None]
         return cls(
             values=len(rows),
             certified=counts[Status.CERTIFIED],

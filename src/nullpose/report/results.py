@@ -22,7 +22,6 @@ from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result, Rigour
-from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.study import Evaluation
 from nullpose.study.evaluation import GivenDetails
@@ -66,17 +65,17 @@ def pose_cells(pose: Pose) -> dict[str, str]:
 def result_view(result: Result) -> View:
     """Set a result of any kind as tables: value, pose, links, and what the antenna's null is for."""
     if isinstance(result.details, RobustDetails):
-        return _robust_view(result)
-    is_array = isinstance(result.details, ArrayDetails)
+        return _robust_view(result, result.details)
     scenario, pose = result.scenario, result.pose
-    antenna = [("array", array_words(result.details))] if is_array else _antenna_rows(scenario, pose)
+    array = scenario.array
+    antenna = _antenna_rows(scenario, pose) if array is None else [("array", array_words(array))]
     note = "Jamming does not depend on the pose. It is part of the nodes' noise."
     return document(
         _head(result, capitalised(result.label), requirement_words(result), result.note, _agreement(result)),
         pairs("", [*_pose_rows(pose), *antenna, *frame_rows(scenario, pose)]),
-        _links_table(result, {} if is_array else _gain_columns(scenario, pose)),
-        None if is_array else _nulls_table(scenario, pose),
-        note if scenario.jammers and result.objective.quantity.is_rate and not is_array else None,
+        _links_table(result, _gain_columns(scenario, pose) if array is None else {}),
+        _nulls_table(scenario, pose) if array is None else None,
+        note if scenario.jammers and result.objective.quantity.is_rate else None,
         sensitivity_view(result),
     )
 
@@ -88,6 +87,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         return result_view(results[0])
     quantity = best.objective.quantity
     step = -(-len(results) // _SHOWN)
+    given = [result.details for result in results if isinstance(result.details, GivenDetails)]
     shown, poses = results[::step], [result.pose for result in results[::step]]
     attitudes = [(pose.roll_rad, pose.pitch_rad, pose.yaw_rad) for pose in poses]
     columns: dict[str, list[str | None]] = {
@@ -99,7 +99,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         ],
         "worst node": [result.binding_node for result in shown],
         f"to bound ({quantity.unit})": [
-            "not allowed" if result.not_allowed else cell(result.below_bound, ".4f") for result in shown
+            "not allowed" if pose.not_allowed else cell(pose.below_bound, ".4f") for pose in given[::step]
         ],
     }
     value = with_unit(quantity.in_unit(best.objective.value), quantity)
@@ -108,7 +108,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         head(best.scenario.name, "Best pose", f"{quantity.smallest} {value}", lines),
         table("", rows(columns), left=["worst node"]),
         f"One row in {step} is shown." if step > 1 else None,
-        "Not allowed: --pose and --json tell why." if any(result.not_allowed for result in results) else None,
+        "Not allowed: --pose and --json tell why." if any(pose.not_allowed for pose in given) else None,
     )
 
 
@@ -138,15 +138,15 @@ def _agreement(result: Result) -> str:
     return f"{result.stats.agreeing} of {searches} local searches ended at this value" if searches > 1 else ""
 
 
-def _robust_view(result: Result) -> View:
+def _robust_view(result: Result, details: RobustDetails) -> View:
     """Set a robust pose as tables: the guarantee, its bound, and the best pose without errors beside it."""
-    robust, nominal, scenario = result.robust, result.nominal, result.scenario
+    robust, nominal, scenario = details.robust, details.nominal, result.scenario
     objective, quantity = result.objective, result.objective.quantity
     poses = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
     bound = "no upper bound on the guaranteed value"
-    if result.upper_bound is not None:
-        bound = f"upper bound from {result.cases} combinations of errors"
+    if objective.upper_bound is not None:
+        bound = f"upper bound from {details.cases} combinations of errors"
     errors = f"errors: {error_words(scenario)}; {bound}"
     cells = {name: _guarded_cells(objective, pose) for name, pose in poses.items()}
     return document(

@@ -249,6 +249,11 @@ class Scenario(Section):
         return 0.0 if self.antenna is None else self.antenna.gain_dbi
 
     @property
+    def without_array(self) -> Scenario:
+        """The scenario with one dipole in place of its array."""
+        return self if self.array is None else self.model_copy(update={"array": None})
+
+    @property
     def reference_gain(self) -> float:
         """Path gain at 1 m times the largest gain of the drone's antenna, linear."""
         return self.receiver.reference_gain * ratio_from_db(self.antenna_gain_dbi)

@@ -2,7 +2,7 @@
 
 from nullpose.problem.schemes import Scheme, as_scheme
 from nullpose.solver.api import best_axis, compare, solve
-from nullpose.solver.array import ArrayDetails, solve_array
+from nullpose.solver.array import ArrayDetails
 from nullpose.solver.compiling import announce_compiling
 from nullpose.solver.many import ManySolutions, solve_many
 from nullpose.solver.options import (
@@ -17,17 +17,10 @@ from nullpose.solver.result import Objective, Result, Results, Stats, Status
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
 
-Solution = Result
-"""An older name of what a solve returns."""
-
-ArraySolution = Result
-"""Likewise, of an array."""
-
 __all__ = [
     "NODE_LIMIT",
     "TIME_LIMIT_S",
     "ArrayDetails",
-    "ArraySolution",
     "ErrorSizes",
     "ManySolutions",
     "Objective",
@@ -36,7 +29,6 @@ __all__ = [
     "Rigour",
     "Scheme",
     "Sensitivity",
-    "Solution",
     "SolveKeywords",
     "SolveOptions",
     "Stats",
@@ -49,6 +41,5 @@ __all__ = [
     "default_gap_of",
     "sensitivity",
     "solve",
-    "solve_array",
     "solve_many",
 ]

@@ -9,19 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
-from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.physics import Pose
 from nullpose.physics.pose import as_position
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes import Scheme, as_scheme
 from nullpose.scenario import Scenario, require_scenario
-from nullpose.solver.by_scheme import solve_scheme
-from nullpose.solver.compiling import working_clock
+from nullpose.solver.array import solve_array
+from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.options import SolveKeywords, SolveOptions
-from nullpose.solver.provenance import provenance
-from nullpose.solver.result import Result, Results, Stats, objective_of, status_of
-from nullpose.solver.rigour import Rigour
+from nullpose.solver.result import Result, Results
+from nullpose.solver.robust.solving import solve_robust
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 
@@ -29,29 +27,37 @@ def solve(
     scenario: Scenario,
     scheme: Scheme | str = Scheme.OPTIMUM,
     *,
+    robust: bool = False,
     null_jammer: str | None = None,
     on_progress: Callable[[float, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Result:
-    """Return the best pose for a scenario under a scheme, and a bound that no pose exceeds.
+    """Find the best pose for a scenario, and a bound that no pose exceeds.
 
     Maximises what the scenario asks for, the smallest SINR over the nodes (paper eq. 2.2), the smallest
-    margin or the smallest secrecy rate, with the axes that the scheme and the airframe allow. The value is
-    re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from a branch and
-    bound over positions and axes. On a limit or an interrupt the best pose and the best bound so far are
-    returned, and the status says so.
+    margin or the smallest secrecy rate, with the axes that the scheme and the airframe allow. A scenario with
+    an array is solved for position and yaw of a level vehicle, each node with combining weights of its own.
+    With ``robust`` the pose is found that guarantees most when the scenario's errors do their worst.
+
+    The value is re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from
+    a branch and bound over positions and axes. On a limit or an interrupt the best pose and the best bound so
+    far are returned, and the status says so.
 
     Args:
         scenario: what to solve.
-        scheme: one of :class:`Scheme`, or its name.
+        scheme: one of :class:`Scheme`, or its name; the optimum for an array or a robust pose.
+        robust: maximise over all errors together: an actual axis within ``attitude_error_deg`` and an actual
+            position within ``position_error_m`` of the commanded ones, every jammer or eavesdropper anywhere
+            in its set. The gap is 1e-2 unless another is given.
         null_jammer: zero interference only: the jammer to null; without it, each is tried.
-        on_progress: called now and then during the proof with the gap so far and the boxes examined.
+        on_progress: called during the proof with the gap and the boxes examined; never for an array.
         options: those of :class:`SolveOptions`: ``gap``, ``time_limit_s``, ``node_limit``, ``threads``,
-            ``certify`` and ``seed``.
+            ``certify`` and ``seed``. An array has no limits of time and boxes.
 
     Raises:
         WrongTypeError: no scenario was given, but the path of one, say.
-        UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit.
+        UsageError: unknown scheme, one that has no meaning here, an unknown jammer, a bad seed or limit, an
+            array under another objective than min-sinr or with ``robust``.
         SolveError: no pose reaches every node.
 
     Example:
@@ -62,43 +68,19 @@ def solve(
         (0.9837, 1.2542, 'certified')
         >>> result.pose.position_m.round(2)
         array([-2.24, 23.82,  8.  ])
+        >>> unsure = nullpose.apply_overrides(scenario, ["jammers.M.uncertainty_m=1"])
+        >>> nullpose.solve(unsure, robust=True, gap=0.1).objective.value < result.objective.value
+        True
     """
     require_scenario(scenario)
-    scheme = as_scheme(scheme)
-    scheme.require_applicable(scenario)
-    record = scheme.record
-    if null_jammer is not None and not record.nulls_a_jammer:
-        nulling = ", ".join(each.value for each in Scheme if each.record.nulls_a_jammer)
-        raise UsageError(
-            f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
-        )
-    asked = SolveOptions(**options, on_progress=on_progress).of(scenario)
-    began = working_clock()
-    outcome, fields = solve_scheme(scenario, record, asked, null_jammer)
-    pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
-    links = evaluate(scenario, pose)
-    rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
-    objective = objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour)
-    status, reason = status_of(objective, asked.target, outcome.reason)
-    return Result(
-        scenario=scenario,
-        scheme=scheme,
-        status=status,
-        reason=reason,
-        objective=objective,
-        pose=pose,
-        links=links,
-        stats=Stats(
-            wall_s=working_clock() - began,
-            starts=outcome.incumbent.starts,
-            evaluations=outcome.incumbent.evaluations,
-            boxes=outcome.nodes,
-        ),
-        provenance=provenance(asked.seed) | asked.settings,
-        note=record.note(scenario, tuple(fields or ()), outcome.chosen),
-        null_jammer=null_jammer,
-        proofs=outcome.proofs,
-    )
+    scheme, limits = as_scheme(scheme), SolveOptions(**options, on_progress=on_progress)
+    if not robust and scenario.array is None:
+        return solve_by_scheme(scenario, scheme, null_jammer, limits)
+    if scheme is not Scheme.OPTIMUM or null_jammer is not None:
+        given = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
+        kind = "a robust pose" if robust else "a scenario with an [array]"
+        raise UsageError(f"solve: given {given} for {kind}; allowed: the scheme {Scheme.OPTIMUM.value}")
+    return solve_robust(scenario, limits) if robust else solve_array(scenario, limits)
 
 
 def compare(
@@ -108,12 +90,12 @@ def compare(
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Results:
-    """Return the solutions of several schemes for one scenario, those without meaning here left out.
+    """Solve a scenario under several schemes with one dipole, those without meaning there left out.
 
     After an interrupt during a proof the remaining schemes are solved without one.
 
     Args:
-        scenario: nodes, jammers, receiver and airspace.
+        scenario: nodes, jammers, receiver and airspace; an array is left out.
         schemes: the schemes, in order.
         on_progress: called with how many are done and how many there are.
         options: as for :func:`solve`.
@@ -134,6 +116,7 @@ def compare(
         Vertical          -2.160 dB
     """
     require_scenario(scenario)
+    scenario = scenario.without_array
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):

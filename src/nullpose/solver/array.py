@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import ErrorCase, Pose
 from nullpose.physics.array import digital_sinr, digital_weights, element_positions
 from nullpose.physics.evaluate import links_of
-from nullpose.scenario import Array, Scenario, require_scenario
+from nullpose.scenario import Scenario
 from nullpose.solver.array_bound import ArrayBound, array_bound
 from nullpose.solver.array_search import ArrayHunt
 from nullpose.solver.array_task import ArrayTask
 from nullpose.solver.compiling import working_clock
-from nullpose.solver.options import SolveKeywords, SolveOptions
+from nullpose.solver.options import SolveOptions
 from nullpose.solver.provenance import provenance
 from nullpose.solver.result import Result, Stats, objective_of, status_of
 
@@ -74,61 +74,39 @@ class ArrayDetails:
         return {"array": placed | {"combining": "digital", "weights": weights}}
 
 
-def solve_array(
-    scenario: Scenario,
-    *,
-    elements: int | None = None,
-    layout: str | None = None,
-    spacing_wavelengths: float | None = None,
-    **options: Unpack[SolveKeywords],
-) -> Result:
-    """Return the best position, yaw and combining of an array of upright dipoles on a level vehicle.
+def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
+    """Find the best position, yaw and combining of an array of upright dipoles on a level vehicle.
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Every
     node has weights of its own, which follow from position and yaw (:func:`nullpose.physics.digital_sinr`).
-    The value is re-evaluated by the physics from what is reported. The bound comes from a branch and bound
-    over positions and yaws.
+    The bound comes from a branch and bound over positions and yaws.
 
     Args:
-        scenario: nodes, jammers, receiver and airspace; its airframe and its uncertainty are not consulted.
-        elements: number of dipoles; the scenario's if left out, as the next two.
-        layout: ``"linear"`` or ``"circular"``.
-        spacing_wavelengths: distance between neighbours, in wavelengths.
-        options: as for :func:`nullpose.solve`; limits of time and boxes are not consulted.
+        scenario: one with an array; its airframe and its uncertainty are not consulted.
+        options: as given by the user; limits of time and boxes are not consulted.
 
     Raises:
-        WrongTypeError: no scenario was given, but the path of one, say.
-        UsageError: a bad gap or seed, no array given, or another objective than min-sinr.
-        ScenarioError: elements, layout or spacing that no array has.
+        UsageError: the objective is another than min-sinr.
         SolveError: no position reaches every node.
-
-    Example:
-        >>> import nullpose
-        >>> scenario = nullpose.load("examples/paper.toml")
-        >>> result = nullpose.solve_array(
-        ...     scenario, elements=2, layout="linear", spacing_wavelengths=0.5, gap=1e-2
-        ... )
-        >>> round(result.objective.value_db, 2), result.weights.shape  # a row of weights for each node
-        (4.1, (2, 2))
     """
-    require_scenario(scenario)
-    array = _array(scenario, elements, layout, spacing_wavelengths)
+    array = scenario.array
+    assert array is not None, "the caller asks"
     if scenario.objective_record.transmits:
         raise UsageError(
             f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
             "under which the drone receives; arrays are not there for others"
         )
-    asked = SolveOptions(**options).of(scenario)
+    options = options.of(scenario)
     began = working_clock()
     task = ArrayTask.of(scenario, array)
-    hunt, bound = _solved(task, asked)
+    hunt, bound = _solved(task, options)
     pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
     places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
     links = links_of(scenario, digital_sinr(scenario, pose.position_m, places))
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
-    reached = bound is None or hunt.reaches(bound.value, asked.target)
-    status, reason = status_of(objective, asked.target, "" if reached else "box limit reached")
+    reached = bound is None or hunt.reaches(bound.value, options.target)
+    status, reason = status_of(objective, options.target, "" if reached else "box limit reached")
     return Result(
         scenario=scenario,
         scheme="array-digital",
@@ -144,46 +122,30 @@ def solve_array(
             searches=len(hunt.ends),
             agreeing=hunt.agreeing,
         ),
-        provenance=provenance(asked.seed) | asked.settings,
+        provenance=provenance(options.seed) | options.settings,
         reason=reason,
         details=ArrayDetails(weights=digital_weights(scenario, pose.position_m, places), **array.to_dict()),
     )
 
 
-def _array(
-    scenario: Scenario, elements: int | None, layout: str | None, spacing_wavelengths: float | None
-) -> Array:
-    """Return the array that is meant: what is given, and the scenario's for the rest."""
-    asked = {"elements": elements, "layout": layout, "spacing_wavelengths": spacing_wavelengths}
-    stated = {} if scenario.array is None else scenario.array.to_dict()
-    values = stated | {key: value for key, value in asked.items() if value is not None}
-    missing = [key for key in asked if key not in values]
-    if missing:
-        raise UsageError(
-            f"array: {', '.join(missing)} not given; add a table headed [array] to the scenario, or give "
-            "elements, layout and spacing_wavelengths"
-        )
-    return Array.from_dict(values)
-
-
-def _solved(task: ArrayTask, asked: SolveOptions) -> tuple[ArrayHunt, ArrayBound | None]:
+def _solved(task: ArrayTask, options: SolveOptions) -> tuple[ArrayHunt, ArrayBound | None]:
     """Search, and prove what is found if that is asked for.
 
     One search and a proof, then more searches, and another proof, where that does not get there; what turns
     up in the first proof is taken up.
     """
-    hunt = ArrayHunt(task, asked.seed)
-    if not asked.certify:
+    hunt = ArrayHunt(task, options.seed)
+    if not options.certify:
         hunt.search_on()
         return hunt, None
     hunt.search()
-    bound, before = array_bound(task, hunt.best, gap=asked.target), hunt.best
-    if hunt.reaches(bound.value, asked.target):
+    bound, before = array_bound(task, hunt.best, gap=options.target), hunt.best
+    if hunt.reaches(bound.value, options.target):
         return hunt, bound
     if bound.state is not None:
         hunt.look(bound.state)
     hunt.search_on()
-    if hunt.best <= before + asked.target:
+    if hunt.best <= before + options.target:
         return hunt, bound
-    again = array_bound(task, hunt.best, gap=asked.target)
+    again = array_bound(task, hunt.best, gap=options.target)
     return hunt, replace(again, value=min(bound.value, again.value), boxes=bound.boxes + again.boxes)

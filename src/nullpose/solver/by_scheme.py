@@ -8,15 +8,72 @@ from dataclasses import replace
 import numpy as np
 
 from nullpose.errors import UsageError
+from nullpose.objectives import Quantity
+from nullpose.physics import Pose, evaluate
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.problem.schemes import SchemeRecord
+from nullpose.problem.schemes import Scheme, SchemeRecord
 from nullpose.scenario import Scenario
+from nullpose.solver.compiling import working_clock
 from nullpose.solver.incumbent import Incumbent
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.position_search import search_positions
+from nullpose.solver.provenance import provenance
+from nullpose.solver.result import Result, Stats, objective_of, status_of
+from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
+
+
+def solve_by_scheme(
+    scenario: Scenario, scheme: Scheme, null_jammer: str | None, options: SolveOptions
+) -> Result:
+    """Solve a scenario with one antenna under a scheme.
+
+    Args:
+        scenario: what to solve; an array is not consulted.
+        scheme: how the pose is chosen.
+        null_jammer: for a scheme that nulls a jammer: which; without it each is tried and the best kept.
+        options: as given by the user.
+
+    Raises:
+        UsageError: the scheme has no meaning here, or no jammer has that name.
+        SolveError: no pose reaches every node.
+    """
+    scheme.require_applicable(scenario)
+    record = scheme.record
+    if null_jammer is not None and not record.nulls_a_jammer:
+        nulling = ", ".join(each.value for each in Scheme if each.record.nulls_a_jammer)
+        raise UsageError(
+            f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
+        )
+    options = options.of(scenario)
+    began = working_clock()
+    outcome, fields = solve_scheme(scenario, record, options, null_jammer)
+    pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
+    links = evaluate(scenario, pose)
+    rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
+    objective = objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour)
+    status, reason = status_of(objective, options.target, outcome.reason)
+    return Result(
+        scenario=scenario,
+        scheme=scheme,
+        status=status,
+        reason=reason,
+        objective=objective,
+        pose=pose,
+        links=links,
+        stats=Stats(
+            wall_s=working_clock() - began,
+            starts=outcome.incumbent.starts,
+            evaluations=outcome.incumbent.evaluations,
+            boxes=outcome.nodes,
+        ),
+        provenance=provenance(options.seed) | options.settings,
+        note=record.note(scenario, tuple(fields or ()), outcome.chosen),
+        null_jammer=null_jammer,
+        proofs=outcome.proofs,
+    )
 
 
 def solve_scheme(

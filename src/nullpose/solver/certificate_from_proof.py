@@ -53,6 +53,12 @@ def certificate_of(solution: Result) -> Certificate:
 
     Raises:
         UsageError: nothing was proved, or the scheme has no certificate for this scenario.
+
+    Example:
+        >>> import nullpose
+        >>> result = nullpose.solve(nullpose.load("examples/paper.toml"))
+        >>> nullpose.verify(nullpose.certificate_of(result)).proved
+        True
     """
     fields = require_certificate(solution.scenario, solution.scheme, solution.null_jammer)
     if solution.objective.upper_bound is None:

@@ -197,10 +197,9 @@ def _check(scenarios: Sequence[Scenario]) -> None:
     for index, scenario in enumerate(scenarios):
         if scenario.objective_record.transmits or scenario.array is not None:
             kind = "an array" if scenario.array is not None else "a secrecy rate"
-            verb = "solve_array" if scenario.array is not None else "solve"
             raise UsageError(
                 f"scenarios[{index}]: asks for {kind}; allowed: the smallest SINR or margin of one dipole; "
-                f"use {verb}"
+                "use solve"
             )
 
 

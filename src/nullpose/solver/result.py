@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
 from functools import partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 from nullpose.errors import SolveError
 from nullpose.notebook import html_table, imported
@@ -161,9 +161,20 @@ def status_of(objective: Objective, requested_gap: float, reason: str) -> tuple[
     return Status.GAP_NOT_REACHED, reason or "the rounding of value and bound"
 
 
+class Details(Protocol):
+    """What a result of an array, of a robust pose or of a given pose has beside the numbers of all."""
+
+    @property
+    def label(self) -> str:
+        """The name of the case for tables."""
+
+    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+        """Return plain data for JSON, over the keys of a result, whose objective is given."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Result:
-    """A pose, what it gives, and how it was found. What the details have is read on it too.
+    """A pose, what it gives, and how it was found.
 
     Args:
         scenario: what was solved.
@@ -179,8 +190,8 @@ class Result:
         null_jammer: the jammer that was asked to be nulled, if one was.
         proofs: what the branch and bound showed, for each axis field of the scheme.
         error_sizes: the errors that :attr:`sensitivity` tries; None for one of many poses, which tells none.
-        details: what this kind of solve has to tell beside that, with a ``to_dict`` of its own:
-            :class:`ArrayDetails`, :class:`nullpose.solver.robust.RobustDetails`, or None.
+        details: :class:`ArrayDetails` of an array, :class:`nullpose.solver.robust.RobustDetails` of a robust
+            pose; None of one antenna.
     """
 
     scenario: Scenario
@@ -196,7 +207,7 @@ class Result:
     null_jammer: str | None = None
     proofs: tuple[Proof, ...] = field(default=(), repr=False)
     error_sizes: ErrorSizes | None = field(default=ErrorSizes(), repr=False)
-    details: Any = None
+    details: Details | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
@@ -205,18 +216,10 @@ class Result:
         state = {one.name: getattr(self, one.name) for one in fields(self)}
         return partial(type(self), **state | {"provenance": dict(self.provenance)}), ()
 
-    def __getattr__(self, name: str) -> Any:
-        """Return what the details, the objective or the pose have of that name."""
-        if not name.startswith("_"):
-            for part in (self.details, self.objective, self.pose):
-                if hasattr(part, name):
-                    return getattr(part, name)
-        raise AttributeError(f"a result has no {name!r}")
-
     @property
     def label(self) -> str:
         """The name of the case for tables."""
-        return str(self.scheme.label if isinstance(self.scheme, Scheme) else self.details.label)
+        return self.details.label if self.details is not None else Scheme(self.scheme).label
 
     @property
     def binding_node(self) -> str:

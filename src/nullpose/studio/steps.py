@@ -9,7 +9,7 @@ from dataclasses import replace
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Rigour, Scheme, Status, default_gap_of, solve
-from nullpose.solver.robust import ROBUST_GAP, solve_robust
+from nullpose.solver.robust import ROBUST_GAP
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve
@@ -79,8 +79,8 @@ def proved_answers(
         yield answer_of(version, case, proved)
         return
     for certify in (False, True):
-        guarded = solve_robust(
-            scenario, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
+        guarded = solve(
+            scenario, robust=True, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
         )
         yield answer_of(version, case, guarded)
 

@@ -16,11 +16,12 @@ from nullpose.solver import (
     Result,
     SolveKeywords,
     SolveOptions,
+    solve,
 )
 from nullpose.solver.provenance import provenance
-from nullpose.solver.robust import guarantee, solve_robust
+from nullpose.solver.robust import guarantee
 from nullpose.study.airframe_cases import OMNIDIRECTIONAL, STATED, AirframeCase, cases_of
-from nullpose.study.grid import solved_case, solved_grid
+from nullpose.study.grid import solved_grid
 
 TOLERANCE = 0.01  # a vehicle suffices if it gives no less than the omnidirectional one but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
@@ -151,7 +152,8 @@ class AirframeComparison:
             tolerance: relative.
         """
         best = self.omnidirectional
-        whole = best.value if best.upper_bound is None else best.upper_bound
+        bound = None if best.result is None else best.result.objective.upper_bound
+        whole = best.value if bound is None else bound
         return best.value > 0.0 and (result is best or result.value >= (1.0 - tolerance) * whole)
 
     @property
@@ -260,7 +262,7 @@ def compare_airframes(
     def solved(own: Scenario, case: AirframeCase) -> AirframeResult:
         now = options | {"certify": asked.certify and not any(interrupted)}
         try:
-            result = solved_case(case.on(own), **now)
+            result = solve(case.on(own), **now)
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
@@ -290,7 +292,7 @@ def _guaranteed(result: Result, options: SolveKeywords | None) -> Guaranteed:
     if options is None:
         return Guaranteed(nominal_pose=nominal, robust_pose=None, upper_bound=None)
     limit_s = min(_ROBUST_S, options.get("time_limit_s", TIME_LIMIT_S))
-    robust = solve_robust(scenario, **options | {"gap": None, "time_limit_s": limit_s})
+    robust = solve(scenario, robust=True, **options | {"gap": None, "time_limit_s": limit_s})
     return Guaranteed(
         nominal_pose=nominal,
         robust_pose=max(nominal, robust.objective.value),

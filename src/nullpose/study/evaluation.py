@@ -94,7 +94,7 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
         >>> best = nullpose.solve(nullpose.load("examples/paper.toml"))
         >>> upright = nullpose.Pose(position_m=[0.0, 25.0, 8.0], roll_rad=0.0, pitch_rad=0.0)
         >>> (result,) = nullpose.evaluate_against(best, [upright]).results
-        >>> round(result.objective.value_db, 2), round(result.below_bound, 2)  # dB
+        >>> round(result.objective.value_db, 2), round(result.details.below_bound, 2)  # dB
         (-4.08, 5.07)
     """
     if best.scenario.array is not None:

@@ -48,10 +48,11 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
         options: with the gap that is asked for.
     """
     began, asked = time.perf_counter(), options.of(scenario)
-    bounds = [(result.upper_bound, result) for result in freer if result.upper_bound is not None]
-    if not bounds:
+    bounds = [(result.objective.upper_bound, result) for result in freer]
+    proved = [(bound, result) for bound, result in bounds if bound is not None]
+    if not proved:
         return None
-    bound, best = min(bounds, key=lambda pair: pair[0])
+    bound, best = min(proved, key=lambda pair: pair[0])
     airframe = scenario.airframe
     if airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad:
         return None

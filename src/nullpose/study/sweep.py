@@ -104,7 +104,7 @@ def _scenarios_along(
     faults: dict[str, list[tuple[float, Fault]]] = defaultdict(list)
     for value in map(float, values):
         try:
-            varied.append((value, apply_overrides(scenario, [Override(path, value)])))
+            varied.append((value, apply_overrides(scenario, [Override(path, value)]).without_array))
         except ScenarioError as error:
             for fault in error.faults:
                 faults[fault.path].append((value, fault))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Scenario
-from nullpose.solver.robust import RobustSolution, solve_robust
+from nullpose.solver import Result, solve
 
 Draw = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -106,6 +106,6 @@ def strong(paper: Callable[..., Scenario], erring: Callable[..., Scenario]) -> S
 
 
 @pytest.fixture(scope="session")
-def solved(strong: Scenario) -> RobustSolution:
+def solved(strong: Scenario) -> Result:
     """Returns its robust solution."""
-    return solve_robust(strong)
+    return solve(strong, robust=True)

@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
-from nullpose.solver.robust import guarantee, solve_robust
+from nullpose.solver.robust import guarantee
 
 
 def erring(scenario: Scenario, null_depth_db: float | None) -> Scenario:
@@ -105,19 +105,19 @@ def test_the_guarantee_straight_above_a_jammer_settles(*, whips: bool, accuracy:
 def test_the_pose_without_errors_is_what_solve_certifies(paper: Callable) -> None:
     """The best pose without errors has the value that solve certifies: jammers keep their whips."""
     scenario = erring(paper(1.0), None)
-    solution = solve_robust(scenario, certify=False)
-    assert solution.nominal.nominal == pytest.approx(solve(scenario).objective.value, rel=1e-4)
-    assert solution.robust.guaranteed > solution.nominal.guaranteed
+    solution = solve(scenario, robust=True, certify=False)
+    assert solution.details.nominal.nominal == pytest.approx(solve(scenario).objective.value, rel=1e-4)
+    assert solution.details.robust.guaranteed > solution.details.nominal.guaranteed
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0])
 def test_a_robust_pose_is_close_to_its_bound(ratio: float, paper: Callable) -> None:
     """The guarantee of the best pose is within some percent of a bound, with whips on all points."""
-    solution = solve_robust(erring(paper(ratio), None))
-    assert solution.upper_bound <= 1.04 * solution.robust.guaranteed
+    solution = solve(erring(paper(ratio), None), robust=True)
+    assert solution.objective.upper_bound <= 1.04 * solution.details.robust.guaranteed
     assert solution.status == "certified" or "most cells" in solution.reason
     assert solution.scenario == erring(paper(ratio), None)
     nodes_only = erring(paper(ratio), None).to_dict()
     del nodes_only["jammers"][0]["antenna"]
-    isotropic = solve_robust(Scenario.from_dict(nodes_only))
-    assert solution.robust.guaranteed >= isotropic.robust.guaranteed  # a whip jams less
+    isotropic = solve(Scenario.from_dict(nodes_only), robust=True)
+    assert solution.details.robust.guaranteed >= isotropic.details.robust.guaranteed  # a whip jams less

@@ -14,7 +14,7 @@ def test_the_best_pose_without_errors_has_the_value_that_solve_finds(depth_db):
         [] if depth_db is None else [f"{each}.null_depth_db={depth_db}" for each in ("nodes.S1", "nodes.S2")]
     )
     uncertain = nullpose.apply_overrides(scenario, changes)
-    robust = nullpose.solve_robust(uncertain, certify=False)
+    robust = nullpose.solve(uncertain, robust=True, certify=False)
     best = nullpose.solve(uncertain, certify=False)
     assert robust.details.nominal.nominal == pytest.approx(best.objective.value, rel=1e-6)
     assert robust.details.robust.nominal == pytest.approx(

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nullpose import Pose, Scenario, evaluate, solve_robust
-from nullpose.solver import solve, solve_array
+from nullpose import Array, Pose, Scenario, evaluate
+from nullpose.solver import solve
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.monte_carlo import StudySpec
 from nullpose.study.monte_carlo.draw import Draws
@@ -26,16 +26,17 @@ def test_a_robust_case_is_worth_what_it_guarantees(spec: Spec) -> None:
     """Value and bound are those of the robust pose."""
     study = spec(jammers__uncertainty_m=1.0, cases=[{"robust": True, "gap": 0.1}])
     row, scene = _row(study)
-    found = solve_robust(scene, gap=0.1)
-    assert (row["value"], row["bound"]) == (found.robust.guaranteed, found.upper_bound)
-    assert row["binding_node"] == found.robust.binding_node
+    found = solve(scene, robust=True, gap=0.1)
+    assert (row["value"], row["bound"]) == (found.details.robust.guaranteed, found.objective.upper_bound)
+    assert row["binding_node"] == found.details.robust.binding_node
 
 
 def test_an_array_takes_the_place_of_the_dipole(spec: Spec) -> None:
     """Elements and layout of the case count, and digital combining may be stated."""
     array = {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5, "combining": "digital"}
     row, scene = _row(spec(cases=[{"array": array}]))
-    found = solve_array(scene, elements=2, layout="linear", spacing_wavelengths=0.5, gap=1e-2)
+    array = Array(elements=2, layout="linear", spacing_wavelengths=0.5)
+    found = solve(scene.model_copy(update={"array": array}), gap=1e-2)
     assert row["value"] == found.objective.value
     assert (row["roll_rad"], row["pitch_rad"]) == (0.0, 0.0)
 
@@ -169,7 +170,7 @@ def test_what_goes_wrong_is_a_row(spec: Spec, monkeypatch: pytest.MonkeyPatch) -
     def broken(*_: Any, **__: Any) -> None:
         raise ArithmeticError("first line\n  second line")
 
-    monkeypatch.setattr("nullpose.study.grid.solve", broken)
+    monkeypatch.setattr("nullpose.study.monte_carlo.solving.solve", broken)
     row, _ = _row(spec())
     assert (row["status"], row["reason"]) == ("failed", "ArithmeticError: first line; second line")
     assert not {"value", "bound", "x_m"} & set(row)

@@ -75,8 +75,9 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
 
     Both panels show the same space, with the sets that jammers and eavesdroppers may be anywhere in.
     """
-    scenario, quantity = result.scenario, Quantity.of(result.scenario)
-    poses = {"robust pose": result.details.robust, "best pose without errors": result.details.nominal}
+    scenario, quantity, details = result.scenario, Quantity.of(result.scenario), result.details
+    assert isinstance(details, RobustDetails), "the caller asks"
+    poses = {"robust pose": details.robust, "best pose without errors": details.nominal}
     titles = []
     for name, pose in poses.items():
         guaranteed = with_unit(quantity.in_unit(pose.guaranteed), quantity)
@@ -120,6 +121,7 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
     There is a beam for each node; the one drawn is that of the node with the smallest value.
     """
     array, quantity, yaw_rad = result.details, result.objective.quantity, result.pose.yaw_rad
+    assert isinstance(array, ArrayDetails), "the caller asks"
     elements = element_positions(array.elements, array.layout, array.spacing_wavelengths, yaw_rad)
     weights = array.weights[[link.node for link in result.links].index(result.binding_node)]
     azimuth_deg = ALONE.azimuth_deg

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Unpack
 
 import numpy as np
 
 from nullpose.physics import Pose, evaluate
 from nullpose.physics.polarisation import worst_polarised
 from nullpose.problem.axis_field import AxisField
-from nullpose.scenario import Scenario, require_scenario
-from nullpose.solver.api import solve
+from nullpose.problem.schemes import Scheme
+from nullpose.scenario import Scenario
+from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.compiling import limit_clock, working_clock
-from nullpose.solver.options import SolveKeywords, SolveOptions
+from nullpose.solver.options import SolveOptions
 from nullpose.solver.precompile import precompile
 from nullpose.solver.proof import INTERRUPT
 from nullpose.solver.provenance import provenance
@@ -36,43 +35,26 @@ POLARISATION = (
 _MOST_CELLS_REACHED = "limit of the proof of what the pose guarantees: most cells of errors"
 
 
-def solve_robust(
-    scenario: Scenario,
-    *,
-    on_progress: Callable[[float, int], None] | None = None,
-    **options: Unpack[SolveKeywords],
-) -> Result:
-    """Return the pose whose objective is largest when the scenario's errors do their worst.
+def solve_robust(scenario: Scenario, options: SolveOptions) -> Result:
+    """Find the pose whose objective is largest when the scenario's errors do their worst.
 
-    Maximises the smallest margin or secrecy rate over all errors together: an actual axis within
-    ``attitude_error_deg`` and an actual position within ``position_error_m`` of the commanded ones, every
-    jammer or eavesdropper anywhere in its set. What the pose guarantees is proved; that no pose guarantees
-    much more is proved with ``certify``. On a limit or an interrupt the best so far is returned.
+    What the pose guarantees is proved; that no pose guarantees much more is proved with ``certify``. On a
+    limit or an interrupt the best so far is returned.
 
     Args:
         scenario: with errors or without, which makes the guaranteed value the nominal one.
-        on_progress: called now and then during the proof with the gap so far and the boxes examined.
-        options: as for :func:`nullpose.solve`; the gap is ``ROBUST_GAP`` unless another is asked for.
+        options: as given by the user; the gap is ``ROBUST_GAP`` unless another is given.
 
     Raises:
-        WrongTypeError: no scenario was given, but the path of one, say.
-        UsageError: an array in place of the dipole, a bad seed or limit.
+        UsageError: an array in place of the dipole.
         SolveError: no pose reaches every node.
-
-    Example:
-        >>> import nullpose
-        >>> scenario = nullpose.load("examples/paper.toml")
-        >>> uncertain = nullpose.apply_overrides(scenario, ["jammers.M.uncertainty_m=1"])
-        >>> result = nullpose.solve_robust(uncertain, gap=0.1)
-        >>> result.objective.value < nullpose.solve(scenario).objective.value
-        True
     """
-    require_scenario(scenario)
-    limits = SolveOptions(**options, on_progress=on_progress).of(scenario, ROBUST_GAP)
+    limits = options.of(scenario, ROBUST_GAP)
     stated, scenario = scenario, worst_polarised(require_dipole(scenario))
     inner = Inner(scenario)
     began = working_clock()
-    nominal = solve(stated, certify=False, seed=limits.seed).pose
+    search = SolveOptions(certify=False, seed=limits.seed)
+    nominal = solve_by_scheme(stated, Scheme.OPTIMUM, None, search).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:

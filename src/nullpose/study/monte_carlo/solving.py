@@ -20,11 +20,12 @@ from nullpose.solver import (
     ManySolutions,
     SolveKeywords,
     Status,
+    solve,
     solve_many,
 )
 from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.robust import RobustDetails
 from nullpose.study.evaluation import pose_faults
-from nullpose.study.grid import solved_case
 from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -122,17 +123,12 @@ def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[st
         weakest = min(evaluate(scene, pose), key=quantity.at)
         columns = _found(scene, Status.GIVEN, pose, quantity.at(weakest), None, None)
         return columns | {"reason": faults, "binding_node": weakest.node}
-    result = solved_case(
-        scene,
-        case.scheme or Scheme.OPTIMUM,
-        robust=bool(case.robust),
-        **options,
-    )
-    objective, pose = result.objective, result.pose
+    result = solve(scene, case.scheme or Scheme.OPTIMUM, robust=bool(case.robust), **options)
+    objective, pose, details = result.objective, result.pose, result.details
     columns = _found(
         scene, result.status, pose, objective.value, objective.upper_bound, objective.relative_gap
     )
-    node = result.details.robust.binding_node if case.robust else result.binding_node
+    node = details.robust.binding_node if isinstance(details, RobustDetails) else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
 
 
