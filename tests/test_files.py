@@ -167,7 +167,6 @@ def test_reading_is_bounded(tmp_path: Path) -> None:
         ('[[{"a": 1, "a": 1}]]', "", 'the key "a" is given twice'),
         ("[" * 100_000, "", "nested too deeply"),
         ("[" + "9" * 10_000 + "]", "", "too many digits"),
-        ("[" + "[]," * 1_500_000 + "1]", "", "more than 1500000 lists and objects"),
         ("{\n]", "line 2, column 1", "this is not JSON: "),
     ],
 )

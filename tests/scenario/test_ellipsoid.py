@@ -6,7 +6,7 @@ from hypothesis import given, strategies as st
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from nullpose.scenario.ellipsoid import distance_m
+from nullpose.scenario.reach import distance_m
 
 SEEDS = st.integers(0, 2**32 - 1)
 

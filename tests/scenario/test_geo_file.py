@@ -152,7 +152,7 @@ def test_limits_that_are_not_read_are_said(tmp_path: Path) -> None:
     )
     scenario, notes = zones_of(tmp_path, "z.geojson")
     assert all(zone.altitude_m is None for zone in scenario.airspace.no_fly)
-    assert 'z.geojson: "X" counts at all altitudes; its upper_limit = 500 is not read' in notes
+    assert 'z.geojson: "X" counts at all altitudes; its upper_limit is not read' in notes
     assert any('"Y" counts at all times; its limitedApplicability' in note for note in notes)
 
 

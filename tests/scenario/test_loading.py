@@ -7,6 +7,7 @@ import pytest
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import load
+from nullpose.scenario.loading import scenario_from_text
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -158,18 +159,15 @@ def test_broken_toml(text: str, place: str, words: str, tmp_path: Path) -> None:
     assert "('" not in fault.message
 
 
-def test_endless_nesting(tmp_path: Path) -> None:
-    """Brackets without end are refused, not followed."""
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("x = " + "[" * 100_000, "nested too deeply"), ("x = " + "9" * 5000, "too many digits")],
+)
+def test_endless_nesting_and_numbers(text: str, words: str, tmp_path: Path) -> None:
+    """Brackets without end are refused, not followed, and so is a number of thousands of digits."""
     path = tmp_path / "deep.toml"
-    path.write_text("x = " + "[" * 100_000, encoding="utf-8")
-    assert "nested too deeply" in fault_of(path).message
-
-
-def test_endless_number(tmp_path: Path) -> None:
-    """A number of thousands of digits is refused, not converted."""
-    path = tmp_path / "long.toml"
-    path.write_text("x = " + "9" * 5000, encoding="utf-8")
-    assert "too many digits" in fault_of(path).message
+    path.write_text(text, encoding="utf-8")
+    assert words in fault_of(path).message
 
 
 @pytest.mark.parametrize(
@@ -184,22 +182,19 @@ def test_endless_number(tmp_path: Path) -> None:
     ],
     ids=["dotted", "header", "quoted", "behind text", "number", "key"],
 )
-def test_monstrous_words_are_refused_at_once(text: str, tmp_path: Path) -> None:
+def test_monstrous_words_of_an_upload_are_refused_at_once(text: str) -> None:
     """Keys of very many parts, which would take gigabytes to read, and very long words are not read."""
-    path = tmp_path / "long.toml"
-    path.write_text(text, encoding="utf-8")
-    assert "a key has more than 64 parts, or a word more than 10000 characters" in fault_of(path).message
+    with pytest.raises(ScenarioError, match="a key has more than 64 parts, or a word more than 10000"):
+        scenario_from_text(text.encode(), "long.toml")
 
 
-def test_long_texts_comments_and_lists_are_no_keys(tmp_path: Path) -> None:
+def test_long_texts_comments_and_lists_are_no_keys() -> None:
     """Dots in texts, comments and numbers are no parts of keys."""
     dots = "." * 20_000
     numbers = "1.5, " * 9000
     text = f'"..." = "{dots}"\na = """\n{dots}"""\nb = \'{dots}\' # {dots}\nc = [{numbers}]\n'
-    path = tmp_path / "dots.toml"
-    path.write_text(text, encoding="utf-8")
     with pytest.raises(ScenarioError) as caught:
-        load(path)
+        scenario_from_text(text.encode(), "dots.toml")
     assert {'"..."', "a", "b", "c"} & {fault.path for fault in caught.value.faults}
 
 

@@ -355,7 +355,7 @@ def test_a_dictionary_names_no_file() -> None:
     with pytest.raises(ScenarioError) as caught:
         Scenario.from_dict(data | {"nodes_from": "nodes.csv"})
     messages = {fault.path: fault.message for fault in caught.value.faults}
-    assert "only a scenario file may name" in messages["nodes_from"]
+    assert "only a scenario file on this machine may name" in messages["nodes_from"]
 
 
 def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from nullpose.errors import ScenarioError
 from nullpose.physics import Pose
 from nullpose.problem.build import build_family
 from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides
-from nullpose.scenario.margin import offset_outlines_m
+from nullpose.scenario.polygon import offset_outlines_m
 from nullpose.study.evaluation import pose_faults
 
 ALTITUDE_M = (10.0, 50.0)

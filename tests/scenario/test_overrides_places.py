@@ -61,7 +61,7 @@ def test_points_in_metres_move_with_the_origin() -> None:
         ("nodes.S1.lat_deg=95", "nodes[0].lat_deg", "got 95, must be a latitude"),
         ("origin.lat_deg=20", "nodes[0]", "km from the origin"),
         ("origin.lat=20", "origin.lat", "did you mean origin.lat_deg?"),
-        ("nodes_from=nodes.csv", "nodes_from", "only a scenario file may name"),
+        ("nodes_from=nodes.csv", "nodes_from", "only a scenario file on this machine may name"),
     ],
 )
 def test_what_cannot_be(override: str, path: str, words: str) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.scenario.subdivision import find_position
+from nullpose.scenario.reach import find_position
 
 LOWER, UPPER = np.array([-1.0, 0.0, 5.0]), np.array([3.0, 2.0, 6.0])
 SEEDS = st.integers(0, 2**32 - 1)

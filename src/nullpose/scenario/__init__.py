@@ -2,8 +2,7 @@
 
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.antenna import Antenna
-from nullpose.scenario.array import Array
+from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
@@ -11,9 +10,8 @@ from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.plausibility import doubts
-from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.scenario import Scenario, require_scenario
-from nullpose.scenario.transmitter import Transmitter
 
 __all__ = [
     "Airframe",

@@ -12,14 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.faults import Place
-from nullpose.scenario.margin import largest_margin_m, offset_outlines_m
-from nullpose.scenario.names import Label
+from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
-from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
+from nullpose.scenario.polygon import (
+    EarthlyPolygon,
+    Polygon,
+    counter_clockwise_m,
+    depth_m,
+    largest_margin_m,
+    offset_outlines_m,
+)
 from nullpose.scenario.rules import list_of_tables
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import KeepOutMetres, MarginMetres, Range
+from nullpose.scenario.units import KeepOutMetres, Label, MarginMetres, Range
 from nullpose.scenario.ways import Ways
 
 BORDER_M = 1e-9
@@ -126,12 +131,12 @@ class Airspace(Section):
         "none if left out.",
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults of what has no place on the Earth, of named files and of too large a margin."""
-        yield from unplaced(self, stated)
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the faults of what has no place on the Earth, of named files and of too large a margin."""
+        yield from unplaced(self, raw)
         for key in ("geofence_from", "no_fly_from"):
-            if stated.get(key) is not None:
-                yield (key,), "only a scenario file may name another, in place of its own areas; remove one"
+            if raw.get(key) is not None:
+                yield (key,), f"{ONLY_LOCAL}, in place of its own areas; remove one"
         fence_m, margin_m = self.geofence_outline_m, self.margin_m or 0.0
         if margin_m and self.geofence_m and (parts := len(offset_outlines_m(fence_m, -margin_m))) != 1:
             yield (
@@ -161,13 +166,13 @@ class Airspace(Section):
         """The same without its margin, which larger zones and a smaller fence have instead."""
         if not self.margin_m:
             return self
-        stated = {key: getattr(self, key) for key in type(self).model_fields}
+        raw = {key: getattr(self, key) for key in type(self).model_fields}
         fence_m = self.geofence_m and offset_outlines_m(self.geofence_outline_m, -self.margin_m)[0]
         zones = tuple(zone.grown(self.margin_m) for zone in self.no_fly)
-        return self.model_construct(**stated | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
+        return self.model_construct(**raw | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
     def reached(self, zone: NoFlyZone) -> bool:
-        """Returns whether a zone may forbid anything that the ranges and the fence allow.
+        """Return whether a zone may forbid anything that the ranges and the fence allow.
 
         Args:
             zone: one of the airspace's.
@@ -179,7 +184,7 @@ class Airspace(Section):
         return bool(is_reached)
 
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
-        """Returns whether the vehicle may be at each position, the keep-out balls not being looked at.
+        """Return whether the vehicle may be at each position, the keep-out balls not being looked at.
 
         Borders belong to what is allowed, and a position within 1e-9 m of a border counts as on it.
 
@@ -192,7 +197,7 @@ class Airspace(Section):
         return np.asarray(self.clearance_m(position_m) >= -BORDER_M)
 
     def clearance_m(self, position_m: ArrayLike) -> NDArray[np.float64]:
-        """Returns how far each position is from what is forbidden [m], without regard to the keep-out balls.
+        """Return how far each position is from what is forbidden [m], without regard to the keep-out balls.
 
         Below 0 where it is forbidden, 0 on a border; it changes by no more than the distance between two
         positions.
@@ -206,7 +211,7 @@ class Airspace(Section):
         return np.asarray(reduce(np.minimum, (clearance for _, clearance in self.clearances_m(position_m))))
 
     def clearances_m(self, position_m: ArrayLike) -> Iterator[tuple[str, NDArray[np.float64]]]:
-        """Yields where a position would be forbidden, in words, and how far each is from that [m].
+        """Yield where a position would be forbidden, in words, and how far each is from that [m].
 
         For the ranges, the geofence and each no-fly zone, with their margin; below 0 where it is forbidden
         by that.

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.units import EARTHLY_RANGES
@@ -33,9 +34,9 @@ Ground = Mapping[str, float | None]
 
 
 def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[dict[str, Any], list[str]]:
-    """Return a feature's altitudes by the key of a zone, and remarks on what is not read.
+    """Read a feature's altitudes by the key of a zone, with remarks on what is not read.
 
-    Own keys come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Flight levels are
+    Keys of a zone come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Flight levels are
     widened by 600 m for the weather.
 
     Args:
@@ -45,55 +46,56 @@ def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[dict[str, Any],
     Raises:
         ScenarioError: the limits cannot be read, or need what the origin does not state.
     """
-    properties = feature.properties
+    properties, remarks = feature.properties, []
     found = {key: properties[key] for key in RANGES if key in properties}
-    remarks = []
-    if not found:
-        ends = _ends_of_layer(feature) or _ends_of_ceilings(feature)
-        found = _joined(feature, *ends, ground_m) if ends else _heights_of_kml(feature)
-    if not found:
+    if not found and (limits := _limits(feature)):
+        low, high = (_end(*limit) for limit in limits)
+        found = _joined(feature, low, high, ground_m)
+    elif not found:
+        heights_m = _heights_m(feature)
+        found = _between(feature, heights_m)
         unread = [key for key in properties if _LIKE_LIMITS.search(key) and key != "altitudeMode"]
-        remarks += [f"counts at all altitudes; {_pairs(properties, unread)} not read"] if unread else []
-        remarks += ["counts at all altitudes; one height alone is not read"] if _is_raised(feature) else []
-    times = [key for key in properties if _LIKE_TIMES.search(key)]
-    remarks += [f"counts at all times; {_pairs(properties, times)} not read"] if times else []
+        if not found and unread:
+            remarks.append(f"counts at all altitudes; its {_are(unread)} not read")
+        if not found and np.any(heights_m):
+            remarks.append("counts at all altitudes; one height alone is not read")
+    if times := [key for key in properties if _LIKE_TIMES.search(key)]:
+        remarks.append(f"counts at all times; its {_are(times)} not read")
     return found, remarks
 
 
-def _pairs(properties: Mapping[str, Any], keys: list[str]) -> str:
-    words = ", ".join(f"{key} = {str(properties[key])[:40]}" for key in keys[:3])
-    return f"its {words}{' and more' if len(keys) > 3 else ''} {'are' if len(keys) > 1 else 'is'}"
+def _are(keys: list[str]) -> str:
+    return f"{', '.join(keys)} {'are' if len(keys) > 1 else 'is'}"
 
 
-_End = tuple[float, str, float]  # metres, the key that says over what, how far it may be off
+def _limits(feature: Feature) -> list[tuple[str, Any, Any, Any]]:
+    """Return place, value, unit and datum of the lower and the upper limit; nothing where none is stated."""
+    properties, place = feature.properties, feature.place
+    layer = properties.get("layer")
+    if isinstance(layer, dict):  # of ED-318
+        return [
+            (
+                f"{place}.layer.{word}",
+                layer.get(word),
+                layer.get("uom", "m"),
+                layer.get(f"{word}Reference", "AGL"),
+            )
+            for word in ("lower", "upper")
+        ]
+    for names in (("lowerCeiling", "upperCeiling"), ("lowerLimit", "upperLimit")):  # of openAIP
+        limits = {name: properties[name] for name in names if name in properties}
+        if limits and all(isinstance(limit, dict) for limit in limits.values()):
+            keys = ("value", "unit", "referenceDatum")
+            return [(f"{place}.{name}", *map(limits.get(name, {}).get, keys)) for name in names]
+    return []
 
 
-def _ends_of_layer(feature: Feature) -> tuple[_End | None, _End | None] | None:
-    """Return the limits that ED-318 states in a geometry."""
-    layer = feature.properties.get("layer")
-    if not isinstance(layer, dict):
-        return None
+class _End(NamedTuple):
+    """A lower or an upper limit: its height, the key that says over what, and how far it may be off."""
 
-    def end(word: str) -> _End | None:
-        reference = layer.get(f"{word}Reference", "AGL")
-        return _end(f"{feature.place}.layer.{word}", layer.get(word), layer.get("uom", "m"), reference)
-
-    return end("lower"), end("upper")
-
-
-def _ends_of_ceilings(feature: Feature) -> tuple[_End | None, _End | None] | None:
-    """Return the limits that openAIP states."""
-
-    def end(name: str) -> _End | None:
-        limit = feature.properties.get(name) or {}
-        keys = ("value", "unit", "referenceDatum")
-        return _end(f"{feature.place}.{name}", *(limit.get(key) for key in keys))
-
-    for low, high in (("lowerCeiling", "upperCeiling"), ("lowerLimit", "upperLimit")):
-        limits = [feature.properties[name] for name in (low, high) if name in feature.properties]
-        if limits and all(isinstance(limit, dict) for limit in limits):
-            return end(low), end(high)
-    return None
+    height_m: float
+    over: str
+    off_m: float = 0.0
 
 
 def _end(place: str, value: Any, unit: Any, datum: Any) -> _End | None:
@@ -102,31 +104,31 @@ def _end(place: str, value: Any, unit: Any, datum: Any) -> _End | None:
     unit, datum = str(unit).upper(), str(datum).upper()
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M
     if unit in _FLIGHT_LEVELS and is_number:
-        return 100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M
+        return _End(100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M)
     if not is_number or unit not in _UNITS_M or datum not in _DATUMS:
         raise refusal(
             place,
             f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84",
         )
-    return value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0
+    return _End(value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0)
 
 
 def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> dict[str, Any]:
     """Return both ends over one thing; the ground is a lower end for every upper one."""
     if low and low[:2] == (0.0, "altitude_m"):
         low = None
-    key, ends_m = (high or low or (0.0, "altitude_m", 0.0))[1], [-_FAR_M, _FAR_M]
+    if not (low or high):
+        return {}
+    key, ends_m = (high or low or _End(0.0, "altitude_m")).over, [-_FAR_M, _FAR_M]
     for side, end in enumerate((low, high)):
         if end:
-            height_m, over, off_m = end
-            ends_m[side] = (
-                height_m + shift_m(feature.place, over, key, ground_m) + (off_m if side else -off_m)
-            )
-    return {key: ends_m} if low or high else {}
+            shifted_m = end.height_m + shift_m(feature.place, end.over, key, ground_m)
+            ends_m[side] = shifted_m + (end.off_m if side else -end.off_m)
+    return {key: ends_m}
 
 
 def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
-    """Return what to add to an altitude over one thing to have it over another.
+    """Return the height to add to an altitude over one thing to have it over another.
 
     Args:
         place: where it is stated, for messages.
@@ -137,17 +139,18 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     Raises:
         ScenarioError: the origin does not state its altitude over both.
     """
-    absent = [EARTHLY_RANGES[each] for each in {over, key} if ground_m[each] is None] if over != key else []
-    if absent:
+    if over == key:
+        return 0.0
+    if absent := [EARTHLY_RANGES[each] for each in {over, key} if ground_m[each] is None]:
         raise refusal(
             place,
             f"it states {over}, to be compared with {key}; add {' and '.join(absent)} to [origin], which "
             "says how far these are apart",
         )
-    return 0.0 if over == key else (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
+    return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 
-def _heights_m(feature: Feature) -> np.ndarray[Any, Any]:
+def _heights_m(feature: Feature) -> Floats:
     """Return the heights of a placemark's corners, where its altitudeMode gives them a meaning."""
     import shapely
 
@@ -157,18 +160,11 @@ def _heights_m(feature: Feature) -> np.ndarray[Any, Any]:
     return np.asarray(heights_m[np.isfinite(heights_m)])
 
 
-def _heights_of_kml(feature: Feature) -> dict[str, Any]:
+def _between(feature: Feature, heights_m: Floats) -> dict[str, Any]:
     """Return the altitudes between roof and floor, or from the ground up to what is extruded."""
-    heights_m = _heights_m(feature)
-    if not len(heights_m):
+    low_m, high_m = heights_m.min(initial=np.inf), heights_m.max(initial=-np.inf)
+    is_extruded = feature.properties.get("extrude") in (1, True)
+    if not len(heights_m) or (high_m - low_m < _FLAT_M and not is_extruded):
         return {}
-    low_m, high_m = float(heights_m.min()), float(heights_m.max())
-    if feature.properties.get("extrude") in (1, True):
-        low_m = -_FAR_M
-    elif high_m - low_m < _FLAT_M:
-        return {}
-    return {_OF_KML[feature.properties["altitudeMode"]]: [low_m, high_m]}
-
-
-def _is_raised(feature: Feature) -> bool:
-    return bool(np.any(_heights_m(feature)))
+    ends_m = [-_FAR_M if is_extruded else float(low_m), float(high_m)]
+    return {_OF_KML[feature.properties["altitudeMode"]]: ends_m}

@@ -1,21 +1,21 @@
-"""Which antenna the drone carries."""
+"""Which antenna the drone carries: one, or an array of dipoles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
 from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import Choice, ListOf
+from nullpose.scenario.faults import ONLY_LOCAL, Place
+from nullpose.scenario.rules import Choice, Count, ListOf
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels
+from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels, Wavelengths
 
 _MOST_ROWS = HIGHEST_DEGREE + 1
 
@@ -102,13 +102,13 @@ class Antenna(Section):
         "harmonics its cosine terms, then its sine terms. With them the file is not needed.",
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns keys that have no meaning for the kind, and what a profile or a pattern lacks."""
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return keys that have no meaning for the kind, and what a profile or a pattern lacks."""
         if self.kind is None:
             return
         kind = ANTENNAS[self.kind]
-        for key in stated.keys() - {"kind", "gain_dbi", *kind.keys}:
-            if stated[key] is not None:
+        for key in raw.keys() - {"kind", "gain_dbi", *kind.keys}:
+            if raw[key] is not None:
                 yield (key,), f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
         if self.gain_dbi and kind.read is not None and self.normalise == "none":
             yield (
@@ -116,9 +116,9 @@ class Antenna(Section):
                 f"got {self.gain_dbi:g}, but the gains in the file are over an isotropic antenna, and this "
                 'would add to them; remove it, or write normalise = "peak", and the largest gain is this one',
             )
-        if kind.read is not None and "harmonics" not in stated:
-            message = "only a scenario file on this machine may name another; load that file by its path"
-            if "file" not in stated:
+        if kind.read is not None and "harmonics" not in raw:
+            message = f"{ONLY_LOCAL}; load that file by its path"
+            if "file" not in raw:
                 message = f'missing, but kind = "{self.kind}" needs it; add the name of a file'
             yield ("file",), message
         for n, row in enumerate(self.harmonics or ()):
@@ -152,3 +152,28 @@ def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
     except ScenarioError:
         return unread  # its faults are told with the rest of the scenario's
     return {**table, **kind.read(path, table)}
+
+
+_Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
+
+
+_Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
+
+
+class Array(Section):
+    """Upright dipoles on a horizontal vehicle, in a row or on a circle, with yaw free.
+
+    Args:
+        elements: number of dipoles.
+        layout: linear, evenly spaced on a horizontal line; or circular, evenly spaced on such a circle.
+        spacing_wavelengths: distance between neighbours in wavelengths.
+    """
+
+    elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
+    layout: _Layout = Field(
+        description="How they stand: linear (on a horizontal line) or circular (on a horizontal circle).",
+        examples=["linear"],
+    )
+    spacing_wavelengths: Wavelengths = Field(
+        description="Distance between neighbours, in wavelengths.", examples=[0.5]
+    )

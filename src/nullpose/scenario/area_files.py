@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.areas import Area, Areas, Rectangle, areas_of, corners_of
+from nullpose.scenario.areas import Area, Areas, areas_of, corners_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.units import EARTHLY_RANGES
+
+if TYPE_CHECKING:
+    from shapely import Polygon
 
 REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within
@@ -25,9 +28,9 @@ _POLE_DEG = 85.0  # longitudes say little beyond
 
 
 def with_zones(
-    airspace: Mapping[str, Any], features: Sequence[Feature], origin: Any
+    airspace: Mapping[str, Any], features: Sequence[Feature], origin: object
 ) -> tuple[dict[str, Any], Areas]:
-    """Return a raw airspace with the zones of a file after its own, and their account.
+    """Add the zones of a file to a raw airspace after its own, with their account.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
 
@@ -39,29 +42,30 @@ def with_zones(
     Raises:
         ScenarioError: with the faults of all features.
     """
-    stated, here = list(airspace.get("no_fly", ())), _place(origin)
-    names = {str(zone.get("name")) for zone in stated if isinstance(zone, Mapping)}
-    far_deg = None if here is None else _rectangle_deg(_box_m({}, _HALVES_M[0], here), here)
-    areas = areas_of(features, far_deg, _ground_m(origin), names)
+    listed, place = list(airspace.get("no_fly", ())), _place(origin)
+    names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
+    reach = _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
+    areas = areas_of(features, reach, _ground_m(origin), names)
     bounds: dict[str, Any] = {}
     words = ""
     for half_m in _HALVES_M:
-        if here is None or areas.corners <= MOST_CORNERS:
+        if place is None or areas.corners <= MOST_CORNERS:
             break
-        box_m = _box_m(airspace, half_m, here)
-        areas.cut(_rectangle_deg(box_m, here))
+        box_m = _box_m(airspace, half_m, place)
+        areas.cut(_box_deg(box_m, place))
         ends_m = dict(zip(("x_m", "y_m"), box_m.T.tolist(), strict=True))
         bounds = {key: ends for key, ends in ends_m.items() if half_m in ends}
         words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
-    areas.remarks += [f"they are cut to {words}, since all have too many corners"] if words else []
+    if words:
+        areas.remarks.append(f"they are cut to {words}, since all have too many corners")
     zones = [zone for area in areas.areas for zone in area.zones()]
-    return {**airspace, **bounds, "no_fly": [*stated, *zones]}, areas
+    return {**airspace, **bounds, "no_fly": [*listed, *zones]}, areas
 
 
 def with_fence(
-    airspace: Mapping[str, Any], features: Sequence[Feature], origin: Any
+    airspace: Mapping[str, Any], features: Sequence[Feature], origin: object
 ) -> tuple[dict[str, Any], Areas]:
-    """Return a raw airspace with the fence of a file, and its account.
+    """Give a raw airspace the fence of a file, with its account.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
 
@@ -73,19 +77,19 @@ def with_fence(
     Raises:
         ScenarioError: there is not one polygon, or the altitudes leave none.
     """
-    here, ground_m = _place(origin), _ground_m(origin)
-    everywhere_deg = None if here is None else [here[1] - 1e4, -1e4, here[1] + 1e4, 1e4]
-    areas = areas_of(features, everywhere_deg, ground_m, is_fence=True)
-    polygons = [polygon for area in areas.areas for polygon in area.polygons]
-    if len(polygons) != 1 or len(areas.areas) != 1 or areas.areas[0].cylinders:
+    place, ground_m = _place(origin), _ground_m(origin)
+    reach = _everywhere(0.0 if place is None else float(place[1]))
+    areas = areas_of(features, reach, ground_m, is_fence=True)
+    if len(areas.areas) != 1 or len(areas.polygons) != 1 or areas.areas[0].cylinders:
         raise refusal("", f"it has {areas.counts['area']} areas, must be one polygon, the fence")
+    (polygon,) = areas.polygons
     holes = [
         {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
-        for index, ring in enumerate(polygons[0].interiors, 1)
+        for index, ring in enumerate(polygon.interiors, 1)
     ]
-    found = {**airspace, "geofence_lat_lon_deg": corners_of(polygons[0].exterior)}
-    found |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
-    return found | dict(_altitudes(airspace, areas.areas[0], ground_m)), areas
+    fenced = {**airspace, "geofence_lat_lon_deg": corners_of(polygon.exterior)}
+    fenced |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
+    return fenced | dict(_altitudes(airspace, areas.areas[0], ground_m)), areas
 
 
 def _altitudes(
@@ -109,9 +113,9 @@ def _altitudes(
         yield key, [low_m, high_m]
 
 
-def _ground_m(origin: Any) -> Ground:
-    stated = origin if isinstance(origin, Mapping) else {}
-    return {"altitude_m": 0.0} | {key: stated.get(over) for key, over in EARTHLY_RANGES.items()}
+def _ground_m(origin: object) -> Ground:
+    keys = origin if isinstance(origin, Mapping) else {}
+    return {"altitude_m": 0.0} | {key: keys.get(over) for key, over in EARTHLY_RANGES.items()}
 
 
 def _place(origin: Any) -> Floats | None:
@@ -122,33 +126,42 @@ def _place(origin: Any) -> Floats | None:
         return None  # which the scenario is refused for
 
 
-def _box_m(airspace: Mapping[str, Any], half_m: float, here: Floats) -> Floats:
+def _box_m(airspace: Mapping[str, Any], half_m: float, place: Floats) -> Floats:
     """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
     ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
     fence = airspace.get("geofence_m")
     if airspace.get("geofence_lat_lon_deg"):
         corners = [[lat, lon, 0.0] for lat, lon in airspace["geofence_lat_lon_deg"]]
-        fence = enu_from_geodetic(corners, here)[:, :2]
+        fence = enu_from_geodetic(corners, place)[:, :2]
     if fence is not None:
         ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0))
     sides_m = np.array([_ends(airspace.get(key)) or (-np.inf, np.inf) for key in ("x_m", "y_m")])
     return np.asarray(np.clip(ends_m, *sides_m.T))
 
 
-def _ends(stated: Any) -> tuple[float, float] | None:
+def _ends(value: object) -> tuple[float, float] | None:
     """Return both ends of a range; None where there is none, or one that the scenario is refused for."""
-    is_range = isinstance(stated, list | tuple) and len(stated) == 2
-    is_range = is_range and all(isinstance(end, int | float) for end in stated)
-    return (float(stated[0]), float(stated[1])) if is_range else None
+    match value:
+        case [int() | float() as low, int() | float() as high]:
+            return float(low), float(high)
+    return None
 
 
-def _rectangle_deg(ends_m: Floats, here: Floats) -> Rectangle:
-    """Return a rectangle of the local frame, and a little more, in degrees."""
+def _everywhere(lon_deg: float = 0.0) -> Polygon:
+    import shapely
+
+    return shapely.box(lon_deg - 1e4, -1e4, lon_deg + 1e4, 1e4)
+
+
+def _box_deg(ends_m: Floats, place: Floats) -> Polygon:
+    """Return the box of degrees about a rectangle of the local frame, and a little more."""
+    import shapely
+
     east_m, north_m = np.meshgrid(*np.linspace(ends_m[0], ends_m[1], 9).T)
-    places = geodetic_from_enu(np.stack([east_m, north_m, 0.0 * east_m], axis=-1).reshape(-1, 3), here)
+    places = geodetic_from_enu(np.stack([east_m, north_m, 0.0 * east_m], axis=-1).reshape(-1, 3), place)
     corners = places[:, 1::-1]
-    corners[:, 0] -= 360.0 * np.round((corners[:, 0] - here[1]) / 360.0)
+    corners[:, 0] -= 360.0 * np.round((corners[:, 0] - place[1]) / 360.0)
     if np.abs(corners[:, 1]).max() > _POLE_DEG:
-        corners = np.vstack([corners, [here[1] - 180.0, here[0]], [here[1] + 180.0, here[0]]])
+        corners = np.vstack([corners, [place[1] - 180.0, place[0]], [place[1] + 180.0, place[0]]])
     more = 0.01 * np.ptp(corners, axis=0) + 1e-4
-    return [*(corners.min(axis=0) - more), *(corners.max(axis=0) + more)]
+    return shapely.box(*(corners.min(axis=0) - more), *(corners.max(axis=0) + more))

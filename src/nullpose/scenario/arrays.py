@@ -13,14 +13,14 @@ Floats = NDArray[np.float64]
 
 
 def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:
-    """Returns the values as a float64 array of the given shape that refuses to be written to."""
+    """Return the values as a float64 array of the given shape that refuses to be written to."""
     array = np.array(values, dtype=np.float64).reshape(shape)
     array.flags.writeable = False
     return array
 
 
 def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[dict[str, object]]:
-    """Returns the tables of points that are given as arrays.
+    """Return the tables of points that are given as arrays.
 
     Args:
         kind: ``"node"`` or ``"jammer"``, for messages.
@@ -38,8 +38,8 @@ def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[d
             advice = "add a column of heights, such as zeros"
         if places.shape == (3,):
             advice = "for one point write [[east, north, up]]"
-        told = f"{kind}s_m: given shape {places.shape}; allowed: {wanted}"
-        raise UsageError(f"{told}; {advice}" if advice else told)
+        message = f"{kind}s_m: given shape {places.shape}; allowed: {wanted}"
+        raise UsageError(f"{message}; {advice}" if advice else message)
     places = places.reshape(-1, 3)
     if powers.shape not in ((), (len(places),)):
         raise UsageError(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.objectives import RECORDS
-from nullpose.scenario.faults import Place, path_of
+from nullpose.scenario.faults import ONLY_LOCAL, Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
@@ -17,19 +17,24 @@ from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
 
+if TYPE_CHECKING:
+    from nullpose.scenario.airspace import Airspace
+    from nullpose.scenario.radio import Receiver
+    from nullpose.scenario.scenario import Scenario
+
 SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
 
 
-def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
-    """Yields the faults between the values of a scenario, each with its place.
+def scenario_faults(scenario: Scenario, raw: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
+    """Yield the faults between the values of a scenario, each with its place.
 
     Two nodes or jammers may be as close as they like, within the keep-out radius too, but not at the
     same place: neither the null nor the directions of a pair would be defined.
 
     Args:
         scenario: a scenario, in which None stands for what has a fault of its own.
-        stated: the raw scenario.
+        raw: the raw scenario.
     """
     points: dict[Place, GroundPoint] = {
         (kind, index): point
@@ -38,86 +43,91 @@ def scenario_faults(scenario: Any, stated: Mapping[str, object]) -> Iterator[tup
         if point is not None
     }
     if scenario.nodes_from is not None:
-        yield (
-            ("nodes_from",),
-            "only a scenario file may name another, in place of its own nodes; remove it or them",
-        )
-    airspace = scenario.airspace
+        yield ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them"
+    airspace: Airspace | None = scenario.airspace
     listed = getattr(airspace, "no_fly", None) or ()
     zones: dict[Place, Any] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
     tables = points | ({} if airspace is None else {("airspace",): airspace}) | zones
+    positioned = {place: point for place, point in points.items() if is_placed(point)}
     misplaced = [
-        *origin_faults(scenario.origin, tables, stated),
-        *too_small(tables, [point.position_m for point in points.values() if is_placed(point)]),
+        *origin_faults(scenario.origin, tables, raw),
+        *too_small(tables, [point.position_m for point in positioned.values()]),
     ]
     yield from misplaced
     yield from _objective_faults(scenario, points)
     yield from shared_names(points)
-    placed = {} if misplaced else {place: point for place, point in points.items() if is_placed(point)}
-    yield from _shared_places(placed)
-    if scenario.array is not None and scenario.airframe is not None and scenario.axis_band != (1.0, 1.0):
+    yield from shared_names(zones)
+    yield from _antenna_faults(scenario, points)
+    if not misplaced:
+        yield from _shared_places(positioned)
+    if airspace is not None and not misplaced:
+        receiver: Receiver | None = scenario.receiver
+        yield from airspace_faults(airspace, positioned, receiver.position_error_m if receiver else 0.0)
+
+
+def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+    """Yield what does not go with an array, and dipoles that do not go with the drone's antenna."""
+    has_array, antenna = scenario.array is not None, scenario.antenna_record
+    if has_array and scenario.airframe is not None and scenario.axis_band != (1.0, 1.0):
         yield (
             ("array",),
             "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
             "dipole at an angle; remove either table",
         )
-    if scenario.array is not None and scenario.antenna_record != SHORT_DIPOLE:
+    if has_array and antenna != SHORT_DIPOLE:
         yield ("antenna",), "the elements of an array are short dipoles; remove this table or [array]"
-    for place, point in points.items() if scenario.array is not None else ():
-        if point.antenna not in (None, "isotropic"):
+    for place, point in points.items():
+        if has_array and point.antenna not in (None, "isotropic"):
             yield (*place, "antenna"), "an array hears isotropic antennas only; remove this key or [array]"
-    for place, point in points.items() if not scenario.antenna_record.has_polarisation else ():
-        if point.antenna == "dipole":
+        if point.antenna == "dipole" and not antenna.has_polarisation:
             yield (
                 (*place, "antenna"),
                 f"a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
-                f'of antenna.kind = "{scenario.antenna.kind}" is not; write "circular" or "isotropic"',
+                f'of antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"',
             )
-    yield from shared_names(zones)
-    if airspace is not None and not misplaced:
-        error_m = 0.0 if scenario.receiver is None else scenario.receiver.position_error_m
-        yield from airspace_faults(airspace, placed, error_m)
 
 
-def _objective_faults(scenario: Any, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
-    """Yields what the objective needs and is not given, and what is given and has no meaning under it."""
+def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+    """Yield what the objective needs and is not given, and what is given and has no meaning under it."""
     record = RECORDS.get(scenario.objective)
     if record is None:
         return
-    for what in (*record.needs, *record.unused):
-        for place, keys, given in _stated(what, scenario, points):
-            if what in record.needs and not given:
+    for need in record.needs:
+        for place, keys, present in _places_of(need, scenario, points):
+            if not present:
                 yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
-            for where in given if what in record.unused else ():
-                others = [f'"{other.name}"' for other in RECORDS.values() if what not in other.unused]
-                yield (
-                    where,
-                    f'has no meaning with objective = "{record.name}"; remove it, or write objective = '
-                    f"{' or '.join(others)}",
-                )
+    for unused in record.unused:
+        others = [f'"{other.name}"' for other in RECORDS.values() if unused not in other.unused]
+        advice = f"remove it, or write objective = {' or '.join(others)}"
+        for _, _, present in _places_of(unused, scenario, points):
+            for place in present:
+                yield place, f'has no meaning with objective = "{record.name}"; {advice}'
 
 
-def _stated(
-    what: str, scenario: Any, points: Mapping[Place, GroundPoint]
+def _places_of(
+    need: str, scenario: Scenario, points: Mapping[Place, GroundPoint]
 ) -> Iterator[tuple[Place, Sequence[str], list[Place]]]:
-    """Yields each place at which something may be stated, what may state it there, and the places that do.
+    """Yield each place of a table or a quantity, its keys there, and the places of those present.
 
-    It is a table, or a quantity of the nodes, such as ``nodes.power``, which some keys state.
+    Args:
+        need: the key of a table, or a quantity of the nodes, such as ``nodes.power``.
+        scenario: as for ``scenario_faults``.
+        points: its points by their place.
     """
-    kind, _, quantity = what.partition(".")
-    if quantity:
-        ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
-        keys = [key for group in ways.groups for key in group]
-        for place, point in points.items():
-            if place[0] == kind:
-                yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
-    else:
-        table = table_of(scenario.__class__, kind)
+    kind, _, quantity = need.partition(".")
+    if not quantity:
+        table = table_of(type(scenario), kind)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
+        return
+    ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
+    keys = [key for group in ways.groups for key in group]
+    for place, point in points.items():
+        if place[0] == kind:
+            yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
 
 
 def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:
-    """Yields the tables whose name is that of an earlier one already.
+    """Yield the tables whose name is that of an earlier one already.
 
     Args:
         tables: by their place; None is a name that is at fault.

@@ -18,12 +18,14 @@ Place = tuple[str | int, ...]
 
 EXCHANGED = "are latitude and longitude exchanged?"
 """What is asked of places that would be right the other way round."""
+ONLY_LOCAL = "only a scenario file on this machine may name another"
+"""Said where a file is named by anything else."""
 _KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def refusal(path: str, message: str, source: str = "") -> ScenarioError:
-    """Returns the error of one fault.
+    """Return the error of one fault.
 
     Args:
         path: its place in the input; empty for the input as a whole.
@@ -34,13 +36,13 @@ def refusal(path: str, message: str, source: str = "") -> ScenarioError:
 
 
 def rejection(message: str) -> PydanticCustomError:
-    """Returns the exception with which a validator refuses a value, in exactly these words."""
+    """Return the exception with which a validator refuses a value, in exactly these words."""
     # The message travels as context: braces in it (from user text) are then not taken for placeholders.
     return PydanticCustomError(_KIND, "{message}", {"message": message})
 
 
 def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationError:
-    """Returns pydantic's exception that carries all the faults together."""
+    """Return pydantic's exception that carries all the faults together."""
     details = [InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults]
     return ValidationError.from_exception_data(title, details)
 
@@ -48,7 +50,7 @@ def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationErro
 def reworded(
     error: ValidationError, fields: Mapping[str, FieldInfo], untold: Collection[str] = ()
 ) -> Iterator[tuple[Place, str]]:
-    """Yields in plain words what pydantic found in a table.
+    """Yield in plain words what pydantic found in a table.
 
     Args:
         error: what it found.
@@ -67,7 +69,7 @@ def reworded(
 
 
 def path_of(place: Iterable[str | int]) -> str:
-    """Returns a place as a person would write it: ``jammers[1].power_w``."""
+    """Return a place as a person would write it: ``jammers[1].power_w``."""
     words = (f"[{step}]" if isinstance(step, int) else f".{_key(step)}" for step in place)
     return "".join(words).removeprefix(".")
 
@@ -77,7 +79,7 @@ def _key(step: str) -> str:
 
 
 def scenario_error(error: ValidationError, data: object, source: str = "") -> ScenarioError:
-    """Returns the ScenarioError that says the same, its faults in the order of the input.
+    """Return the ScenarioError that says the same, its faults in the order of the input.
 
     Args:
         error: what pydantic collected, already in plain words.
@@ -86,15 +88,16 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
     """
     found = sorted(error.errors(include_url=False), key=lambda entry: _ranks(entry["loc"], data))
     alike = [entry for entry in found if EXCHANGED in entry["msg"]]  # likely of all places: told once
-    told = [entry for entry in found if entry not in alike[1:]]
+    listed = [entry for entry in found if entry not in alike[1:]]
     more = f" (and so in {len(alike) - 1} more)" if alike[1:] else ""
     return ScenarioError(
-        [Fault(path_of(one["loc"]), one["msg"] + (more if one in alike else "")) for one in told], source
+        [Fault(path_of(entry["loc"]), entry["msg"] + (more if entry in alike else "")) for entry in listed],
+        source,
     )
 
 
 def _ranks(place: Place, data: Any) -> list[int]:
-    """Returns the rank of each step of a place among its siblings in the input."""
+    """Return the rank of each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
         # a range looks itself up at once, however long it is

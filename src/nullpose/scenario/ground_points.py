@@ -9,10 +9,9 @@ from pydantic import Field
 
 from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.scenario.faults import Place
-from nullpose.scenario.names import Label
+from nullpose.scenario.radio import POWER, Powered
 from nullpose.scenario.rules import Choice
 from nullpose.scenario.section import Section
-from nullpose.scenario.transmitter import POWER, Powered
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
@@ -22,6 +21,7 @@ from nullpose.scenario.units import (
     DecibelMilliwatts,
     DecibelsIsotropic,
     GroundHeight,
+    Label,
     Latitude,
     Longitude,
     NullDepthDecibels,
@@ -129,9 +129,9 @@ class GroundPoint(Section):
         examples=[2.15],
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault that an axis or the depth of a null is given of an antenna that has none."""
-        yield from super().faults(stated)
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the fault that an axis or the depth of a null is given of an antenna that has none."""
+        yield from super().faults(raw)
         for key, noun in (("antenna_axis", "axis"), ("null_depth_db", "null")):
             if (
                 getattr(self, key) is not None

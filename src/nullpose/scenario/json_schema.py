@@ -8,13 +8,13 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from nullpose.objectives import RECORDS
+from nullpose.scenario.radio import POWER
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
-from nullpose.scenario.transmitter import POWER
 
 
 def json_schema() -> dict[str, Any]:
-    """Returns the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.
+    """Return the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.
 
     It says what can be said key by key; faults between keys, such as a reversed range, are left to ``load``.
 
@@ -62,7 +62,7 @@ class _TomlSchema(GenerateJsonSchema):
 
 
 def _rules(kind: type[Section]) -> list[dict[str, Any]]:
-    """Returns what a table says of keys together, and of nodes what an objective needs of them."""
+    """Return what a table says of keys together, and of nodes what an objective needs of them."""
     needed = {key for key, field in kind.model_fields.items() if field.is_required()}
     rules = [ways.schema() for ways in kind.ways if ways.most == 1 or needed.intersection(ways.groups[0])]
     silent = [name for name, record in RECORDS.items() if "nodes.power" not in record.needs]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -14,26 +14,25 @@ import numpy as np
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
-from nullpose.scenario.faults import refusal
-from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, features_of
-from nullpose.scenario.listed_nodes import ListedNode, retold
-from nullpose.scenario.nodes_csv import nodes_from_csv
-from nullpose.scenario.nodes_of_features import nodes_of_features
+from nullpose.scenario.faults import ONLY_LOCAL, refusal
+from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
+from nullpose.scenario.node_files import ListedNode, fault_in_file, nodes_of_csv, nodes_of_features
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.toml_file import FileKind, file_content, file_text, tables_of
+from nullpose.scenario.toml_file import (
+    FileKind,
+    file_content,
+    file_text,
+    tables_of,
+    uploaded_text,
+)
 from nullpose.scenario.wording import described
 
-_KEY = "nodes_from"
+_NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from"
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
-_FENCES = ("geofence_m", "geofence_lat_lon_deg")
-_FENCE_KEY, _ZONES_KEY = "geofence_from", "no_fly_from"
-_FILE_KEYS = (_KEY, _FENCE_KEY, _ZONES_KEY)
 _EARLY = re.compile(r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b")
 _LOG = logging.getLogger("nullpose")
-
-_Note = Callable[[str], object]
 
 
 def load(
@@ -41,9 +40,9 @@ def load(
     *,
     allow_outside: bool = False,
     overrides: Iterable[str | Override] = (),
-    on_note: _Note = _LOG.warning,
+    on_note: Callable[[str], object] = _LOG.warning,
 ) -> Scenario:
-    """Returns the scenario that a TOML file describes, with what it takes from the files that it names.
+    """Read the scenario that a TOML file describes, with what it takes from the files that it names.
 
     Args:
         path: the file, of 10 MB at most.
@@ -63,49 +62,61 @@ def load(
         (('S1', 'S2'), 1.0)
     """
     source = os.fspath(path)
-    origins: dict[str, str] = {}
+    files = _NamedFiles(Path(source).parent, allow_outside, on_note)
     try:
         tables, late = _overridden_tables(Path(source), overrides)
-        tables = _with_antenna_from(tables, Path(source).parent, allow_outside)
-        airspace = tables.get("airspace")
-        has_zones_from = isinstance(airspace, dict) and _ZONES_KEY in airspace
-        tables, origins = _with_areas_from(tables, Path(source).parent, allow_outside, on_note)
-        if _KEY in tables and "nodes" not in tables:
-            found = _with_nodes_from(tables, Path(source).parent, allow_outside, on_note)
-        else:
-            found = Scenario.from_dict(tables)
-        if has_zones_from:
-            _require_nodes_in_reach(found)
+        scenario = files.scenario(tables)
+    except (RecursionError, OverflowError):
+        raise refusal(
+            "", "it is nested too deeply to be read, or has a number beyond 1e308", source
+        ) from None
     except ScenarioError as error:
-        faults = [_from_file(fault, origins) for fault in error.faults]
+        faults = [files.placed(fault) for fault in error.faults]
         raise ScenarioError(faults, error.source or source) from None
-    return apply_overrides(found, late)
+    return apply_overrides(scenario, late)
 
 
 def _overridden_tables(
     path: Path, overrides: Iterable[str | Override]
 ) -> tuple[dict[str, Any], list[str | Override]]:
-    """Returns a file's tables with those changes that decide which files are read and what of them counts.
-
-    Args:
-        path: of the file.
-        overrides: all changes.
+    """Read a file's tables, with those changes that decide which files are read and what of them counts.
 
     Returns:
         The tables, and the changes that are left for the scenario.
     """
     tables, late = tables_of(file_text(path)), list(overrides)
     early = [change for change in late if _EARLY.match(str(change).strip())]
-    stated = tables.get("airspace")
-    holders = [tables, stated if isinstance(stated, dict) else {}]
-    named = any(key in holder for holder in holders for key in _FILE_KEYS)
-    if not early or not (named or any("_from" in str(change).split("=")[0] for change in early)):
+    names_files = any(_named_files(tables).values()) or any(
+        "_from" in str(change).split("=")[0] for change in early
+    )
+    if not early or not names_files:
         return tables, late
     return overridden(tables, early), [change for change in late if change not in early]
 
 
+def _named_files(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a scenario file states for the files of its nodes, fence and zones, by key."""
+    airspace = tables.get("airspace")
+    airspace = airspace if isinstance(airspace, Mapping) else {}
+    return {_NODES_KEY: tables.get(_NODES_KEY)} | {
+        f"airspace.{key}": airspace.get(key) for key in (_FENCE_KEY, _ZONES_KEY)
+    }
+
+
+def files_of(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Path]:
+    """Return the files that a scenario is read from, by what to call them.
+
+    Args:
+        path: of a scenario file that loads.
+        overrides: its changes.
+    """
+    tables, _ = _overridden_tables(path, overrides)
+    files = _named_files(tables) | {"antenna.file": tables.get("antenna", {}).get("file")}
+    return {"the scenario": path} | {key: path.parent / file for key, file in files.items() if file}
+
+
 def scenario_from_text(content: bytes, name: str) -> Scenario:
-    """Returns the scenario that the content of a file describes, which may name no other file.
+    """Read the scenario that an upload describes, which may name no other file.
 
     Args:
         content: the file's bytes, 10 MB at most.
@@ -115,31 +126,16 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
         ScenarioError: with every fault of the content.
     """
     try:
-        tables = tables_of(content)
-        if _KEY in tables:
-            raise refusal(
-                _KEY, "only a file on this machine may name another; list the nodes here, under [[nodes]]"
-            )
+        tables = tables_of(uploaded_text(content))
+        if _NODES_KEY in tables:
+            raise refusal(_NODES_KEY, f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
         return Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError(error.faults, name) from None
 
 
-def files_of(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Path]:
-    """Returns the files that a scenario is read from, by what to call them.
-
-    Args:
-        path: of a scenario file that loads.
-        overrides: its changes.
-    """
-    tables, _ = _overridden_tables(path, overrides)
-    named = {_KEY: tables.get(_KEY), "antenna.file": tables.get("antenna", {}).get("file")}
-    named |= {f"airspace.{key}": tables["airspace"].get(key) for key in (_FENCE_KEY, _ZONES_KEY)}
-    return {"the scenario": path} | {key: path.parent / file for key, file in named.items() if file}
-
-
 def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Path:
-    """Returns where a file is that another one names.
+    """Return where a file is that another one names.
 
     Args:
         folder: of the file that names it.
@@ -161,100 +157,127 @@ def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Pat
     return folder / file
 
 
-def _with_antenna_from(tables: dict[str, Any], folder: Path, allow_outside: bool) -> dict[str, Any]:
-    """Returns the tables with what the file of an antenna holds."""
-    antenna = tables.get("antenna")
-    file = antenna.get("file") if isinstance(antenna, dict) else None
-    if not isinstance(antenna, dict) or not isinstance(file, str) or "harmonics" in antenna:
-        return tables
-    path = inside(folder, file, allow_outside, "antenna.file")
-    try:
-        return tables | {"antenna": with_harmonics(antenna, path)}
-    except ScenarioError as error:
-        raise ScenarioError(
-            [_at(f"antenna.file: {file}", fault.path, fault) for fault in error.faults]
-        ) from None
+class _NamedFiles:
+    """The files that a scenario file names, and where in them the parts of the scenario stand."""
 
+    def __init__(self, folder: Path, allow_outside: bool, on_note: Callable[[str], object]) -> None:
+        self._folder, self._allow_outside, self._on_note = folder, allow_outside, on_note
+        self._origins: dict[str, str] = {}  # of fence and zones, by their place in the scenario
 
-def _with_nodes_from(tables: dict[str, Any], folder: Path, allow_outside: bool, on_note: _Note) -> Scenario:
-    """Returns the scenario whose nodes another file lists; faults name the place in either file."""
-    file = tables[_KEY]
-    nodes: list[ListedNode] = []
-    try:
-        nodes = _listed_nodes(file, folder, allow_outside, on_note)
-        faults = [_at(file, f"{node.where}{fault.path}", fault) for node in nodes if (fault := node.fault)]
-    except ScenarioError as error:
-        faults = [fault if fault.path == _KEY else _at(file, fault.path, fault) for fault in error.faults]
-    # The nodes take the place of the key, so that faults come in the order of the file.
-    whole = {("nodes" if key == _KEY else key): value for key, value in tables.items()}
-    try:
-        scenario = Scenario.from_dict(whole | {"nodes": [dict(node.values) for node in nodes]})
-    except ScenarioError as error:
-        # Nodes that could not be read are not told as missing too.
-        told = [retold(fault, file, nodes) for fault in error.faults if nodes or fault.path != "nodes"]
-        faults += [fault for fault in told if fault]
-    if faults:
-        raise ScenarioError(faults)
-    return scenario
+    def scenario(self, tables: dict[str, Any]) -> Scenario:
+        """Read the scenario of raw tables.
 
+        Raises:
+            ScenarioError: with its faults.
+        """
+        has_zones = _named_files(tables)[f"airspace.{_ZONES_KEY}"] is not None
+        tables = self._with_areas(self._with_antenna(tables))
+        if _NODES_KEY in tables and "nodes" not in tables:
+            scenario = self._with_nodes(tables)
+        else:
+            scenario = Scenario.from_dict(tables)
+        if has_zones:
+            _require_nodes_in_reach(scenario)
+        return scenario
 
-def _listed_nodes(file: object, folder: Path, allow_outside: bool, on_note: _Note) -> list[ListedNode]:
-    path = _named_path(file, _NODES_FILE, folder, allow_outside, _KEY)
-    if path.suffix.lower() == ".csv":
-        return nodes_from_csv(file_text(path, _NODES_FILE, folder, _KEY))
-    nodes, notes = nodes_of_features(
-        features_of(file_content(path, _NODES_FILE, folder, _KEY, MOST_BYTES), path)
-    )
-    for note in notes:
-        on_note(f"{file}: {note}")
-    return nodes
+    def placed(self, fault: Fault) -> Fault:
+        """Give a fault of an area its place in the file that it is from."""
+        for place, origin in self._origins.items():
+            if f"{fault.path}.".startswith((f"{place}[", f"{place}.")):
+                return Fault(f"{origin}{fault.path.removeprefix(place)}", fault.message)
+        return fault
 
+    def _path(self, file: object, kind: FileKind, key: str) -> Path:
+        if not isinstance(file, str) or not file.strip():
+            raise refusal(
+                key, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
+            )
+        if PurePath(file).suffix.lower() not in kind.endings:
+            raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
+        return inside(self._folder, file, self._allow_outside, key)
 
-def _named_path(file: object, kind: FileKind, folder: Path, allow_outside: bool, key: str) -> Path:
-    """Returns where a file is that a key names."""
-    if not isinstance(file, str) or not file.strip():
-        raise refusal(
-            key, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
-        )
-    if PurePath(file).suffix.lower() not in kind.endings:
-        raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
-    return inside(folder, file, allow_outside, key)
+    def _features(self, path: Path, kind: FileKind, key: str) -> list[Feature]:
+        return features_of(file_content(path, kind, self._folder, key, MOST_BYTES), path)
 
-
-def _with_areas_from(
-    tables: dict[str, Any], folder: Path, allow_outside: bool, on_note: _Note
-) -> tuple[dict[str, Any], dict[str, str]]:
-    """Returns the tables with the fence and the zones of other files, and which file each is from."""
-    stated = tables.get("airspace")
-    airspace: dict[str, Any] = dict(stated) if isinstance(stated, dict) else {}
-    places: dict[str, str] = {}
-    for key, read in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
-        zones = airspace.get("no_fly", [])
-        clashes = key == _FENCE_KEY and any(fence in airspace for fence in _FENCES)
-        if key not in airspace or clashes or not isinstance(zones, list):
-            continue  # what is at fault is refused with the rest
-        file = airspace.pop(key)
-        label = f"airspace.{key}: {file}"
+    def _with_antenna(self, tables: dict[str, Any]) -> dict[str, Any]:
+        """Fill in what the file of an antenna holds."""
+        antenna = tables.get("antenna")
+        file = antenna.get("file") if isinstance(antenna, dict) else None
+        if not isinstance(antenna, dict) or not isinstance(file, str) or "harmonics" in antenna:
+            return tables
+        path = inside(self._folder, file, self._allow_outside, "antenna.file")
         try:
-            path = _named_path(file, _AREA_FILE, folder, allow_outside, "")
-            features = features_of(file_content(path, _AREA_FILE, folder, "", MOST_BYTES), path)
-            airspace, areas = read(airspace, features, tables.get("origin"))
+            return tables | {"antenna": with_harmonics(antenna, path)}
         except ScenarioError as error:
-            raise ScenarioError([_at(label, fault.path, fault) for fault in error.faults]) from None
+            raise _of_file(f"antenna.file: {file}", error) from None
+
+    def _with_areas(self, tables: dict[str, Any]) -> dict[str, Any]:
+        """Fill in the fence and the zones of other files; what is at fault is refused with the rest."""
+        airspace = tables.get("airspace")
+        if not isinstance(airspace, dict) or not isinstance(airspace.get("no_fly", []), list):
+            return tables
+        if _FENCE_KEY in airspace and not {"geofence_m", "geofence_lat_lon_deg"} & airspace.keys():
+            airspace = self._with_area_file(airspace, _FENCE_KEY, tables.get("origin"))
+        if _ZONES_KEY in airspace:
+            airspace = self._with_area_file(airspace, _ZONES_KEY, tables.get("origin"))
+        return tables | {"airspace": airspace}
+
+    def _with_area_file(self, airspace: Mapping[str, Any], key: str, origin: object) -> dict[str, Any]:
+        file, label = airspace[key], f"airspace.{key}: {airspace[key]}"
+        rest = {other: value for other, value in airspace.items() if other != key}
+        try:
+            features = self._features(self._path(file, _AREA_FILE, ""), _AREA_FILE, "")
+            filled, areas = (with_fence if key == _FENCE_KEY else with_zones)(rest, features, origin)
+        except ScenarioError as error:
+            raise _of_file(label, error) from None
         for line in areas.account(is_fence=key == _FENCE_KEY):
-            on_note(f"{file}: {line}")
+            self._on_note(f"{file}: {line}")
         if key == _FENCE_KEY:
-            places["airspace.geofence_lat_lon_deg"] = f"{label}: {areas.areas[0].place}"
-        added = [area.place for area in areas.areas for _ in area.zones()] if key == _ZONES_KEY else []
-        first = len(airspace.get("no_fly", [])) - len(added)
-        places |= {
-            f"airspace.no_fly[{first + index}]": f"{label}: {place}" for index, place in enumerate(added)
+            self._origins["airspace.geofence_lat_lon_deg"] = f"{label}: {areas.areas[0].place}"
+            return filled
+        places = [area.place for area in areas.areas for _ in area.zones()]
+        first = len(filled["no_fly"]) - len(places)
+        self._origins |= {
+            f"airspace.no_fly[{index}]": f"{label}: {place}" for index, place in enumerate(places, first)
         }
-    return (tables | {"airspace": airspace} if isinstance(stated, dict) else tables), places
+        return filled
+
+    def _with_nodes(self, tables: dict[str, Any]) -> Scenario:
+        """Read the scenario whose nodes another file lists; faults name the place in either file."""
+        file = tables[_NODES_KEY]
+        nodes: Sequence[ListedNode] = ()
+        faults: list[Fault] = []
+        try:
+            nodes = self._listed_nodes(file)
+        except ScenarioError as error:
+            faults = [fault if fault.path == _NODES_KEY else _in_file(file, fault) for fault in error.faults]
+        for node in nodes:
+            if node.fault:
+                faults.append(_in_file(file, Fault(f"{node.where}{node.fault.path}", node.fault.message)))
+        # The nodes take the place of the key, so that faults come in the order of the file.
+        whole = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
+        try:
+            scenario = Scenario.from_dict(whole | {"nodes": [dict(node.values) for node in nodes]})
+        except ScenarioError as error:
+            # Nodes that could not be read are not told as missing too.
+            between = [fault for fault in error.faults if nodes or fault.path != "nodes"]
+            faults += filter(None, (fault_in_file(fault, file, nodes) for fault in between))
+        if faults:
+            raise ScenarioError(faults)
+        return scenario
+
+    def _listed_nodes(self, file: object) -> list[ListedNode]:
+        path = self._path(file, _NODES_FILE, _NODES_KEY)
+        if path.suffix.lower() == ".csv":
+            return nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY))
+        nodes, notes = nodes_of_features(self._features(path, _NODES_FILE, _NODES_KEY))
+        for note in notes:
+            self._on_note(f"{file}: {note}")
+        return nodes
 
 
 def _require_nodes_in_reach(scenario: Scenario) -> None:
-    """Raises the fault of a node near which zones of a file would not count."""
+    """Refuse a node near which zones of a file would not count."""
     for name, node in zip(scenario.node_names, scenario.nodes, strict=True):
         away_m = float(np.abs(np.asarray(node.position_m)[:2]).max())
         if away_m > REACH_M:
@@ -265,13 +288,9 @@ def _require_nodes_in_reach(scenario: Scenario) -> None:
             )
 
 
-def _from_file(fault: Fault, origins: Mapping[str, str]) -> Fault:
-    """Returns a fault of an area with its place in the file that it is from."""
-    for place, origin in origins.items():
-        if f"{fault.path}.".startswith((f"{place}[", f"{place}.")):
-            return Fault(f"{origin}{fault.path.removeprefix(place)}", fault.message)
-    return fault
+def _of_file(label: str, error: ScenarioError) -> ScenarioError:
+    return ScenarioError([_in_file(label, fault) for fault in error.faults])
 
 
-def _at(file: str, place: str, fault: Fault) -> Fault:
-    return Fault(f"{file}: {place}" if place else file, fault.message)
+def _in_file(file: object, fault: Fault) -> Fault:
+    return Fault(f"{file}: {fault.path}" if fault.path else f"{file}", fault.message)

@@ -13,21 +13,27 @@ from pydantic import Field
 
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
-from nullpose.scenario.margin import offset_outlines_m
-from nullpose.scenario.names import Label
-from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
+from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m, offset_outlines_m
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import EARTHLY_CORNERS, EARTHLY_RANGES, LatLon, PlanePoint, RadiusMetres, Range
+from nullpose.scenario.units import (
+    EARTHLY_CORNERS,
+    EARTHLY_RANGES,
+    Label,
+    LatLon,
+    PlanePoint,
+    RadiusMetres,
+    Range,
+)
 from nullpose.scenario.ways import Ways
 
 ALTITUDES = Ways((("altitude_m",), ("altitude_msl_m",), ("altitude_ellipsoid_m",)), fewest=0, most=3)
 """The ways to state a range of altitudes."""
 
 
-def unplaced(table: Section, stated: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
-    """Yields the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
+def unplaced(table: Section, raw: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
+    """Yield the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
     for key, metric in (EARTHLY_CORNERS | dict.fromkeys(EARTHLY_RANGES, "altitude_m")).items():
-        if getattr(table, key, None) is not None and stated.get(metric) is None:
+        if getattr(table, key, None) is not None and raw.get(metric) is None:
             yield (
                 (key,),
                 f"needs the [origin] of a scenario; state {metric} here, or give the scenario as a "
@@ -125,9 +131,9 @@ class NoFlyZone(Section):
         examples=[[230.0, 250.0]],
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault of a zone on the Earth that no scenario has placed."""
-        return unplaced(self, stated)
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the fault of a zone on the Earth that no scenario has placed."""
+        return unplaced(self, raw)
 
     @property
     def shape(self) -> Literal["box", "cylinder", "polygon"]:
@@ -164,7 +170,7 @@ class NoFlyZone(Section):
         return math.inf if self.altitude_m is None else self.altitude_m[1]
 
     def grown(self, by_m: float) -> NoFlyZone:
-        """Returns a larger zone of the same shape: walls further out, floor lower, ceiling higher.
+        """Return a larger zone of the same shape: walls further out, floor lower, ceiling higher.
 
         Args:
             by_m: how much [m]; a polygon's corners as ``offset_outlines_m`` moves them.
@@ -184,7 +190,7 @@ class NoFlyZone(Section):
         )
 
     def forbidden_range_m(self, altitude_m: tuple[float, float]) -> tuple[float, float]:
-        """Returns the zone's lowest and highest altitude [m] where only some altitudes are allowed anyway.
+        """Return the zone's lowest and highest altitude [m] where only some altitudes are allowed anyway.
 
         An end that covers the lowest or highest allowed altitude is put at infinity: otherwise the airspace's
         floor or ceiling, being a border of the zone too, would be allowed as a sheet of no thickness.
@@ -201,7 +207,7 @@ class NoFlyZone(Section):
     def depth_m(
         self, position_m: ArrayLike, altitude_m: tuple[float, float] = (-math.inf, math.inf)
     ) -> NDArray[np.float64]:
-        """Returns how far each position is inside the zone [m]; 0 on its border, below 0 outside.
+        """Return how far each position is inside the zone [m]; 0 on its border, below 0 outside.
 
         Inside it is the distance to the nearest wall, floor or ceiling.
 

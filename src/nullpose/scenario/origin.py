@@ -86,7 +86,7 @@ class Origin(Section):
         return read_only([self.lat_deg, self.lon_deg, height_m or 0.0], (3,))
 
     def place(self, position_m: ArrayLike) -> dict[str, float]:
-        """Returns where on the Earth a position is.
+        """Return where on the Earth a position is.
 
         Args:
             position_m: east, north and up from the origin [m], (3,).
@@ -107,7 +107,7 @@ class Origin(Section):
         return {"lat_deg": lat_deg, "lon_deg": lon_deg} | altitudes
 
     def position_m(self, place: Mapping[str, float]) -> Floats:
-        """Returns where a place on the Earth is: east, north and up from the origin [m], (3,).
+        """Return where a place on the Earth is: east, north and up from the origin [m], (3,).
 
         Args:
             place: ``lat_deg``, ``lon_deg`` [degrees], and ``alt_m`` over the ellipsoid, ``alt_msl_m`` over
@@ -138,7 +138,7 @@ class Origin(Section):
 
 
 def located(data: Mapping[str, object]) -> Mapping[str, object]:
-    """Returns a raw scenario in which what is stated on the Earth is there in metres too.
+    """Return a raw scenario in which what is stated on the Earth is there in metres too.
 
     Where that cannot be told, for want of an origin or because it is too far from it, there are placeholders:
     such a scenario is refused for that.
@@ -163,7 +163,7 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
 
 
 def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
-    """Returns a raw table with the metres that follow from what it states on the Earth."""
+    """Return a raw table with the metres that follow from what it states on the Earth."""
     if not isinstance(raw, Mapping):
         return raw
     stated = {key: raw[key] for key in EARTHLY_KEYS if raw.get(key) is not None}
@@ -180,12 +180,12 @@ def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
 
 
 def metric_key(key: str) -> str:
-    """Returns the key in metres that follows from one of ``EARTHLY_KEYS``."""
+    """Return the key in metres that follows from one of ``EARTHLY_KEYS``."""
     return EARTHLY_CORNERS.get(key, "altitude_m" if key in EARTHLY_RANGES else "position_m")
 
 
 def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Floats]:
-    """Returns the metres that follow from what a table states on the Earth, by key.
+    """Return the metres that follow from what a table states on the Earth, by key.
 
     Args:
         table: a point, an airspace or a zone, in which None stands for what is not stated or at fault.
@@ -221,5 +221,5 @@ def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Fl
 
 
 def size_m(values: Floats) -> float:
-    """Returns the greatest length of some vectors, or of one [m]."""
+    """Return the greatest length of some vectors, or of one [m]."""
     return float(np.linalg.norm(np.atleast_2d(values), axis=-1).max())

@@ -27,7 +27,7 @@ _OVER = {"alt_m": "over the ellipsoid", "alt_msl_m": "over the sea"}
 def origin_faults(
     origin: Origin | None, tables: Mapping[Place, Any], stated: Mapping[str, Any]
 ) -> Iterator[tuple[Place, str]]:
-    """Yields what is wrong between the origin and the points and areas of a scenario, each with its place.
+    """Yield what is wrong between the origin and the points and areas of a scenario, each with its place.
 
     Args:
         origin: the origin, if there is one.
@@ -108,12 +108,12 @@ def _far(far: Mapping[Place, float], swapped_m: float) -> tuple[Place, str]:
 
 
 def _more(places: Collection[Place]) -> str:
-    """Returns in how many further places the same is at fault, in brackets; empty for none."""
+    """Return in how many further places the same is at fault, in brackets; empty for none."""
     return f" (and so in {len(places) - 1} more)" if len(places) > 1 else ""
 
 
 def _mixed(points: Mapping[Place, GroundPoint], stated: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
-    """Yields the first point that is stated in another way than the first of all.
+    """Yield the first point that is stated in another way than the first of all.
 
     A point that has both, as in files that are written from scenarios, goes with either.
     """
@@ -135,6 +135,6 @@ def _is_earthly(point: GroundPoint) -> bool:
 
 
 def is_placed(point: GroundPoint) -> bool:
-    """Returns whether a point of a scenario that may be at fault has a position, and no half of another."""
+    """Return whether a point of a scenario that may be at fault has a position, and no half of another."""
     begun = any(getattr(point, key) is not None for key in ("lat_deg", "lon_deg", *ALTITUDE_KEYS))
     return point.position_m is not None and begun == _is_earthly(point)

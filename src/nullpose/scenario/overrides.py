@@ -44,7 +44,7 @@ class Override:
 
 
 def parse_override(text: str) -> Override:
-    """Returns the override that a text such as ``receiver.noise_dbm=-97`` states.
+    """Return the override that a text such as ``receiver.noise_dbm=-97`` states.
 
     Args:
         text: path, equals sign, value. The value is read as TOML; a bare word is a text.
@@ -65,7 +65,7 @@ def parse_override(text: str) -> Override:
 
 
 def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> Scenario:
-    """Returns the scenario with the given values in place of its own, validated anew.
+    """Return the scenario with the given values in place of its own, validated anew.
 
     Overrides are applied in order. Setting one key of a pair (W or dBm, gain or frequency, weight or
     requirement) drops the other; so does setting position_m where a latitude was stated, or a latitude where
@@ -100,7 +100,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
 
 
 def overridden(tables: Mapping[str, Any], overrides: Sequence[str | Override]) -> dict[str, Any]:
-    """Returns the tables of a scenario file with the given values in place of its own, not validated.
+    """Return the tables of a scenario file with the given values in place of its own, not validated.
 
     Args:
         tables: of the file.
@@ -116,7 +116,7 @@ def overridden(tables: Mapping[str, Any], overrides: Sequence[str | Override]) -
 
 
 def _applied(overrides: Sequence[str | Override], data: dict[str, Any]) -> list[Fault]:
-    """Sets the values in a raw scenario; returns the faults of those that cannot be set."""
+    """Set the values in a raw scenario; returns the faults of those that cannot be set."""
     faults: list[Fault] = []
     for override in overrides:
         try:
@@ -131,7 +131,7 @@ def _source(overrides: Sequence[str | Override]) -> str:
 
 
 def _apply(override: Override, data: dict[str, Any]) -> None:
-    """Sets one value of a raw scenario, and drops what it replaces."""
+    """Set one value of a raw scenario, and drops what it replaces."""
     path = override.path
     if not _PATH.fullmatch(path):
         raise refusal(path, "this is not a path")
@@ -170,7 +170,7 @@ def _value(path: str, text: str) -> object:
 def _assign(
     kind: type[Section] | None, holder: Any, steps: Sequence[str | int], value: object, path: str
 ) -> None:
-    """Sets the value at the place in a raw table or list that the steps lead to; drops what it replaces.
+    """Set the value at the place in a raw table or list that the steps lead to; drops what it replaces.
 
     Args:
         kind: what kind of table the holder is, or its members are; None where there are none.
@@ -182,22 +182,22 @@ def _assign(
     members, (step, *rest) = _members(kind, holder), steps
     if step not in members:
         raise refusal(path, f"got {path_of((step,))}, {_instead(step, members, path)}")
-    here = members[step]
+    member = members[step]
     table = kind if isinstance(holder, dict) else None
-    inner = kind if table is None else table_of(table, str(here))
+    inner = kind if table is None else table_of(table, str(member))
     if rest:
         is_table = inner is not None and inner.letter is None
-        below = holder.get(here, {} if is_table else None) if isinstance(holder, dict) else holder[here]
+        below = holder.get(member, {} if is_table else None) if isinstance(holder, dict) else holder[member]
         _assign(inner, below, rest, value, path)
         value = below
-    holder[here] = value
+    holder[member] = value
     for ways in table.ways if table else ():
-        for other in ways.others(str(here)):
+        for other in ways.others(str(member)):
             holder.pop(other, None)
 
 
 def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str | int]:
-    """Returns the steps that lead on from a raw table or list, with the key or index that each means."""
+    """Return the steps that lead on from a raw table or list, with the key or index that each means."""
     if isinstance(holder, dict):
         return {key: key for key in kind.model_fields} if kind else {}
     members = holder if isinstance(holder, list) else []
@@ -210,9 +210,9 @@ def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str 
 
 
 def _instead(step: str | int, members: Collection[str | int], path: str) -> str:
-    """Returns what to say of a step that leads nowhere."""
-    known = [member for member in members if isinstance(member, str)]
-    guess = nearest(str(step), known) or (known[0] if len(known) == 1 else "")
+    """Return what to say of a step that leads nowhere."""
+    names = [member for member in members if isinstance(member, str)]
+    guess = nearest(str(step), names) or (names[0] if len(names) == 1 else "")
     meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
     if not members:
         return "but it has no members, so set it whole"

@@ -12,7 +12,7 @@ import numpy as np
 from nullpose.errors import Fault
 from nullpose.scenario.faults import Place
 from nullpose.scenario.origin import POINT_LISTS, Origin
-from nullpose.scenario.transmitter import Powered
+from nullpose.scenario.radio import Powered
 from nullpose.scenario.units import EARTHLY_CORNERS, watts_from_dbm
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _OFF_M = 15.0  # points that all lie so far off the origin's altitude are unlike
 def too_small(
     tables: Mapping[Place, Any], positions_m: Sequence[tuple[float, float, float]]
 ) -> Iterator[tuple[Place, str]]:
-    """Yields the outlines that are far too small for the ground points, as if they were in another unit.
+    """Yield the outlines that are far too small for the ground points, as if they were in another unit.
 
     The longer side of a fence is to be a hundredth of the points' spread or more (5 m always do), and a
     hundredth of the keep-out radius; that of a zone's polygon a thousandth of the spread (0.1 m always do).
@@ -77,7 +77,7 @@ def close_to_degrees(origin: Origin | None, positions_m: Sequence[Any], remedy: 
 
 
 def doubts(scenario: Scenario) -> tuple[Fault, ...]:
-    """Returns what a sound scenario states that looks like a mistake, each with its place.
+    """Return what a sound scenario states that looks like a mistake, each with its place.
 
     Powers in W that would be likely in dBm, where the file states other transmit powers in dBm; points in
     metres that are close to the origin's latitude and longitude; points that all lie as far off the origin's
@@ -100,7 +100,7 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
     degrees = close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
     return (
         *_powers(scenario, points),
-        *(Fault("position_m", doubt) for doubt in degrees),
+        *(Fault("position_m", message) for message in degrees),
         *_altitudes(points),
     )
 

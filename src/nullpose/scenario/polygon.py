@@ -1,4 +1,4 @@
-"""Simple polygons in the plane: what may be one, and how far points are from its border."""
+"""Simple polygons in the plane: what may be one, its border's distance from points, and its margin."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SAME = 1e-9  # metres or degrees: vertices closer than this are one
 
 
 def area_m2(vertices_m: Floats) -> float:
-    """Returns the area [m²] inside a closed chain of vertices, positive when they run counter-clockwise.
+    """Return the area [m²] inside a closed chain of vertices, positive when they run counter-clockwise.
 
     The shoelace formula, about the first vertex so that a distant origin costs no digits.
 
@@ -33,14 +33,14 @@ def area_m2(vertices_m: Floats) -> float:
 
 
 def counter_clockwise_m(polygon: Sequence[tuple[float, float]] | None) -> Floats:
-    """Returns the vertices of a polygon [m], (n, 2), counter-clockwise and read-only; none without one."""
+    """Return the vertices of a polygon [m], (n, 2), counter-clockwise and read-only; none without one."""
     vertices_m = np.asarray(polygon or (), dtype=np.float64).reshape(-1, 2)
     clockwise = len(vertices_m) > 0 and area_m2(vertices_m) < 0.0
     return read_only(vertices_m[::-1] if clockwise else vertices_m, (-1, 2))
 
 
 def depth_m(points_m: Floats, vertices_m: Floats) -> Floats:
-    """Returns how deep each point lies in the polygon [m]: its distance from the border, negative outside.
+    """Return how deep each point lies in the polygon [m]: its distance from the border, negative outside.
 
     Args:
         points_m: points [m], (..., 2).
@@ -60,7 +60,7 @@ def depth_m(points_m: Floats, vertices_m: Floats) -> Floats:
 
 @lru_cache(maxsize=64)
 def _prepared(vertices_m: bytes) -> tuple[Any, Any]:
-    """Returns a polygon and its border, indexed for many points."""
+    """Return a polygon and its border, indexed for many points."""
     import shapely
 
     polygon = shapely.Polygon(np.frombuffer(vertices_m).reshape(-1, 2))
@@ -71,7 +71,7 @@ def _prepared(vertices_m: bytes) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
 def _judged(corners: tuple[tuple[float, float], ...]) -> tuple[str, tuple[tuple[float, float], ...]]:
-    """Returns what keeps corners from bounding one area, in shapely's words, or those not doubled."""
+    """Return what keeps corners from bounding one area, in shapely's words, or those not doubled."""
     import shapely
 
     try:
@@ -87,7 +87,7 @@ class _Outline(ListOf):
     """The vertices of a simple polygon, as the metadata of an annotated tuple."""
 
     def judge(self, value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        """Returns the vertices without doubled ones, or raises the fault that keeps them from one area."""
+        """Return the vertices without doubled ones, or raises the fault that keeps them from one area."""
         fault, corners = _judged(value)
         if fault:
             raise rejection(
@@ -101,7 +101,7 @@ class _EarthlyOutline(_Outline):
     """The same in degrees; longitudes go on across the antimeridian."""
 
     def judge(self, value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        """Returns the vertices without doubled ones, or raises the fault that keeps them from one area."""
+        """Return the vertices without doubled ones, or raises the fault that keeps them from one area."""
         first = value[0][1]
         near = tuple((lat, lon - 360.0 * round((lon - first) / 360.0)) for lat, lon in value)
         corners = super().judge(near)
@@ -124,3 +124,39 @@ EarthlyPolygon = Annotated[
     ),
 ]
 """The vertices [latitude, longitude] of a polygon in order, in degrees; the last is joined to the first."""
+
+
+_MITRE_LIMIT = 1.5  # a right angle's mitre, 1.42 times the distance, stays whole
+_SLACK = 1e-5  # GEOS rounds its offsets by 2e-6 of the distance
+_SIMPLER = 1e-6
+
+
+def offset_outlines_m(outline_m: Floats, by_m: float) -> list[tuple[tuple[float, float], ...]]:
+    """Return a polygon's outline further out, or further in: one for each part that it falls into.
+
+    No point of the new border is nearer to the old one than the distance. At a corner it is up to 1.81 times
+    as far away: edges are joined by mitres, which are cut off at 1.5 times the distance. A pocket whose mouth
+    closes counts as inside.
+
+    Args:
+        outline_m: vertices of a simple polygon [m], (n, 2).
+        by_m: how far each edge is moved outwards [m]; inwards if negative.
+    """
+    from shapely import Polygon  # imported here: most scenarios have no margin
+
+    moved = Polygon(outline_m).buffer(by_m * (1.0 + _SLACK), join_style="mitre", mitre_limit=_MITRE_LIMIT)
+    moved = moved.simplify(_SIMPLER * abs(by_m))  # edges of no length have no direction
+    parts = getattr(moved, "geoms", [moved])
+    return [tuple(part.exterior.coords[:-1]) for part in parts if not part.is_empty]
+
+
+def largest_margin_m(outline_m: Floats, below_m: float) -> float:
+    """Return the largest margin, to a hundredth, that leaves one part inside an outline [m]; 0 if none does.
+
+    Args:
+        outline_m: vertices of a simple polygon [m], (n, 2).
+        below_m: what it is smaller than [m].
+    """
+    most_m = min(below_m, 0.5 * float(np.ptp(outline_m, axis=0).min()))
+    tried_m = (float(f"{most_m * percent / 100:.3g}") for percent in range(99, 0, -1))
+    return next((each_m for each_m in tried_m if len(offset_outlines_m(outline_m, -each_m)) == 1), 0.0)

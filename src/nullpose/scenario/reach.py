@@ -2,18 +2,101 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.ellipsoid import distance_m
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.polygon import MOST_CORNERS
-from nullpose.scenario.subdivision import find_position
 from nullpose.scenario.uncertainty import Uncertain
+
+_HALVINGS = 100  # of the multiplier's range, which is bounded relative to the answer
+
+
+def distance_m(points_m: Floats, centre_m: Floats, matrix_m: Floats) -> Floats:
+    """Return how far points are from the set ``{centre + A x : |x| <= 1}`` [m]; 0 inside it.
+
+    With y the offset from the centre along the principal axes, of lengths a, the nearest point of the set is
+    ``a^2 y / (a^2 + t)``; the multiplier t is 0 inside and else the positive root of
+    ``sum (a y / (a^2 + t))^2 = 1``, which falls as t grows.
+
+    Args:
+        points_m: points [m], (n, 3).
+        centre_m: middle of the set [m], (3,).
+        matrix_m: the matrix A [m], (3, 3); it may be singular.
+
+    Returns:
+        Array of shape ``(n,)``.
+    """
+    squares, axes = np.linalg.eigh(matrix_m @ matrix_m.T)
+    squares = np.where(squares > 1e-14 * max(squares.max(), 0.0), squares, 0.0)
+    offsets = (points_m - centre_m) @ axes
+    low = np.zeros(len(offsets))
+    high = np.sqrt(squares.max()) * np.linalg.norm(offsets, axis=1)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        reach = np.linalg.norm(np.sqrt(squares) * _share(offsets, squares, middle), axis=1)
+        low, high = np.where(reach > 1.0, middle, low), np.where(reach > 1.0, high, middle)
+    return np.asarray(np.linalg.norm(offsets - squares * _share(offsets, squares, high), axis=1))
+
+
+def _share(offsets: Floats, squares: Floats, multiplier: Floats) -> Floats:
+    """Return ``y / (a^2 + t)``, and 0 where both are 0."""
+    total = squares + multiplier[:, None]
+    return np.divide(offsets, total, out=np.zeros_like(offsets), where=total > 0.0)
+
+
+_TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
+_BATCH = 256
+
+
+def find_position(
+    lower_m: Floats, upper_m: Floats, clearance_m: Callable[[Floats], Floats], most_parts: int = 60_000
+) -> tuple[Floats | None, bool]:
+    """Return a position [m] in a box at which a clearance is not negative, or None; and whether it is sure.
+
+    A clearance may change by no more than the distance gone (distances from sets do, and the least of
+    several). So a part of the box whose middle has a clearance below minus its half diagonal holds no such
+    position. The parts with the greatest clearance are halved first, across their longest side.
+
+    Args:
+        lower_m: lower corner of the box [m], (3,), finite.
+        upper_m: upper corner [m], (3,), finite.
+        clearance_m: from positions [m], (n, 3), to clearances [m], (n,).
+        most_parts: parts that are looked at before it gives up.
+    """
+    if (lower_m > upper_m).any():
+        return None, True
+    smallest_m = _TOUCHING * (1.0 + np.abs([lower_m, upper_m]).max())
+    parts = 0.5 * np.array([[lower_m + upper_m, upper_m - lower_m]])  # middles and half sides, (n, 2, 3)
+    clearances = clearance_m(parts[:, 0])
+    looked_at = 1
+    while True:
+        kept = np.flatnonzero(clearances >= -np.linalg.norm(parts[:, 1], axis=1))
+        order = kept[np.argsort(-clearances[kept], kind="stable")]
+        parts, clearances = parts[order], clearances[order]
+        if not len(parts):
+            return None, True
+        if clearances[0] >= 0.0 or parts[0, 1].max() <= smallest_m:
+            return parts[0, 0], True
+        if looked_at > most_parts:
+            return None, False
+        halved = _halved(parts[:_BATCH])
+        looked_at += len(halved)
+        parts = np.concatenate([halved, parts[_BATCH:]])
+        clearances = np.concatenate([clearance_m(halved[:, 0]), clearances[_BATCH:]])
+
+
+def _halved(parts: Floats) -> Floats:
+    """Return both halves of each part, cut across its longest side."""
+    middles, halves = parts[:, 0], parts[:, 1]
+    is_longest = np.arange(3) == halves.argmax(axis=1)[:, None]
+    steps = np.where(is_longest, 0.5 * halves, 0.0)
+    return np.concatenate([np.stack([middles + s * steps, halves - steps], axis=1) for s in (-1.0, 1.0)])
+
 
 _MOST_DISTANCES = 6_000_000  # between parts of the airspace and what bounds it, for the time that they take
 
@@ -21,7 +104,7 @@ _MOST_DISTANCES = 6_000_000  # between parts of the airspace and what bounds it,
 def airspace_faults(
     airspace: Airspace, points: Mapping[Place, GroundPoint], error_m: float
 ) -> Iterator[tuple[Place, str]]:
-    """Yields what is wrong between the airspace and the ground points, each with its place.
+    """Yield what is wrong between the airspace and the ground points, each with its place.
 
     Args:
         airspace: where the vehicle is meant to be.
@@ -50,7 +133,7 @@ def airspace_faults(
 
 
 def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
-    """Returns whether there is a position that the airspace allows outside the keep-out balls.
+    """Return whether there is a position that the airspace allows outside the keep-out balls.
 
     True to a billionth of the airspace's size, unless it is so intricate that it takes too long to tell,
     which counts as if there were one.
@@ -77,7 +160,7 @@ def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
 def _reach_faults(
     airspace: Airspace, points: Mapping[Place, GroundPoint], centres_m: Floats, error_m: float
 ) -> Iterator[tuple[Place, str]]:
-    """Yields a fault for every ground point that the vehicle may meet, given what is uncertain.
+    """Yield a fault for every ground point that the vehicle may meet, given what is uncertain.
 
     That is so if an allowed position is no further from the point's set than the vehicle's own position
     error: the distance may then be zero, at which the model has no limit.

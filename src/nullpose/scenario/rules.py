@@ -24,15 +24,15 @@ class Rule:
     """What a value must be, as the metadata of an annotated type."""
 
     def read(self, value: object) -> Any:
-        """Returns a raw value as its type takes it, or raises the fault that says what is wrong with it."""
+        """Return a raw value as its type takes it, or raises the fault that says what is wrong with it."""
         return value
 
     def judge(self, value: Any) -> Any:
-        """Returns a value of the type, or raises the fault that says what is wrong with it."""
+        """Return a value of the type, or raises the fault that says what is wrong with it."""
         return value
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Returns the JSON Schema, given that of the type."""
+        """Return the JSON Schema, given that of the type."""
         return inner
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -70,7 +70,7 @@ class Quantity(Rule):
         return f"{self.noun} from {self.low:g} to {self.high:g}"
 
     def read(self, value: object) -> float:
-        """Returns the number, or raises the fault that says what is wrong with it."""
+        """Return the number, or raises the fault that says what is wrong with it."""
         value = plain(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
             is_quoted = isinstance(value, str) and _NUMBER.fullmatch(value)
@@ -81,7 +81,7 @@ class Quantity(Rule):
         return float(value)
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Returns the JSON Schema: the type with its limits."""
+        """Return the JSON Schema: the type with its limits."""
         return {"type": inner["type"], "minimum": self.low, "maximum": self.high}
 
 
@@ -89,7 +89,7 @@ class Count(Quantity):
     """A whole number between two limits; used as the metadata of an annotated int."""
 
     def read(self, value: object) -> int:
-        """Returns the whole number, or raises the fault that says what is wrong with it."""
+        """Return the whole number, or raises the fault that says what is wrong with it."""
         number = super().read(value)
         if not number.is_integer():
             raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
@@ -109,7 +109,7 @@ class Choice(Rule):
     words: Collection[str]
 
     def read(self, value: object) -> str:
-        """Returns the word, or raises the fault that names the words and the one nearest."""
+        """Return the word, or raises the fault that names the words and the one nearest."""
         if isinstance(value, str) and value in self.words:
             return value
         guess = nearest(value, self.words) if isinstance(value, str) else ""
@@ -118,7 +118,7 @@ class Choice(Rule):
         raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{hint}")
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Returns the JSON Schema: a text with its allowed values."""
+        """Return the JSON Schema: a text with its allowed values."""
         return {"type": "string", "enum": list(self.words)}
 
 
@@ -137,14 +137,14 @@ class ListOf(Rule):
     most: int
 
     def read(self, value: object) -> list[object]:
-        """Returns the members, or raises the fault that says what is wrong with the list."""
+        """Return the members, or raises the fault that says what is wrong with the list."""
         value = plain(value)
         if not isinstance(value, list | tuple) or not self.fewest <= len(value) <= self.most:
             raise rejection(f"got {described(value)}, must be {self.noun}")
         return list(value)
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Returns the JSON Schema of the list."""
+        """Return the JSON Schema of the list."""
         # One "items" for all members, not "prefixItems": editors that know only older drafts read it too.
         members = inner["prefixItems"] if "prefixItems" in inner else [inner["items"]]
         items = dict(members[0])
@@ -158,7 +158,7 @@ class Ascending(ListOf):
     """A list of two numbers, the second no less than the first."""
 
     def judge(self, value: tuple[float, float]) -> tuple[float, float]:
-        """Returns the two, or raises the fault that they are reversed."""
+        """Return the two, or raises the fault that they are reversed."""
         if value[0] > value[1]:
             raise rejection(
                 f"got {list(value)}, which is reversed and so holds nothing; must be {self.noun}; "
@@ -171,7 +171,7 @@ class Direction(ListOf):
     """A list of three numbers, not all zero: a direction, of any length."""
 
     def judge(self, value: tuple[float, float, float]) -> tuple[float, float, float]:
-        """Returns the three, or raises the fault that they point nowhere."""
+        """Return the three, or raises the fault that they point nowhere."""
         if not any(value):
             raise rejection(f"got {list(value)}, which has length 0 and no direction; must be {self.noun}")
         return value
@@ -181,7 +181,7 @@ class Members(ListOf):
     """A list of tables, as the metadata of an annotated tuple."""
 
     def judge(self, value: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Returns the tables, each that leaves its name out being named by its letter and its place."""
+        """Return the tables, each that leaves its name out being named by its letter and its place."""
         return tuple(
             member
             if member.name or member.letter is None
@@ -191,6 +191,6 @@ class Members(ListOf):
 
 
 def list_of_tables(key: str, fewest: int = 0) -> Members:
-    """Returns the rule of a list of so many tables that are headed by a key."""
+    """Return the rule of a list of so many tables that are headed by a key."""
     noun = f"a list of {'at least one table' if fewest else 'tables'}, each headed [[{key}]]"
     return Members(noun, fewest, MOST_MEMBERS)

@@ -18,20 +18,17 @@ from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.antenna import Antenna
-from nullpose.scenario.array import Array
+from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import read_only, rows_of_points
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
-from nullpose.scenario.names import Label, Title
 from nullpose.scenario.origin import Origin, located
-from nullpose.scenario.receiver import Receiver
+from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
-from nullpose.scenario.toml_text import toml_text
-from nullpose.scenario.transmitter import Transmitter
-from nullpose.scenario.units import power_w, ratio_from_db
+from nullpose.scenario.toml_file import toml_text
+from nullpose.scenario.units import Label, Title, power_w, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
@@ -122,7 +119,7 @@ class Scenario(Section):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
-        """Returns the scenario that a TOML file describes; the same as ``nullpose.load``.
+        """Return the scenario that a TOML file describes; the same as ``nullpose.load``.
 
         Args:
             path: the file, of 10 MB at most.
@@ -148,7 +145,7 @@ class Scenario(Section):
         reference_gain_db: float | None = None,
         **more: object,
     ) -> Scenario:
-        """Returns the scenario of nodes and jammers that are given as arrays.
+        """Return the scenario of nodes and jammers that are given as arrays.
 
         The paper's:
         ``Scenario.from_arrays([[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30))``
@@ -185,15 +182,15 @@ class Scenario(Section):
             "receiver": {"noise_w": noise_w},
         }
         for key, table in tables.items():
-            own = more.get(key)
-            table |= dict(own) if isinstance(own, Mapping) else {}
+            added = more.get(key)
+            table |= dict(added) if isinstance(added, Mapping) else {}
         if reference_gain_db is not None or "frequency_hz" not in tables["receiver"]:
             tables["receiver"].setdefault("reference_gain_db", reference_gain_db or 0.0)
         return cls.from_dict({**points, **more, **tables})
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw scenario with the positions of points that are stated by latitude and longitude.
+        """Return the raw scenario with the positions of points that are stated by latitude and longitude.
 
         The name, which every output has, says of an antenna that is an estimate that it is one.
         """
@@ -202,20 +199,20 @@ class Scenario(Section):
             data = {**data, "name": f"{name} (antenna: {ESTIMATE})".strip()}
         return located(data)
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between the parts of the scenario, those that are None being at fault."""
-        return scenario_faults(self, stated)
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the faults between the parts of the scenario, those that are None being at fault."""
+        return scenario_faults(self, raw)
 
     def to_toml(self) -> str:
-        """Returns the text of a scenario file that loads as an equal scenario."""
+        """Return the text of a scenario file that loads as an equal scenario."""
         return toml_text(self.to_dict())
 
     def __repr__(self) -> str:
         counts = [(len(self.nodes), "node"), (len(self.jammers), "jammer")]
         counts += [(len(self.eavesdroppers), "eavesdropper")] * bool(self.eavesdroppers)
-        told = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
+        numbers = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
         low, high = self.airspace.altitude_m
-        return f"Scenario({self.name!r}: {told}, {self.objective}, altitude {low:g} to {high:g} m)"
+        return f"Scenario({self.name!r}: {numbers}, {self.objective}, altitude {low:g} to {high:g} m)"
 
     __str__ = __repr__
 
@@ -384,9 +381,9 @@ class Scenario(Section):
         return power_w(point.noise_w, point.noise_dbm) or self.receiver.noise_power_w
 
     def _jamming_w(self, node: Node) -> float:
-        stated = power_w(node.jamming_w, node.jamming_dbm)
-        if stated > 0.0:
-            return stated
+        jamming_w = power_w(node.jamming_w, node.jamming_dbm)
+        if jamming_w > 0.0:
+            return jamming_w
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
         powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
@@ -394,7 +391,7 @@ class Scenario(Section):
 
 
 def require_scenario(value: object) -> None:
-    """Raises an error with advice if a value is no scenario, such as the path of its file.
+    """Raise an error with advice if a value is no scenario, such as the path of its file.
 
     Args:
         value: what was given for a scenario.

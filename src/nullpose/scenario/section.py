@@ -53,7 +53,7 @@ class Section(BaseModel):
 
     @classmethod
     def from_dict(cls, data: object, source: str = "") -> Self:
-        """Returns the table that plain values describe, as ``to_dict`` writes them.
+        """Return the table that plain values describe, as ``to_dict`` writes them.
 
         Args:
             data: a mapping with the keys of a scenario file.
@@ -68,37 +68,37 @@ class Section(BaseModel):
             raise scenario_error(error, data, source) from None
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
+        """Return plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
         return self.model_dump(mode="json")
 
     @model_serializer(mode="wrap")
-    def _stated(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialised(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         fields = type(self).model_fields
         untold = {key for key in self.unstated if getattr(self, key) == fields[key].default}
         return {key: value for key, value in handler(self).items() if value is not None and key not in untold}
 
     @classmethod
     def heading(cls) -> str:
-        """Returns what the table is called and how it is headed in a file."""
+        """Return what the table is called and how it is headed in a file."""
         return cls.header or f"a table headed [{cls.__name__.lower()}]"
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw table with what follows from its own values filled in."""
+        """Return the raw table with what follows from its own values filled in."""
         return data
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between several values of a table; those with a fault of their own are None.
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the faults between several values of a table; those with a fault of their own are None.
 
         Args:
-            stated: the raw table, as it was before anything was filled in.
+            raw: the raw table, as it was before anything was filled in.
         """
         return ()
 
     @model_validator(mode="wrap")
     @classmethod
     def _judged(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Returns the table, or raises all that is wrong with it: keys, values, keys and values together."""
+        """Return the table, or raises all that is wrong with it: keys, values, keys and values together."""
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
@@ -108,11 +108,11 @@ class Section(BaseModel):
                 too_long = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
                 raise collected(cls.__name__, [((key,), too_long)])
         fields = cls.model_fields
-        stated = {key: value for key, value in data.items() if key in fields}
-        given = frozenset(key for key, value in stated.items() if value is not None)
-        strange = [str(key) for key in data if key not in stated]
+        raw = {key: value for key, value in data.items() if key in fields}
+        present = frozenset(key for key, value in raw.items() if value is not None)
+        strange = [str(key) for key in data if key not in raw]
         # A key that is still to be given is the likelier meaning of a misspelt one.
-        absent = [key for key in fields if key not in given] if strange else []
+        absent = [key for key in fields if key not in present] if strange else []
         meant = {nearest(key, absent) for key in strange[:_MOST_UNKNOWN]}
         faults: list[tuple[Place, str]] = [
             ((key,), unknown("key", key, fields, absent)) for key in strange[:_MOST_UNKNOWN]
@@ -120,19 +120,19 @@ class Section(BaseModel):
         if len(strange) > _MOST_UNKNOWN:
             faults.append(((), f"{len(strange) - _MOST_UNKNOWN} more keys are unknown; remove them too"))
         if not strange:
-            faults += [((), message) for message in _faults_of_ways(cls.ways, given)]
-        completed = cls.completed(stated)
+            faults += [((), message) for message in _faults_of_ways(cls.ways, present)]
+        completed = cls.completed(raw)
         try:
             judged = handler(completed)
         except ValidationError as error:
-            otherwise = {key for ways in cls.ways if ways.begun(given) for key in chain(*ways.groups)}
+            otherwise = {key for ways in cls.ways if ways.taken(present) for key in chain(*ways.groups)}
             faults += reworded(error, fields, meant | otherwise if faults or error.error_count() > 1 else ())
             judged = cls._sound_part(completed)
         # What only follows from a value's own fault, or from a misspelt key, is not told.
         broken = {place[:depth] for place, _ in faults for depth in range(1, len(place) + 1)}
         between = [
             (place, message)
-            for place, message in judged.faults(stated)
+            for place, message in judged.faults(raw)
             if place not in broken and meant.isdisjoint(map(str, place[:1]))
         ]
         if faults or between:
@@ -141,7 +141,7 @@ class Section(BaseModel):
 
     @classmethod
     def _sound_part(cls, data: object) -> Any:
-        """Returns a table without the values that are at fault, which are None in it."""
+        """Return a table without the values that are at fault, which are None in it."""
         if not isinstance(data, Mapping):
             return data if isinstance(data, cls) else None
         sound: dict[str, Any] = {}
@@ -156,7 +156,7 @@ class Section(BaseModel):
         return cls.model_construct(**sound)
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Returns a copy with some values replaced, validated like any other.
+        """Return a copy with some values replaced, validated like any other.
 
         A new value in metres takes the place of what was stated on the Earth too.
 
@@ -186,13 +186,13 @@ class Section(BaseModel):
 
 
 @cache
-def _faults_of_ways(ways: tuple[Ways, ...], given: frozenset[str]) -> tuple[str, ...]:
-    """Returns what is wrong with the keys that are given, together."""
-    return tuple(message for each in ways for message in each.faults(given))
+def _faults_of_ways(ways: tuple[Ways, ...], present: frozenset[str]) -> tuple[str, ...]:
+    """Return what is wrong with the keys that are given, together."""
+    return tuple(message for each in ways for message in each.faults(present))
 
 
 def inner_section(annotation: object) -> type[Section] | None:
-    """Returns the kind of table that the type of a field holds, or a list of; None if it holds no table."""
+    """Return the kind of table that the type of a field holds, or a list of; None if it holds no table."""
     if isinstance(annotation, type) and issubclass(annotation, Section):
         return annotation
     return next(filter(None, map(inner_section, get_args(annotation))), None)
@@ -200,7 +200,7 @@ def inner_section(annotation: object) -> type[Section] | None:
 
 @cache
 def table_of(kind: type[Section], key: str) -> type[Section] | None:
-    """Returns the kind of table that one key of a table holds, or a list of; None if it holds no table.
+    """Return the kind of table that one key of a table holds, or a list of; None if it holds no table.
 
     Args:
         kind: the table.
@@ -211,5 +211,5 @@ def table_of(kind: type[Section], key: str) -> type[Section] | None:
 
 @cache
 def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
-    """Returns what reads the value of one key of a table."""
+    """Return what reads the value of one key of a table."""
     return TypeAdapter(kind.model_fields[key].rebuild_annotation())

@@ -1,9 +1,11 @@
-"""Reading TOML files, in bounds, with what is wrong with those that cannot be read."""
+"""Scenario files as TOML: reading and writing them, and what is wrong with those that cannot be read."""
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,14 +16,6 @@ from nullpose.scenario.wording import nearest
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
 _KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")
-_MOST_PARTS = 64
-_LONGEST_WORD = 10_000
-_MOST_KEYS = 200_000  # 10,000 nodes have 120,000 at most
-_NO_WORD = re.compile(  # comments, and texts, which may be a part of a key; an open one goes on to its end
-    r"""\"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\[^\n])*"?|'[^'\n]*'?|\#[^\n]*""",
-    re.DOTALL,
-)
-_WORD = re.compile(r"[\w\-. \t]+")
 _HINTS = {
     "Cannot overwrite a value": "a key is given twice; keep one",
     "Cannot declare": "a table is headed twice; lists of tables, such as [[nodes]], take double brackets",
@@ -30,6 +24,15 @@ _HINTS = {
     "Invalid statement": "lines are written as in power_w = 1.0",
     "Expected newline": "every key stands on a line of its own",
 }
+# Of an upload: Python's reader takes memory by the square of a key's parts, and much for a long number.
+_MOST_PARTS = 64
+_LONGEST_WORD = 10_000
+_MOST_KEYS = 200_000  # each takes the reader some 5 microseconds; 10,000 nodes have 120,000 at most
+_NO_WORD = re.compile(  # comments, and texts, which may be a part of a key; an open one goes on to its end
+    r"""\"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\[^\n])*"?|'[^'\n]*'?|\#[^\n]*""",
+    re.DOTALL,
+)
+_WORD = re.compile(r"[\w\-. \t]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,39 +47,48 @@ class FileKind:
 SCENARIO_FILE = FileKind("a scenario file", "scenario.toml")
 
 
-def tables_of(content: bytes | str) -> dict[str, Any]:
-    """Returns the tables of a TOML file, given what it holds, of 10 MB at most.
+def tables_of(text: str) -> dict[str, Any]:
+    """Read the tables of a TOML text.
 
     Raises:
-        ScenarioError: it is no TOML, or would take too long to read.
+        ScenarioError: it is no TOML.
+    """
+    place = ""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        found = _TOML_PLACE.search(str(error))
+        words = _KEY_TUPLE.sub(lambda keys: keys[1].replace("', '", "."), _TOML_PLACE.sub("", str(error)))
+        lines = text.splitlines() or [""]
+        end = f"line {len(lines)}, column {len(lines[-1]) + 1}"
+        place = found[1] if found and found[1] else end
+        hint = next((f" ({hint})" for start, hint in _HINTS.items() if words.startswith(start)), "")
+        message = f"this is not TOML: {words[:1].lower()}{words[1:]}{hint}"
+    except (RecursionError, MemoryError):
+        message = "lists or tables are nested too deeply to be read"
+    except ValueError:  # an integer beyond what Python converts
+        message = "a number has too many digits; write it as in 1e-3"
+    raise refusal(place, message)
+
+
+def uploaded_text(content: bytes) -> str:
+    """Decode an upload that is TOML, if it takes neither much time nor much memory to read.
+
+    Raises:
+        ScenarioError: it is no text, or it does.
     """
     if len(content) > MOST_BYTES:
         raise refusal("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
-    text = content if isinstance(content, str) else decoded(content)
-    place, message = "", ""
-    if text.count("=") > _MOST_KEYS:  # each takes the reader some 5 microseconds
-        message = f"it has more than {_MOST_KEYS} keys, the most that is read"
-    # Python's reader takes memory by the square of a key's parts, and much for a long number.
-    elif any(map(_is_monstrous, text.split("\n"))) and any(
+    text = decoded(content)
+    if text.count("=") > _MOST_KEYS:
+        raise refusal("", f"it has more than {_MOST_KEYS} keys, the most that is read")
+    if any(map(_is_monstrous, text.split("\n"))) and any(
         map(_is_monstrous, _WORD.findall(_NO_WORD.sub("text", text)))
     ):
-        message = f"a key has more than {_MOST_PARTS} parts, or a word more than {_LONGEST_WORD} characters"
-    else:
-        try:
-            return tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            found = _TOML_PLACE.search(str(error))
-            words = _KEY_TUPLE.sub(lambda keys: keys[1].replace("', '", "."), _TOML_PLACE.sub("", str(error)))
-            lines = text.splitlines() or [""]
-            end = f"line {len(lines)}, column {len(lines[-1]) + 1}"
-            place = found[1] if found and found[1] else end
-            hint = next((f" ({hint})" for start, hint in _HINTS.items() if words.startswith(start)), "")
-            message = f"this is not TOML: {words[:1].lower()}{words[1:]}{hint}"
-        except RecursionError:
-            message = "lists or tables are nested too deeply to be read"
-        except ValueError:  # an integer beyond what Python converts
-            message = "a number has too many digits; write it as in 1e-3"
-    raise refusal(place, message)
+        raise refusal(
+            "", f"a key has more than {_MOST_PARTS} parts, or a word more than {_LONGEST_WORD} characters"
+        )
+    return text
 
 
 def _is_monstrous(text: str) -> bool:
@@ -84,7 +96,7 @@ def _is_monstrous(text: str) -> bool:
 
 
 def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), place: str = "") -> str:
-    """Returns the text of a file, of 10 MB at most.
+    """Return the text of a file, of 10 MB at most.
 
     Args:
         path: the file.
@@ -101,7 +113,7 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
 def file_content(
     path: Path, kind: FileKind, base: Path = Path(), place: str = "", most: int = MOST_BYTES
 ) -> bytes:
-    """Returns what a file holds.
+    """Return what a file holds.
 
     Args:
         path: the file.
@@ -130,7 +142,7 @@ def file_content(
 
 
 def decoded(content: bytes) -> str:
-    """Returns the text of some bytes, which is UTF-8.
+    """Return the text of some bytes, which is UTF-8.
 
     Raises:
         ScenarioError: it is no text.
@@ -139,12 +151,12 @@ def decoded(content: bytes) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        given = f"byte 0x{content[error.start]:02x}"
-        raise refusal(f"line {line}", f"{given} is not UTF-8 text; save the file as UTF-8") from None
+        got = f"byte 0x{content[error.start]:02x}"
+        raise refusal(f"line {line}", f"{got} is not UTF-8 text; save the file as UTF-8") from None
 
 
 def _other_file(path: Path, kind: FileKind, base: Path) -> str:
-    """Returns what to try instead of a file that is not there."""
+    """Return what to try instead of a file that is not there."""
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix in kind.endings)
     except OSError:
@@ -153,3 +165,37 @@ def _other_file(path: Path, kind: FileKind, base: Path) -> str:
     seen = path.parent / guess
     suggested = seen.relative_to(base) if seen.is_relative_to(base) else seen
     return f"; did you mean {suggested}?" if guess else "; check the path"
+
+
+def toml_text(scenario: Mapping[str, object]) -> str:
+    """Return the TOML text of plain values nested as in a scenario file: keys, tables, lists of tables."""
+    return "\n\n".join(_blocks([], "", scenario)) + "\n"
+
+
+def _blocks(header: list[str], path: str, values: Mapping[str, object]) -> Iterator[str]:
+    """Yield a table's own keys under its header, then the tables inside it under theirs."""
+    tables = {key: _tables(value) for key, value in values.items()}
+    yield "\n".join(header + [f"{key} = {toml_value(values[key])}" for key in values if tables[key] is None])
+    for key, inner in tables.items():
+        name = f"{path}.{key}".removeprefix(".")
+        is_alone = isinstance(values[key], Mapping)
+        for table in inner or ():
+            yield from _blocks([f"[{name}]" if is_alone else f"[[{name}]]"], name, table)
+
+
+def _tables(value: Any) -> Sequence[Mapping[str, object]] | None:
+    """Return the tables that a value is, one or a list of them; None if it is a value of another kind."""
+    if isinstance(value, Mapping):
+        return [value]
+    is_list = isinstance(value, Sequence) and not isinstance(value, str)
+    return value if is_list and all(isinstance(member, Mapping) for member in value) else None
+
+
+def toml_value(value: object) -> str:
+    """Return one text, number or list in TOML."""
+    if isinstance(value, str):
+        # JSON's texts are TOML's too, but for the delete character, which TOML wants escaped.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Sequence):
+        return f"[{', '.join(toml_value(member) for member in value)}]"
+    return repr(value)

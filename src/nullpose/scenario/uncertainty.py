@@ -79,10 +79,10 @@ class Uncertain(Section):
         """The greatest distance of the true position from the stated one [m]."""
         return float(np.max(self.uncertainty_m)) if self.uncertainty_m is not None else 0.0
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault that an attitude is given of what is no ellipsoid."""
-        yield from super().faults(stated)
-        is_sound = self.uncertainty_m is not None or stated.get("uncertainty_m") is None
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Return the fault that an attitude is given of what is no ellipsoid."""
+        yield from super().faults(raw)
+        is_sound = self.uncertainty_m is not None or raw.get("uncertainty_m") is None
         if is_sound and self.uncertainty_attitude_deg and not isinstance(self.uncertainty_m, tuple):
             yield (
                 ("uncertainty_attitude_deg",),

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from nullpose.scenario.faults import EXCHANGED
+from pydantic import BeforeValidator, WithJsonSchema
+
+from nullpose.scenario.faults import EXCHANGED, rejection
 from nullpose.scenario.rules import Ascending, Direction, ListOf, Quantity
+from nullpose.scenario.wording import described
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 """The keys that state a place on the Earth: all three, or none."""
@@ -142,17 +145,42 @@ SemiAxes = Annotated[
 
 
 def power_w(watts: float | None, dbm: float | None) -> float:
-    """Returns a power however it was stated [W]; 0 where neither unit is given."""
+    """Return a power however it was stated [W]; 0 where neither unit is given."""
     if dbm is not None:
         return watts_from_dbm(dbm)
     return watts or 0.0
 
 
 def watts_from_dbm(power_dbm: float) -> float:
-    """Returns the power in W: ``10^((power_dbm - 30) / 10)``."""
+    """Return the power in W: ``10^((power_dbm - 30) / 10)``."""
     return float(10.0 ** ((power_dbm - 30.0) / 10.0))
 
 
 def ratio_from_db(ratio_db: float) -> float:
-    """Returns the ratio of powers: ``10^(ratio_db / 10)``."""
+    """Return the ratio of powers: ``10^(ratio_db / 10)``."""
     return float(10.0 ** (ratio_db / 10.0))
+
+
+def _line(value: object) -> str:
+    if not isinstance(value, str):
+        raise rejection(f"got {described(value)}, must be text in quotes")
+    if not value.isprintable() or value != value.strip():
+        raise rejection(
+            f"got {described(value)}, must be text on one line, without control characters "
+            "and without blanks at its ends"
+        )
+    return str(value)
+
+
+def _name(value: object) -> str:
+    if value is None:
+        return ""  # left out: named by its place
+    if isinstance(value, str) and not value.strip():
+        raise rejection(f"got {described(value)}, must be a name with at least one visible character")
+    return _line(value)
+
+
+Title = Annotated[str, BeforeValidator(_line)]
+"""A text on one line, possibly empty."""
+Label = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "minLength": 1})]
+"""A name by which results and overrides refer to a node or jammer, or the name of a file."""

@@ -14,12 +14,12 @@ _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting
 
 
 def plain(value: object) -> object:
-    """Returns the Python value behind a numpy scalar or array; other values pass unchanged."""
+    """Return the Python value behind a numpy scalar or array; other values pass unchanged."""
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 def described(value: object) -> str:
-    """Returns a given value in words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
+    """Return a given value in words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
     match plain(value):
         case None:
             return "nothing"
@@ -45,40 +45,40 @@ def described(value: object) -> str:
 
 
 def printable(text: str) -> str:
-    """Returns the text with control characters written as escapes; of a very long one the beginning."""
+    """Return the text with control characters written as escapes; of a very long one the beginning."""
     shown = text if len(text) <= _LONGEST_WORD else f"{text[: _LONGEST_WORD - 3]}..."
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in shown)
 
 
 def listed(words: Collection[str]) -> str:
-    """Returns the words joined by commas."""
+    """Return the words joined by commas."""
     return ", ".join(words)
 
 
-def nearest(word: str, known: Collection[str]) -> str:
-    """Returns the known word most like the given one, or an empty text when none is like it.
+def nearest(word: str, words: Collection[str]) -> str:
+    """Return the known word most like the given one, or an empty text when none is like it.
 
     Args:
         word: what was given.
-        known: the words to choose from.
+        words: the words to choose from.
     """
 
     def similarity(candidate: str) -> float:
         return SequenceMatcher(None, word[:_LONGEST_WORD].casefold(), candidate.casefold()).ratio()
 
-    best = max(known, key=similarity, default="")
+    best = max(words, key=similarity, default="")
     return best if best and similarity(best) >= _LIKE_ENOUGH else ""
 
 
-def unknown(noun: str, word: str, known: Collection[str], likely: Collection[str] = ()) -> str:
-    """Returns what to say of a word that is not among the known ones, with the one that may be meant.
+def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str] = ()) -> str:
+    """Return what to say of a word that is not among the known ones, with the one that may be meant.
 
     Args:
         noun: what the word is, such as a key.
         word: what was given.
-        known: the words to choose from.
+        words: the words to choose from.
         likely: those of them that are the likelier meaning.
     """
-    guess = nearest(word, likely) or nearest(word, known)
+    guess = nearest(word, likely) or nearest(word, words)
     meant = f'; did you mean "{guess}"?' if guess else ";"
-    return f"unknown {noun}{meant} the {noun}s here are {listed(known)}"
+    return f"unknown {noun}{meant} the {noun}s here are {listed(words)}"

@@ -15,7 +15,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from nullpose.scenario.toml_text import toml_text
+from nullpose.scenario.toml_file import toml_text
 from nullpose.study.monte_carlo import StudySpec, read_study
 
 ROOT = Path(__file__).parents[3]

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from nullpose import ScenarioError
-from nullpose.scenario.toml_text import toml_text
+from nullpose.scenario.toml_file import toml_text
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.monte_carlo import StudyCase, StudySpec, draw_scene, load_spec
 

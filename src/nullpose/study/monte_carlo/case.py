@@ -16,10 +16,9 @@ from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
-from nullpose.scenario.names import Label
 from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import AttitudeDegrees, Position
+from nullpose.scenario.units import AttitudeDegrees, Label, Position
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
 from nullpose.study.airframe_cases import AIRFRAME_CASES

@@ -10,7 +10,6 @@ from pydantic import Field
 
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
-from nullpose.scenario.names import Label
 from nullpose.scenario.rules import Ascending, Choice, Count, Quantity
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
@@ -20,6 +19,7 @@ from nullpose.scenario.units import (
     DecibelMilliwatts,
     DecibelsIsotropic,
     ErrorMetres,
+    Label,
     Metres,
     NullDepthDecibels,
     PlanePoint,

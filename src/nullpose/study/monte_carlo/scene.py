@@ -23,10 +23,10 @@ from nullpose.scenario import (
     Transmitter,
 )
 from nullpose.scenario.faults import Place
-from nullpose.scenario.names import Label
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section
+from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 
 _Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]

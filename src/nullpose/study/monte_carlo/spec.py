@@ -15,10 +15,10 @@ from nullpose.errors import UsageError
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
-from nullpose.scenario.names import Title
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section
+from nullpose.scenario.units import Title
 from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
 from nullpose.study.monte_carlo.scene import SceneBase

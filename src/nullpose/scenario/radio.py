@@ -1,4 +1,4 @@
-"""What the vehicle's receiver adds: noise, and the path gain that all distances refer to."""
+"""Noise, path gain and transmit powers."""
 
 from __future__ import annotations
 
@@ -90,3 +90,43 @@ class Receiver(Section):
         if self.frequency_hz is not None:
             return (SPEED_OF_LIGHT_M_PER_S / (4.0 * math.pi * self.frequency_hz)) ** 2
         return ratio_from_db(self.reference_gain_db or 0.0)
+
+
+POWER = exactly_one("power_w", "power_dbm")
+"""The keys of a transmit power."""
+
+
+class Powered(Section):
+    """What transmits.
+
+    Args:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+    """
+
+    ways: ClassVar[tuple[Ways, ...]] = (POWER,)
+
+    power_w: Watts | None = Field(
+        default=None,
+        description="Transmit power in watts. Either this or power_dbm.",
+        examples=[1.0],
+    )
+    power_dbm: DecibelMilliwatts | None = Field(
+        default=None,
+        description="Transmit power in dBm. Either this or power_w.",
+        examples=[20.0],
+    )
+
+    @property
+    def transmit_power_w(self) -> float:
+        """Transmit power, however it was stated [W]; 0 where none is."""
+        return power_w(self.power_w, self.power_dbm)
+
+
+class Transmitter(Powered):
+    """The drone's own transmit power, for the downlink.
+
+    Args:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+    """
