@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test test-studio check docs package bench judges figures clean
+.PHONY: help demo test test-random test-studio check docs package bench judges figures clean
 
 help: ## what can be made, a line each
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
@@ -18,6 +18,9 @@ demo: .venv/.with-core ## the paper's problem solved and its Figure 2 redrawn, i
 
 test: .venv/.with-test ## the tests, on two processes
 	$(BIN)/pytest -n 2
+
+test-random: .venv/.with-test ## the property tests on new random examples; a failure prints how to repeat it
+	$(BIN)/pytest -n 2 --hypothesis-profile random -m hypothesis
 
 test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who is let in, on two processes
 	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }

@@ -18,6 +18,7 @@ os.environ["MPLBACKEND"] = "Agg"
 
 # Compiling a kernel inside an example would break any deadline.
 settings.register_profile("house", derandomize=True, deadline=None)
+settings.register_profile("random", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile("house")
 
 LONG_FILE_LINES = 350

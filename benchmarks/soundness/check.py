@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
 from nullpose.certificate import verify
-from nullpose.physics.objective import objective_value
+from nullpose.physics import objective_value
 from nullpose.solver import Rigour, solve
 from nullpose.solver.certificate_from_proof import certificate_of
 

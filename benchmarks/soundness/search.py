@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics.objective import objective_value
+from nullpose.physics import objective_value
 from nullpose.scenario import Scenario
 
 __all__ = ["best_value", "feasible"]

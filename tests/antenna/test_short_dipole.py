@@ -6,7 +6,7 @@ from scipy.optimize import differential_evolution
 
 from nullpose import Scenario, load, solve, solve_many
 from nullpose.certificate import verify
-from nullpose.physics import ErrorCase, objective_under, objective_value, rotation_between
+from nullpose.physics import ErrorCase, objective_value, rotation_between
 from nullpose.scenario import apply_overrides
 from nullpose.solver.certificate_from_proof import certificate_of
 
@@ -83,5 +83,5 @@ def test_robust_pose() -> None:
             jammer_offsets_m=radius_m * jammer[None],
             eavesdropper_offsets_m=np.zeros((0, 3)),
         )
-        values.append(float(objective_under(scene, pose.position_m, axis, case)))
+        values.append(float(objective_value(scene, pose.position_m, axis, case)))
     assert guaranteed <= min(values) < 1.5 * guaranteed

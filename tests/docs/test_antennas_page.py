@@ -56,17 +56,6 @@ def test_the_cases_have_these_values(row: list[str]) -> None:
         assert float(cell) == pytest.approx(certified(scenario, scheme).objective.value_db, abs=0.00051)
 
 
-@pytest.mark.parametrize("kind", ["short dipole", "half-wave dipole"])
-def test_any_antenna_has_these_values(kind: str) -> None:
-    """The optimum of two antennas at three powers of the jammer."""
-    cells = re.findall(rf"^\| {kind} \|(.*)\|$", PAGE, flags=re.MULTILINE)[0].split("|")
-    for cell, ratio in zip(cells, (0.01, 1.0, 100.0), strict=True):
-        data = scene(ratio).to_dict()
-        table = {"antenna": {"kind": "half-wave"}} if kind == "half-wave dipole" else {}
-        solution = certified(Scenario.from_dict(data | table), gap=1e-3)
-        assert float(cell) == pytest.approx(solution.objective.value, abs=0.000051)
-
-
 @pytest.mark.parametrize("row", rows("## How deep does a null have to be?")[:11], ids=" ".join)
 def test_the_null_has_these_values(row: list[str]) -> None:
     """The optimum by depth and jamming, then by how much it is above zero interference."""

@@ -7,7 +7,6 @@ import pytest
 import typer
 
 from nullpose.cli.app import app
-from nullpose.solver import Scheme
 
 PAGE = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
 VERBS = typer.main.get_command(app).commands
@@ -54,8 +53,3 @@ def test_nothing_else_is_on_the_page() -> None:
 def test_every_verb_is_in_the_overview() -> None:
     """The table at the top has a row for each verb and no other."""
     assert set(re.findall(r"^\| \[`([a-z]+)", PAGE, flags=re.MULTILINE)) == set(VERBS)
-
-
-def test_every_scheme_is_on_the_page() -> None:
-    """Each value that `--scheme` takes is named where it is explained."""
-    assert {scheme.value for scheme in Scheme if f"`{scheme.value}`" not in _section("solve")} == set()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from nullpose.antenna.files import FORMATS, read_pattern
+from nullpose.antenna.files import read_pattern
 from nullpose.antenna.summary import summary_of
 from nullpose.report.pattern import pattern_view
 
@@ -21,9 +21,3 @@ def test_the_console_block_is_what_is_printed() -> None:
     console.print(pattern_view(summary_of(read_pattern(ROOT / file))))
     printed = [line.rstrip() for line in console.file.getvalue().rstrip().splitlines()]
     assert shown.splitlines() == printed
-
-
-def test_every_format_is_described() -> None:
-    """The table of formats has a row for each and no other."""
-    table = SECTION.split("### Formats")[1].split("###")[0]
-    assert set(re.findall(r"^\| `(\w+)`", table, flags=re.MULTILINE)) == set(FORMATS)

@@ -53,17 +53,6 @@ def _without_leaves(line: str) -> str:
     return re.sub(r"\d+ leaves", "N leaves", line.rstrip())
 
 
-def test_example_is_short() -> None:
-    """The example has at most twelve lines of code."""
-    assert EXAMPLE is not None
-    assert len([line for line in EXAMPLE[1].splitlines() if line]) <= 12
-
-
-def test_readme_is_short() -> None:
-    """The README has at most 120 lines."""
-    assert len(README.splitlines()) <= 120
-
-
 @pytest.mark.parametrize("command", GALLERY)
 def test_gallery_command_works(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every command of the gallery ends well; a study and the studio only read their file."""

@@ -80,14 +80,6 @@ def test_every_key_has_a_row(heading: str) -> None:
     assert _rows(heading).keys() == _keys(heading).keys()
 
 
-def test_points_share_their_places() -> None:
-    """What nodes, jammers and eavesdroppers have in common is described once, and means the same in each."""
-    assert _rows(PLACES).keys() == SHARED
-    for key in SHARED:
-        entries = [TABLES[f"### `[[{name}]]`"]["properties"][key] for name in POINTS]
-        assert entries[0] == entries[1] == entries[2]
-
-
 @pytest.mark.parametrize("heading", [*TABLES, PLACES])
 def test_limits_are_those_of_the_program(heading: str) -> None:
     """The numbers in a row's last column are the limits of the schema; "as above" means the row before."""
@@ -100,30 +92,6 @@ def test_limits_are_those_of_the_program(heading: str) -> None:
             row = rows[index]
         if limits is not None:
             assert _numbers(row.rstrip("| ").rsplit("|", 1)[1])[-2:] == limits
-
-
-def test_words_are_those_of_the_program() -> None:
-    """Where a key takes one word of a few, the row names all of them and no other."""
-    for heading in TABLES:
-        for key, entry in _keys(heading).items():
-            if "enum" in entry:
-                allowed = _rows(heading)[key].rstrip("| ").rsplit("|", 1)[1]
-                assert re.findall(r'"([^"]+)"', allowed) == entry["enum"]
-
-
-@pytest.mark.parametrize(
-    ("heading", "key"),
-    [
-        ("### `[airspace]`", "keep_out_m"),
-        ("### `[airspace]`", "margin_m"),
-        ("### `[airframe]`", "mount_deg"),
-        ("### `[receiver]`", "attitude_error_deg"),
-        ("### `[receiver]`", "position_error_m"),
-    ],
-)
-def test_defaults_are_those_of_the_program(heading: str, key: str) -> None:
-    """The default that the page states for a number is the one in force."""
-    assert f"| {TABLES[heading]['properties'][key]['default']} |" in _rows(heading)[key]
 
 
 def test_snippets_are_toml_that_loads() -> None:

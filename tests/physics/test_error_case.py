@@ -8,20 +8,13 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics import objective_value, sinr
-from nullpose.physics.error_case import (
-    ErrorCase,
-    objective_under,
-    ratios_under,
-    rotation_between,
-    sinr_under,
-)
+from nullpose.physics import ErrorCase, Reception, objective_value, ratios_under, rotation_between, sinr
 from nullpose.scenario import Eavesdropper, Scenario, Transmitter
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-def some_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
+def random_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
     """Returns a case in which all is off by about a metre or a tenth of a radian."""
     return ErrorCase(
         position_offset_m=rng.normal(size=3),
@@ -51,8 +44,8 @@ def test_no_error_is_the_nominal_value(seed: int, random_scene: Callable, random
     scene = random_scene(rng, 3, 2)
     at = random_poses(rng, 4)
     none = ErrorCase.none(scene)
-    np.testing.assert_array_equal(sinr_under(scene, *at, none), sinr(scene, *at))
-    np.testing.assert_array_equal(objective_under(scene, *at, none), objective_value(scene, *at))
+    np.testing.assert_array_equal(Reception(scene, *at, none).sinr, sinr(scene, *at))
+    np.testing.assert_array_equal(objective_value(scene, *at, none), objective_value(scene, *at))
 
 
 @given(seed=SEEDS)
@@ -63,7 +56,7 @@ def test_an_error_case_is_another_scene(
     rng = np.random.default_rng(seed)
     before = random_scene(rng, 3, 2)
     position, axis = random_poses(rng)
-    case = some_case(rng, before)
+    case = random_case(rng, before)
     after = scene(
         before.node_positions_m,
         before.node_powers_w,
@@ -71,7 +64,7 @@ def test_an_error_case_is_another_scene(
         before.jammer_powers_w,
     )
     np.testing.assert_allclose(
-        sinr_under(before, position, axis, case),
+        Reception(before, position, axis, case).sinr,
         sinr(after, position + case.position_offset_m, case.rotation_world @ axis),
         rtol=1e-13,
     )
@@ -83,7 +76,7 @@ def test_secrecy_under_an_error_case(seed: int, random_scene: Callable, random_p
     rng = np.random.default_rng(seed)
     scene = secrecy_scene(random_scene(rng, 3, 2))
     position, axis = random_poses(rng)
-    case = some_case(rng, scene)
+    case = random_case(rng, scene)
     moved = tuple(
         Eavesdropper(name=ear.name, position_m=tuple(map(float, ear.position_m + offset)))
         for ear, offset in zip(scene.eavesdroppers, case.eavesdropper_offsets_m, strict=True)
@@ -98,7 +91,7 @@ def test_secrecy_under_an_error_case(seed: int, random_scene: Callable, random_p
     )
     actual = (position + case.position_offset_m, case.rotation_world @ axis)
     assert ratios_under(scene, position, axis, case).shape == (3, 2)
-    assert objective_under(scene, position, axis, case) == pytest.approx(
+    assert objective_value(scene, position, axis, case) == pytest.approx(
         float(objective_value(after, *actual)), rel=1e-9, abs=1e-12
     )
 
@@ -134,7 +127,7 @@ def test_angle_of_a_rotation(seed: int, angle_rad: float) -> None:
 def test_cases_are_compared_to_the_last_bit(paper: Scenario) -> None:
     """A case is the same as a copy of itself, and not as one that differs in one number."""
     rng = np.random.default_rng(3)
-    case = some_case(rng, paper)
+    case = random_case(rng, paper)
     parts = {name: np.array(getattr(case, name)) for name in ErrorCase.__slots__}
     assert case.is_same(ErrorCase(**parts))
     for name in ("position_offset_m", "rotation_world", "jammer_offsets_m"):

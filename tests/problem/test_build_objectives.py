@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.errors import ScenarioError
-from nullpose.physics.objective import margin, objective_value
-from nullpose.physics.secrecy import secrecy_rate
+from nullpose.physics import Reception, objective_value
+from nullpose.physics.reception import node_values
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
@@ -82,7 +82,7 @@ def test_ratios_are_two_to_the_rate(seed: int, ears: int) -> None:
     positions, axes = poses(rng, 20)
     ratios = ratios_at(build_family(scene), positions, axes).reshape(20, 3, ears).min(axis=2)
     np.testing.assert_allclose(
-        np.maximum(1.0, ratios), 2.0 ** secrecy_rate(scene, positions, axes), rtol=1e-12
+        np.maximum(1.0, ratios), 2.0 ** node_values(Reception(scene, positions, axes)), rtol=1e-12
     )
     value = objective_value(scene, positions, axes)
     np.testing.assert_allclose(np.maximum(1.0, ratios.min(axis=1)), 2.0**value, rtol=1e-12)
@@ -113,7 +113,7 @@ def test_ratios_are_margins(seed: int) -> None:
     scene = scene_of(rng, nodes=nodes)
     positions, axes = poses(rng, 20)
     ratios = ratios_at(build_family(scene), positions, axes)
-    np.testing.assert_allclose(ratios, margin(scene, positions, axes), rtol=1e-12)
+    np.testing.assert_allclose(ratios, node_values(Reception(scene, positions, axes)), rtol=1e-12)
     np.testing.assert_allclose(ratios.min(axis=1), objective_value(scene, positions, axes), rtol=1e-12)
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.physics import ErrorCase, ratios_under
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.robust import BindingCase, build_robust_family, point_uncertainty_m

@@ -45,7 +45,7 @@ def test_a_bound_has_its_unit_and_its_gap() -> None:
 
 def test_each_node_has_its_number() -> None:
     """A link gives the rate, the margin or the SINR, whichever is asked for."""
-    link = Link("S", sinr=4.0, sinr_db=6.0, margin=2.0, margin_db=3.0, secrecy_rate_bps_hz=0.5)
+    link = Link("S", {"sinr": 4.0, "sinr_db": 6.0, "margin": 2.0, "secrecy_rate_bps_hz": 0.5})
     assert Quantity.named("min_secrecy_rate").at(link) == 0.5
     assert Quantity.named("min_margin").at(link) == 2.0
     assert Quantity.named("min_sinr").at(replace(link, margin=None)) == 4.0

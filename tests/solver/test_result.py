@@ -118,7 +118,7 @@ def test_a_number_that_json_lacks_is_null(solution: Result) -> None:
     silent = dataclasses.replace(
         solution,
         objective=Objective(name="min_sinr", value=0.0, value_db=-math.inf),
-        links=(Link(node="S1", sinr=0.0, sinr_db=-math.inf), solution.links[1]),
+        links=(Link("S1", {"sinr": 0.0, "sinr_db": -math.inf}), solution.links[1]),
     )
     data = json.loads(json.dumps(silent.to_dict(), allow_nan=False))
     assert data["objective"]["value_db"] is None
@@ -141,7 +141,8 @@ def test_a_solution_is_frozen(solution: Result) -> None:
 def test_the_binding_node_has_the_smallest_ratio(solution: Result) -> None:
     """The binding node is the one with the smallest SINR, the first of equals."""
     links = tuple(
-        Link(node=name, sinr=ratio, sinr_db=0.0) for name, ratio in zip("abc", (2.0, 1.0, 1.0), strict=True)
+        Link(name, {"sinr": ratio, "sinr_db": 0.0})
+        for name, ratio in zip("abc", (2.0, 1.0, 1.0), strict=True)
     )
     assert dataclasses.replace(solution, links=links).binding_node == "b"
 

@@ -25,7 +25,7 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRo
         status=Status.BEST_FOUND,
         objective=objective,
         pose=pose,
-        links=(Link(node, ratio, db),),
+        links=(Link(node, {"sinr": ratio, "sinr_db": db}),),
         stats=None,
         provenance={},
         note="a, note",

@@ -18,11 +18,11 @@ def sentence(certificate: Certificate, leaves: int) -> str:
         certificate: the claim.
         leaves: how many were checked.
     """
-    most, least, near = _numbers(certificate)
+    (most, least, near), quantity = _numbers(certificate), Quantity.of(certificate.scenario)
     axes = RECORDS[certificate.scheme].sentence(certificate.scenario, certificate.null_jammer)
     return (
         f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
-        f"{axes} gives every node {Quantity.of(certificate.scenario).one} above {most}, and the stated pose "
+        f"{axes} gives every node {quantity.with_article} above {most}, and the stated pose "
         f"gives every node {least} or more, which is within {near} of it; {leaves} final boxes checked"
     )
 

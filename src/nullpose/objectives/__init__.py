@@ -1,15 +1,14 @@
 """The objectives that a scenario can maximise, one file each.
 
-Everything that depends on the objective asks its record. A new objective is a record in a file, and its name
-in the list below.
+Everything that depends on the objective reads its record. A new objective is a record in a file, and its name
+in the line ``RECORDS`` below.
 """
 
 from __future__ import annotations
 
 from nullpose.objectives.min_sinr import MIN_SINR
-from nullpose.objectives.quantity import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
-from nullpose.objectives.record import ObjectiveRecord
+from nullpose.objectives.record import LEAST_RATE_BPS_HZ, ObjectiveRecord, Quantity
 from nullpose.objectives.secrecy_rate import SECRECY_RATE
 
 __all__ = [

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.ratios import Ratios, ground_of
-from nullpose.objectives.record import ObjectiveRecord
+from nullpose.objectives.ratios import FloatArray, Ratios, ground_of
+from nullpose.objectives.record import ObjectiveRecord, Quantity
+
+if TYPE_CHECKING:
+    from nullpose.physics import Reception
+    from nullpose.scenario import Scenario
 
 _SINR = Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr")
 _MARGIN = Quantity("min_margin", "margin", "a margin", "margin", "dB", "SINR", "margin")
 
 
 def _ratios(scenario: Scenario) -> Ratios:
-    """Return one ratio for each node, over a denominator that all share.
+    """Build one ratio for each node, over a denominator that all share.
 
     ``(g0 P_k / (sigma^2 Gamma_k)) T(s_k - p)`` over ``I + sum_j (g0 J_j / sigma^2) T(m_j - p)``:
     paper eq. 2.1 divided through by the noise and by the node's weight or required SINR.
@@ -36,12 +41,21 @@ def _ratios(scenario: Scenario) -> Ratios:
     )
 
 
+def _evaluate(reception: Reception) -> dict[str, FloatArray]:
+    """Evaluate every node's SINR (paper eq. 2.1), and its margin: the SINR over its weight or requirement."""
+    values = {"sinr": reception.sinr}
+    if reception.scenario.has_margins:
+        values["margin"] = reception.sinr / reception.scenario.node_required_sinr
+    return values
+
+
 MIN_SINR = ObjectiveRecord(
     name="min-sinr",
     summary="the smallest SINR (or margin) of the nodes that the drone hears",
     quantities=(_SINR, _MARGIN),
     quantity=lambda scenario: _MARGIN if scenario.has_margins else _SINR,
     ratios=_ratios,
+    evaluate=_evaluate,
     interferers="jammers",
     needs=("nodes.power",),
     unused=("transmitter", "eavesdroppers", "nodes.noise", "nodes.jamming"),

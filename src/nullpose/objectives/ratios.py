@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from nullpose.scenario import Scenario
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
@@ -54,12 +57,12 @@ class Ratios(NamedTuple):
     ground_leaks: FloatArray | None = None
 
 
-def ground_of(scenario: Any, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:
+def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:
     """Return the dipoles' axes, (m, 3), and leaks, (m,), None without dipoles, and the largest gains, (m,).
 
     Args:
         scenario: with its points.
-        kinds: whose points, in order, as in ``"node"``.
+        kinds: of the points, in order, as in ``"node"``.
     """
     groups = [(getattr(scenario, f"{k}_antennas"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [antennas or (np.zeros((n, 3)), np.ones(n), np.ones(n)) for antennas, n in groups]

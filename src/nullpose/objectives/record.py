@@ -1,16 +1,93 @@
-"""What an objective states of itself, for everything that checks, evaluates, solves, prints or draws it."""
+"""An objective and the quantity that it maximises, for everything that solves, evaluates or prints them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from nullpose.objectives.quantity import Quantity, Scenario
 from nullpose.objectives.ratios import FloatArray, Ratios
 
+if TYPE_CHECKING:
+    from nullpose.physics import Link, Reception
+    from nullpose.scenario import Scenario
 
-def _receiver_noise_w(scenario: Scenario) -> float:
-    return float(scenario.receiver.noise_power_w)
+LEAST_RATE_BPS_HZ = 1e-3
+"""The relative gap of a smaller rate is that of this one, bits/s/Hz."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """The quantity of a node that is maximised.
+
+    Args:
+        name: as in results: ``min_`` and the noun, as in ``"min_sinr"``.
+        noun: its name, as in SINR, margin or secrecy rate.
+        with_article: the same with its article.
+        short: the same for narrow columns.
+        unit: dB, or bits/s/Hz.
+        ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
+        field: its name among the numbers of a link, :attr:`nullpose.physics.Link.values`.
+    """
+
+    name: str
+    noun: str
+    with_article: str
+    short: str
+    unit: str
+    ratio: str
+    field: str
+
+    @classmethod
+    def named(cls, name: str) -> Quantity:
+        """Find the quantity of a name, as in ``min_sinr``."""
+        from nullpose.objectives import RECORDS
+
+        quantities = (quantity for record in RECORDS.values() for quantity in record.quantities)
+        return next(quantity for quantity in quantities if quantity.name == name)
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> Quantity:
+        """Return the quantity that a scenario maximises."""
+        return scenario.objective_record.quantity(scenario)
+
+    @property
+    def is_rate(self) -> bool:
+        """Whether it is a rate, which no decibels are taken of."""
+        return self.unit != "dB"
+
+    @property
+    def smallest(self) -> str:
+        """The objective in words, as in "smallest SINR"."""
+        return f"smallest {self.noun}"
+
+    def in_unit(self, value: float) -> float:
+        """Convert a number to the quantity's unit: to dB, or leave it as it is if it is a rate."""
+        if self.is_rate:
+            return value
+        return 10.0 * math.log10(value) if value > 0.0 else -math.inf
+
+    def at(self, link: Link) -> float:
+        """Return a node's number: a power ratio, or bits/s/Hz."""
+        return float(link.values[self.field])
+
+    def least(self, links: Iterable[Link]) -> float:
+        """Return the smallest number over the nodes: the objective."""
+        return min(map(self.at, links))
+
+    def of_ratio(self, ratio: float) -> float:
+        """Convert the smallest ratio of a problem: to ``log2`` of it, at least 0, for a rate."""
+        return math.log2(max(1.0, ratio)) if self.is_rate else ratio
+
+    def gap(self, value: float, bound: float) -> float:
+        """Return ``(bound - value) / value``, infinite for a ratio of zero.
+
+        A rate below ``LEAST_RATE_BPS_HZ`` counts as so much.
+        """
+        if self.is_rate:
+            return (bound - value) / max(value, LEAST_RATE_BPS_HZ)
+        return (bound - value) / value if value > 0.0 else math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,8 +100,12 @@ class ObjectiveRecord:
         quantities: what nodes may have under it.
         quantity: from a scenario: which of these it is there.
         ratios: from a scenario: the ratios, each over the points of nodes and of interferers.
+        evaluate: from what is received at poses: the numbers of every node by name, each ``(..., n_nodes)``.
+            ``sinr`` is among them, and the quantity's field. A name without a unit is that of a power ratio;
+            links get its decibels as well.
+        ratios_at: from what is received at poses: the values of ``ratios`` there, ``(..., n_nodes, m)``, a
+            row for each node; the quantity itself if left out, ``m`` being 1.
         transmits: whether the drone transmits: links are then measured at the nodes.
-        noise_w: from a scenario: the noise beside each node's signal at the drone, watts, one or (n_nodes,).
         interferers: the table of a scenario whose points stand in the denominators.
         needs: what a scenario must state for it: headings of tables; ``nodes.power`` for a key of the nodes,
             in watts or dBm.
@@ -36,8 +117,9 @@ class ObjectiveRecord:
     quantities: tuple[Quantity, ...]
     quantity: Callable[[Scenario], Quantity]
     ratios: Callable[[Scenario], Ratios]
-    interferers: str
+    evaluate: Callable[[Reception], Mapping[str, FloatArray]]
+    ratios_at: Callable[[Reception], FloatArray] | None = None
     transmits: bool = False
-    noise_w: Callable[[Scenario], FloatArray | float] = _receiver_noise_w
+    interferers: str
     needs: tuple[str, ...] = ()
     unused: tuple[str, ...] = ()

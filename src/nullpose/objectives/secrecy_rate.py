@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from nullpose.objectives.quantity import Quantity, Scenario
-from nullpose.objectives.ratios import Ratios, ground_of
-from nullpose.objectives.record import ObjectiveRecord
+from nullpose.objectives.ratios import FloatArray, Ratios, ground_of
+from nullpose.objectives.record import ObjectiveRecord, Quantity
+
+if TYPE_CHECKING:
+    from nullpose.physics import Reception
+    from nullpose.scenario import Scenario
 
 _RATE = Quantity(
     "min_secrecy_rate", "secrecy rate", "a secrecy rate", "rate", "bits/s/Hz", "SNR", "secrecy_rate_bps_hz"
@@ -14,7 +19,7 @@ _RATE = Quantity(
 
 
 def _ratios(scenario: Scenario) -> Ratios:
-    """Return one ratio for each node and eavesdropper, two to the power of the rate.
+    """Build one ratio for each node and eavesdropper, two to the power of the rate.
 
     ``I + (g0 P / sigma_k^2) T(s_k - p)`` over ``I + (g0 P / sigma_e^2) T(e_e - p)``.
     """
@@ -43,12 +48,24 @@ def _ratios(scenario: Scenario) -> Ratios:
     )
 
 
+def _evaluate(reception: Reception) -> dict[str, FloatArray]:
+    return {"sinr": reception.node_snr, "secrecy_rate_bps_hz": reception.secrecy_rate}
+
+
+def _ratios_at(reception: Reception) -> FloatArray:
+    """Evaluate ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper."""
+    wanted, overheard = reception.node_snr, reception.eavesdropper_snr
+    return np.asarray((1.0 + wanted[..., :, None]) / (1.0 + overheard[..., None, :]))
+
+
 SECRECY_RATE = ObjectiveRecord(
     name="secrecy-rate",
     summary="the smallest secrecy rate of the nodes that hear it",
     quantities=(_RATE,),
     quantity=lambda scenario: _RATE,
     ratios=_ratios,
+    evaluate=_evaluate,
+    ratios_at=_ratios_at,
     interferers="eavesdroppers",
     transmits=True,
     needs=("transmitter", "eavesdroppers"),

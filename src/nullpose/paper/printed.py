@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.paper.scene import JAMMER_POWER
 from nullpose.physics import to_db
-from nullpose.physics.maximum_gain import direction_product
+from nullpose.physics.paper_schemes import direction_product
 from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
 from nullpose.scenario import Override, Scenario, apply_overrides

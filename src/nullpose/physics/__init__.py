@@ -12,13 +12,7 @@ from nullpose.physics.array import (
     steering_vectors,
 )
 from nullpose.physics.decibel import from_db, to_db
-from nullpose.physics.error_case import (
-    ErrorCase,
-    objective_under,
-    ratios_under,
-    rotation_between,
-    sinr_under,
-)
+from nullpose.physics.error_case import ErrorCase, rotation_between
 from nullpose.physics.evaluate import Link, evaluate, min_margin, min_secrecy_rate, min_sinr
 from nullpose.physics.frames import (
     FramePose,
@@ -28,16 +22,16 @@ from nullpose.physics.frames import (
     frd_from_flu,
     pose_frames,
 )
-from nullpose.physics.gain import antenna_gain, elevation_cosine
-from nullpose.physics.many import margins_of_many
-from nullpose.physics.maximum_gain import (
+from nullpose.physics.gain import antenna_gain, dipole_gain, elevation_cosine, interferer_gains, link_gain
+from nullpose.physics.paper_schemes import (
     maximum_gain_axis,
     maximum_gain_sinr,
+    zero_interference_axis,
+    zero_interference_sinr,
 )
-from nullpose.physics.objective import margin, objective_value
-from nullpose.physics.polarisation import dipole_gain, interferer_gains, link_gain
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
+from nullpose.physics.reception import Reception, objective_value, ratios_under, values_of_many
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -46,7 +40,6 @@ from nullpose.physics.rotation import (
 )
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
 from nullpose.physics.sinr import received_power_w, sinr
-from nullpose.physics.zero_interference import zero_interference_axis, zero_interference_sinr
 
 __all__ = [
     "ErrorCase",
@@ -56,6 +49,7 @@ __all__ = [
     "Pose",
     "PoseFrames",
     "Poses",
+    "Reception",
     "antenna_axis",
     "antenna_gain",
     "array_channels",
@@ -74,15 +68,12 @@ __all__ = [
     "from_db",
     "interferer_gains",
     "link_gain",
-    "margin",
-    "margins_of_many",
     "maximum_gain_axis",
     "maximum_gain_sinr",
     "min_margin",
     "min_secrecy_rate",
     "min_sinr",
     "node_snr",
-    "objective_under",
     "objective_value",
     "pose_frames",
     "ratios_under",
@@ -91,9 +82,9 @@ __all__ = [
     "rotation_world_from_body",
     "secrecy_rate",
     "sinr",
-    "sinr_under",
     "steering_vectors",
     "to_db",
+    "values_of_many",
     "zero_interference_axis",
     "zero_interference_sinr",
 ]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas
-from nullpose.physics.error_case import ErrorCase, actual_sources_m
+from nullpose.physics.error_case import ErrorCase
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -215,7 +215,7 @@ def _both_channels(
     channels = array_channels(
         np.asarray(position_m, dtype=float) + case.position_offset_m,
         elements,
-        actual_sources_m(scenario, case),
+        case.sources_m(scenario),
         scenario.source_powers_w,
         scenario.reference_gain,
         scenario.source_antennas,

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import overload
 
 import numpy as np
 
 from nullpose.physics.decibel import to_db
-from nullpose.physics.objective import margin
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
-from nullpose.physics.secrecy import node_snr, secrecy_rate
-from nullpose.physics.sinr import sinr
+from nullpose.physics.reception import Reception
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario, require_scenario
 
@@ -25,27 +23,45 @@ class Link:
 
     Args:
         node: the node's name.
-        sinr: signal to interference-plus-noise ratio, a power ratio: at the drone (paper eq. 2.1), or at the
-            node where the scenario's objective is the secrecy rate.
-        sinr_db: the same in dB; minus infinity where the null points at the node.
-        margin: the SINR over the node's weight or required SINR, a power ratio; None where no node of the
-            scenario states one.
-        margin_db: the same in dB.
-        secrecy_rate_bps_hz: the secrecy rate, bits/s/Hz; None with any other objective.
+        values: its numbers by name: ``sinr``, and what else the scenario's objective evaluates. A power ratio
+            stands there in dB as well, ``sinr_db``; minus infinity where the null points at the node.
     """
 
     node: str
-    sinr: float
-    sinr_db: float
-    margin: float | None = None
-    margin_db: float | None = None
-    secrecy_rate_bps_hz: float | None = None
+    values: Mapping[str, float] = field(hash=False)
+
+    @property
+    def sinr(self) -> float:
+        """Signal to interference-plus-noise ratio, a power ratio.
+
+        At the drone (paper eq. 2.1), or at the node where the scenario's objective is the secrecy rate.
+        """
+        return self.values["sinr"]
+
+    @property
+    def sinr_db(self) -> float:
+        """The same in dB."""
+        return self.values["sinr_db"]
+
+    @property
+    def margin(self) -> float | None:
+        """The SINR over the node's weight or required SINR; None where no node of the scenario states one."""
+        return self.values.get("margin")
+
+    @property
+    def margin_db(self) -> float | None:
+        """The same in dB."""
+        return self.values.get("margin_db")
+
+    @property
+    def secrecy_rate_bps_hz(self) -> float | None:
+        """The secrecy rate, bits/s/Hz; None with any other objective."""
+        return self.values.get("secrecy_rate_bps_hz")
 
     def to_dict(self) -> dict[str, object]:
-        """Return the link as plain data for JSON: without what it has not, minus infinity as None."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        stated = {key: value for key, value in values.items() if value is not None}
-        return {key: None if value == -math.inf else value for key, value in stated.items()}
+        """Return the link as plain data for JSON, minus infinity as None."""
+        numbers = {name: None if value == -math.inf else value for name, value in self.values.items()}
+        return {"node": self.node, **numbers}
 
 
 @overload
@@ -57,7 +73,7 @@ def evaluate(scenario: Scenario, pose: Poses) -> dict[str, FloatArray]: ...
 
 
 def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[str, FloatArray]:
-    """Return every node's link at a pose, in the scenario's order (paper eqs. 1.1 to 2.1).
+    """Evaluate every node's link at a pose, in the scenario's order (paper eqs. 1.1 to 2.1).
 
     Of many poses the numbers of :class:`Link` as arrays, by name: ``evaluate(scenario, poses)["sinr_db"]``
     has a row for each pose and a column for each node.
@@ -74,42 +90,36 @@ def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[
         [('S1', -4.084), ('S2', -4.084)]
     """
     require_scenario(scenario)
-    if isinstance(pose, Poses):
-        blocks = [_columns(scenario, *_ratios(scenario, some)) for some in pose.blocks()]
-        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-    return links_of(scenario, *_ratios(scenario, pose))
+    evaluation = scenario.objective_record.evaluate
+    if isinstance(pose, Pose):
+        return links_of(scenario, evaluation(_reception(scenario, pose)))
+    blocks = [with_decibels(evaluation(_reception(scenario, block))) for block in pose.blocks()]
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
-def _ratios(scenario: Scenario, pose: Pose | Poses) -> tuple[FloatArray, FloatArray | None]:
-    """Return every node's SINR, and its secrecy rate if that is what the scenario asks for."""
-    at = (scenario, pose.position_m, pose.orientation(scenario.antenna_record))
-    record = scenario.objective_record
-    rates = secrecy_rate(*at) if record.quantity(scenario).is_rate else None
-    return node_snr(*at) if record.transmits else sinr(*at), rates
-
-
-def _columns(scenario: Scenario, ratios: FloatArray, rates: FloatArray | None) -> dict[str, FloatArray]:
-    columns = {"sinr": ratios, "sinr_db": to_db(ratios)}
-    if scenario.has_margins:
-        margins = ratios / scenario.node_required_sinr
-        columns |= {"margin": margins, "margin_db": to_db(margins)}
-    return columns if rates is None else columns | {"secrecy_rate_bps_hz": rates}
-
-
-def links_of(scenario: Scenario, ratios: FloatArray, rates: FloatArray | None = None) -> tuple[Link, ...]:
-    """Return every node's link from its SINR, in the scenario's order.
+def links_of(scenario: Scenario, values: Mapping[str, FloatArray]) -> tuple[Link, ...]:
+    """Make every node's link from its numbers, in the scenario's order.
 
     Args:
         scenario: the nodes.
-        ratios: (n_nodes,) power ratios.
-        rates: (n_nodes,) secrecy rates, bits/s/Hz, if the objective is one.
+        values: arrays of shape (n_nodes,) by name, as an objective evaluates them.
     """
-    columns = _columns(scenario, ratios, rates)
+    columns = with_decibels(values)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return tuple(
-        Link(name, **dict(zip(columns, row, strict=True)))
+        Link(name, dict(zip(columns, row, strict=True)))
         for name, row in zip(scenario.node_names, rows, strict=True)
     )
+
+
+def with_decibels(values: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Put the decibels of each power ratio, whose name has no unit, beside it."""
+    columns = {}
+    for name, column in values.items():
+        columns[name] = column
+        if not name.endswith("_bps_hz"):
+            columns[f"{name}_db"] = to_db(column)
+    return columns
 
 
 @overload
@@ -121,7 +131,7 @@ def min_sinr(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
 def min_sinr(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
-    """Return the smallest SINR over the nodes at a pose, the paper's objective (eq. 2.2).
+    """Evaluate the smallest SINR over the nodes at a pose, the paper's objective (eq. 2.2).
 
     A million poses of a small scene take a quarter of a second.
 
@@ -139,7 +149,7 @@ def min_sinr(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
         >>> nullpose.min_sinr(scenario, poses).round(4)
         array([0.3905, 0.9535])
     """
-    return _least(sinr, scenario, pose)
+    return _smallest(lambda received: received.sinr, scenario, pose)
 
 
 @overload
@@ -151,7 +161,7 @@ def min_margin(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
 def min_margin(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
-    """Return the smallest margin over the nodes at a pose: at least 1 where every requirement is met.
+    """Evaluate the smallest margin over the nodes at a pose: at least 1 where every requirement is met.
 
     Args:
         scenario: nodes, jammers and receiver.
@@ -166,7 +176,7 @@ def min_margin(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
         >>> round(nullpose.min_margin(demanding, pose), 4)
         0.7791
     """
-    return _least(margin, scenario, pose)
+    return _smallest(lambda received: received.sinr / scenario.node_required_sinr, scenario, pose)
 
 
 @overload
@@ -178,7 +188,7 @@ def min_secrecy_rate(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
 def min_secrecy_rate(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
-    """Return the smallest secrecy rate over the nodes at a pose, bits/s/Hz, at least 0.
+    """Evaluate the smallest secrecy rate over the nodes at a pose, bits/s/Hz, at least 0.
 
     Args:
         scenario: nodes, eavesdroppers, receiver and transmitter.
@@ -194,16 +204,19 @@ def min_secrecy_rate(scenario: Scenario, pose: Pose | Poses) -> float | FloatArr
         >>> round(nullpose.min_secrecy_rate(scenario, pose), 4)
         0.5985
     """
-    return _least(secrecy_rate, scenario, pose)
+    return _smallest(lambda received: received.secrecy_rate, scenario, pose)
 
 
-def _least(
-    quantity: Callable[[Scenario, FloatArray, FloatArray], FloatArray], scenario: Scenario, pose: Pose | Poses
+def _smallest(
+    of_nodes: Callable[[Reception], FloatArray], scenario: Scenario, pose: Pose | Poses
 ) -> float | FloatArray:
-    """Return the smallest of a quantity over the nodes, at a pose or at each of many."""
+    """Evaluate the smallest number over the nodes, at a pose or at each of many."""
     require_scenario(scenario)
     if isinstance(pose, Pose):
-        return float(np.min(quantity(scenario, pose.position_m, pose.orientation(scenario.antenna_record))))
-    antenna = scenario.antenna_record
-    blocks = (quantity(scenario, some.position_m, some.orientation(antenna)) for some in pose.blocks())
+        return float(np.min(of_nodes(_reception(scenario, pose))))
+    blocks = (of_nodes(_reception(scenario, block)) for block in pose.blocks())
     return np.concatenate([np.min(block, axis=-1) for block in blocks])
+
+
+def _reception(scenario: Scenario, pose: Pose | Poses) -> Reception:
+    return Reception(scenario, pose.position_m, pose.orientation(scenario.antenna_record))

@@ -22,13 +22,13 @@ def _snr(
     if scenario.transmitter is None:
         raise ValueError("this scenario states no power of the drone; it needs a [transmitter]")
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
-    powers_w = np.full(len(points_m), scenario.transmitter.transmit_power_w)
+    powers_w = np.full(points_m.shape[-2], scenario.transmitter.transmit_power_w)
     link = (scenario.reference_gain, scenario.antenna_record)
     return np.asarray(received_power_w(position_m, axis, points_m, powers_w, *link, ground) / noise_w)
 
 
 def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return the signal to noise ratio of the drone's signal at every node, jamming counted as noise.
+    """Evaluate the SNR of the drone's signal at every node, jamming counted as noise.
 
     ``SNR_k = g0 G(gamma_k) P / (d_k^2 sigma_k^2)``, with ``P`` the drone's power and ``sigma_k^2`` the noise
     of the node's receiver plus the jamming there, which does not depend on the pose.
@@ -50,15 +50,17 @@ def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Floa
     return _snr(scenario, position_m, axis, *nodes)
 
 
-def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return the signal to noise ratio of the drone's signal at every eavesdropper.
-
-    As ``node_snr``, with the eavesdroppers' places and noise; jammers do not disturb them.
+def eavesdropper_snr(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: FloatArray | None = None
+) -> FloatArray:
+    """Evaluate the SNR of the drone's signal at every eavesdropper; jammers do not disturb them.
 
     Args:
         scenario: eavesdroppers, receiver and transmitter.
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: where the eavesdroppers are, ``(..., n_eavesdroppers, 3)``, metres; as the scenario states,
+            if left out.
 
     Returns:
         Array of shape ``(..., n_eavesdroppers)``, power ratios.
@@ -66,15 +68,15 @@ def eavesdropper_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    listeners_m, ground = scenario.eavesdropper_positions_m, scenario.eavesdropper_antennas
-    return _snr(scenario, position_m, axis, listeners_m, ground, scenario.eavesdropper_noise_w)
+    points_m = scenario.eavesdropper_positions_m if points_m is None else points_m
+    eavesdroppers = (points_m, scenario.eavesdropper_antennas, scenario.eavesdropper_noise_w)
+    return _snr(scenario, position_m, axis, *eavesdroppers)
 
 
 def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return the secrecy rate of every node: its rate minus that of the best eavesdropper, at least 0.
+    """Evaluate the secrecy rate of every node: its rate minus that of the best eavesdropper, at least 0.
 
-    ``C_k = max(0, log2(1 + SNR_k) - max_e log2(1 + SNR_e))``, evaluated as the logarithm of
-    ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number, which keeps its digits where signals are weak.
+    ``C_k = max(0, log2(1 + SNR_k) - max_e log2(1 + SNR_e))``
 
     Source: Gaussian wiretap channel (Leung-Yan-Cheong and Hellman, 1978), the stronger eavesdropper counting.
 
@@ -89,6 +91,15 @@ def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> 
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    wanted = node_snr(scenario, position_m, axis)
-    overheard = np.max(eavesdropper_snr(scenario, position_m, axis), axis=-1, keepdims=True, initial=0.0)
-    return np.asarray(np.log1p(np.maximum(0.0, (wanted - overheard) / (1.0 + overheard))) / np.log(2.0))
+    pose = (scenario, position_m, axis)
+    return secrecy_rate_of(node_snr(*pose), eavesdropper_snr(*pose))
+
+
+def secrecy_rate_of(wanted: FloatArray, overheard: FloatArray) -> FloatArray:
+    """Evaluate secrecy rates, bits/s/Hz, from the SNR of the nodes and of the eavesdroppers.
+
+    The logarithm of ``1 + (SNR_k - SNR_e) / (1 + SNR_e)``: the same number as the difference of two rates,
+    which keeps its digits where signals are weak.
+    """
+    strongest = np.max(overheard, axis=-1, keepdims=True, initial=0.0)
+    return np.asarray(np.log1p(np.maximum(0.0, (wanted - strongest) / (1.0 + strongest))) / np.log(2.0))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas
-from nullpose.physics.polarisation import link_gain
+from nullpose.physics.gain import link_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -20,7 +20,7 @@ def received_power_w(
     antenna: Antenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
 ) -> FloatArray:
-    """Return the power that the drone receives from each ground transmitter.
+    """Evaluate the power that the drone receives from each ground transmitter.
 
     ``g0 G_i P_i / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m (1 in the
     paper) and ``G_i`` the gain of :func:`link_gain`.
@@ -47,10 +47,33 @@ def received_power_w(
     )
 
 
+def received_from_sources_w(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike | None = None
+) -> FloatArray:
+    """Evaluate the power that the drone receives from each node and then from each jammer, watts.
+
+    Args:
+        scenario: nodes, jammers and receiver.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+        points_m: where nodes and jammers are, ``(..., n_nodes + n_jammers, 3)``, metres; as the scenario
+            states, if left out.
+    """
+    return received_power_w(
+        position_m,
+        axis,
+        scenario.source_positions_m if points_m is None else points_m,
+        scenario.source_powers_w,
+        scenario.reference_gain,
+        scenario.antenna_record,
+        scenario.source_antennas,
+    )
+
+
 def sinr(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike | None = None
 ) -> FloatArray:
-    """Return the signal to interference-plus-noise ratio of every node.
+    """Evaluate the signal to interference-plus-noise ratio of every node.
 
     ``Gamma_i = (G(gamma_i) P_i / d_i^2) / (sum_j G(gamma_j) J_j / d_j^2 + sigma^2)``, with the jammers summed
     and every power scaled by the path gain at 1 m.
@@ -61,22 +84,11 @@ def sinr(
         scenario: nodes, jammers and receiver.
         position_m: the drone's position, shape ``(..., 3)``, metres.
         axis: unit antenna axis, shape ``(..., 3)``.
-        points_m: where the nodes and then the jammers are, ``(n_nodes + n_jammers, 3)``, metres; where the
-            scenario has them without it.
+        points_m: where nodes and jammers are, as in :func:`received_from_sources_w`.
 
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    received_w = received_power_w(
-        position_m,
-        axis,
-        scenario.source_positions_m if points_m is None else points_m,
-        scenario.source_powers_w,
-        scenario.reference_gain,
-        scenario.antenna_record,
-        scenario.source_antennas,
-    )
-    nodes = len(scenario.nodes)
+    received_w, nodes = received_from_sources_w(scenario, position_m, axis, points_m), len(scenario.nodes)
     interference_w = received_w[..., nodes:].sum(axis=-1, keepdims=True)
-    noise_w = scenario.objective_record.noise_w(scenario)
-    return np.asarray(received_w[..., :nodes] / (interference_w + noise_w))
+    return np.asarray(received_w[..., :nodes] / (interference_w + scenario.receiver.noise_power_w))

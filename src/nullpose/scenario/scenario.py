@@ -32,7 +32,7 @@ from nullpose.scenario.units import Label, Title, power_w, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
-_Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
+_Objective = Annotated[str, Choice("an objective", RECORDS)]
 
 
 class Scenario(Section):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from typing import Unpack
 
 import numpy as np
@@ -86,7 +86,7 @@ def solve(
 def compare(
     scenario: Scenario,
     *,
-    schemes: Sequence[Scheme | str] = tuple(Scheme),
+    schemes: Iterable[Scheme | str] = Scheme,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Results:

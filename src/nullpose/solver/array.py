@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
-from nullpose.objectives import FloatArray, Quantity
+from nullpose.objectives import USUAL, FloatArray, Quantity
 from nullpose.physics import ErrorCase, Pose
 from nullpose.physics.array import digital_sinr, digital_weights, element_positions
 from nullpose.physics.evaluate import links_of
@@ -91,7 +91,7 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     """
     array = scenario.array
     assert array is not None, "the caller asks"
-    if scenario.objective_record.transmits:
+    if scenario.objective != USUAL:
         raise UsageError(
             f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
             "under which the drone receives; arrays are not there for others"
@@ -102,7 +102,10 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     hunt, bound = _solved(task, options)
     pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
     places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
-    links = links_of(scenario, digital_sinr(scenario, pose.position_m, places))
+    ratios = {"sinr": digital_sinr(scenario, pose.position_m, places)}
+    if scenario.has_margins:
+        ratios["margin"] = ratios["sinr"] / scenario.node_required_sinr
+    links = links_of(scenario, ratios)
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
     reached = bound is None or hunt.reaches(bound.value, options.target)

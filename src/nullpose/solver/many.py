@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.errors import SolveError, UsageError
 from nullpose.notebook import html_table, imported, text_table
 from nullpose.objectives import FloatArray, IntArray
-from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, margins_of_many, to_db
+from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, to_db, values_of_many
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -260,8 +260,8 @@ def _fill(
     else:
         roll, pitch, yaw = attitude_within_tilt(axes, airframe.tilt_max_rad, mount_rad)
     axis = antenna_axis(roll, pitch, yaw, mount_rad)
-    margins = margins_of_many([scenario for _, scenario, _ in placed], position_m, axis)
-    value = np.min(margins, axis=1)
+    of_nodes = values_of_many([scenario for _, scenario, _ in placed], position_m, axis)
+    value = np.min(of_nodes, axis=1)
     ends = []
     for least, (_, scenario, outcome) in zip(value.tolist(), placed, strict=True):
         objective = objective_of(scenario, least, outcome.upper_bound)
@@ -277,7 +277,7 @@ def _fill(
         "roll_rad": roll,
         "pitch_rad": pitch,
         "yaw_rad": yaw,
-        "binding_node": np.argmin(margins, axis=1),
+        "binding_node": np.argmin(of_nodes, axis=1),
         "boxes": [each.nodes for each in outcomes],
     }
     for name, values in found.items():

@@ -12,7 +12,7 @@ import numpy as np
 
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray, Quantity
-from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.physics import ErrorCase, ratios_under
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import rotation_about
 from nullpose.scenario import Scenario

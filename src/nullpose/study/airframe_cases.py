@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from nullpose.objectives import USUAL
 from nullpose.scenario import Airframe, Array, Scenario
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that the others are measured against
@@ -71,7 +72,7 @@ def cases_of(scenario: Scenario) -> tuple[AirframeCase, ...]:
     if own is not None and all(own.axis_band != case.airframe.axis_band for case in vehicles):
         tilting = sorted((*vehicles, _stated(own)), key=lambda case: case.airframe.tilt_max_rad)
         vehicles = tuple(tilting)
-    if scenario.objective_record.transmits or scenario.states_antennas:
+    if scenario.objective != USUAL or scenario.states_antennas:
         return vehicles
     arrays = (
         AirframeCase(

@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import QuadraticAntenna
-from nullpose.physics.polarisation import dipole_gain
+from nullpose.physics.gain import dipole_gain
 from nullpose.solver.kernels.worst_case_links import Sets, clearance, strongest_link
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
+from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
 from nullpose.solver.robust import guarantee

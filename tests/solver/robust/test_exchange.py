@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from nullpose.physics.error_case import ErrorCase, ratios_under
+from nullpose.physics import ErrorCase, ratios_under
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.robust import BindingCase
 from nullpose.scenario import Scenario

@@ -10,8 +10,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from nullpose.errors import UsageError
-from nullpose.physics import objective_value
-from nullpose.physics.error_case import ErrorCase, objective_under, ratios_under
+from nullpose.physics import ErrorCase, objective_value, ratios_under
 from nullpose.scenario import Scenario
 from nullpose.solver.robust import guarantee
 
@@ -200,7 +199,7 @@ def test_the_case_is_allowed_and_as_bad_as_told(scene_of: Callable) -> None:
                 assert np.linalg.norm(x) <= 1.0 + 1e-6
                 assert np.linalg.norm(matrix @ x - offset) <= 1e-7
             assert one.worst == pytest.approx(float(ratios_under(scene, p, held.axis, case)[k, 0]), rel=1e-13)
-        assert held.worst == pytest.approx(float(objective_under(scene, p, held.axis, held.case)), rel=1e-13)
+        assert held.worst == pytest.approx(float(objective_value(scene, p, held.axis, held.case)), rel=1e-13)
         assert held.binding.node == held.ratios[np.argmin([one.worst for one in held.ratios])].node
 
 
@@ -213,7 +212,7 @@ def test_a_null_within_reach_guarantees_nothing(paper: Callable, erring: Callabl
     moved = erring(paper(1.0), position_m=2.0)
     held = guarantee(moved, p, [math.sin(0.09), 0.0, math.cos(0.09)])
     assert (held.lower, held.worst) == (0.0, 0.0)
-    assert float(objective_under(moved, p, held.axis, held.case)) <= 1e-25
+    assert float(objective_value(moved, p, held.axis, held.case)) <= 1e-25
     held = guarantee(erring(paper(1.0), attitude_deg=90.0), p, [1.0, 0.0, 0.0])
     assert held.lower == 0.0
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.polarisation import worst_polarised
+from nullpose.physics.gain import worst_polarised
 from nullpose.physics.pose import as_position
 from nullpose.scenario import Scenario
 from nullpose.solver.robust.inner import Inner, RatioGuarantee

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nullpose.objectives import FloatArray, IntArray
-from nullpose.physics.error_case import ErrorCase, ratios_under, rotation_between
+from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.problem.build import build_family
 from nullpose.problem.robust import BindingCase, interferer_field, point_uncertainty_m
 from nullpose.scenario import Scenario

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from nullpose.physics import Pose, evaluate
-from nullpose.physics.polarisation import worst_polarised
+from nullpose.physics.gain import worst_polarised
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario

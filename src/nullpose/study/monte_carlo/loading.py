@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.faults import path_of
@@ -141,7 +142,7 @@ def _meaningless(case: StudyCase, scene: Scenario) -> str:
                 "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
                 "receiver.attitude_error_deg or receiver.position_error_m to the scene"
             )
-        if case.array is not None and vehicle.objective_record.transmits:
+        if case.array is not None and vehicle.objective != USUAL:
             raise UsageError("an array is for a drone that receives, not for this objective")
         if not (case.robust or case.array or case.pose):
             (case.scheme or Scheme.OPTIMUM).require_applicable(vehicle)

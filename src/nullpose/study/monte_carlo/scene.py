@@ -30,7 +30,7 @@ from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 
 _Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]
-_Objective = Annotated[str, Choice("an objective", tuple(RECORDS))]
+_Objective = Annotated[str, Choice("an objective", RECORDS)]
 
 
 class SceneBase(Section):

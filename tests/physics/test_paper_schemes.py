@@ -1,4 +1,4 @@
-"""Maximum gain: eqs. 3.4 and 3.5, normalised."""
+"""The paper's closed forms: eqs. 3.1 and 3.2, and eqs. 3.4 and 3.5 normalised."""
 
 import math
 from collections.abc import Callable
@@ -12,9 +12,51 @@ from nullpose.physics import (
     maximum_gain_axis,
     maximum_gain_sinr,
     sinr,
+    zero_interference_axis,
+    zero_interference_sinr,
 )
 
 SEEDS = st.integers(0, 2**32 - 1)
+
+
+@given(seed=SEEDS, nodes=st.integers(1, 5))
+def test_equation_3_2_is_2_1_with_the_axis_of_3_1(
+    seed: int, nodes: int, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Eq. 3.2 and eq. 2.1 at the axis of eq. 3.1 are the same number."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, nodes, 1)
+    positions, _ = random_poses(rng, 7)
+    axes = zero_interference_axis(positions, scene.jammer_positions_m[0])
+    np.testing.assert_allclose(np.linalg.norm(axes, axis=-1), 1.0, rtol=1e-15)
+    np.testing.assert_allclose(
+        zero_interference_sinr(scene, positions), sinr(scene, positions, axes), rtol=1e-13
+    )
+
+
+@given(seed=SEEDS, factor=st.floats(1e-6, 1e12))
+def test_the_jamming_power_is_gone(
+    seed: int, factor: float, scene: Callable, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Neither eq. 3.2 nor eq. 2.1 at its axis feels the jammer's power, up to 120 dB more of it."""
+    rng = np.random.default_rng(seed)
+    one = random_scene(rng, 3, 1)
+    louder = scene(
+        one.node_positions_m, one.node_powers_w, one.jammer_positions_m, factor * one.jammer_powers_w
+    )
+    position, _ = random_poses(rng)
+    quiet = zero_interference_sinr(one, position)
+    np.testing.assert_array_equal(zero_interference_sinr(louder, position), quiet)
+    axis = zero_interference_axis(position, louder.jammer_positions_m[0])
+    np.testing.assert_allclose(sinr(louder, position, axis), quiet, rtol=1e-12)
+
+
+@pytest.mark.parametrize("jammers", [0, 2])
+def test_equation_3_2_is_for_one_jammer(jammers: int, random_scene: Callable) -> None:
+    """Without a jammer, or with two, eq. 3.2 is refused, and the message says how many there are."""
+    scene = random_scene(np.random.default_rng(1), 2, jammers)
+    with pytest.raises(ValueError, match=f"one jammer; this scenario has {jammers}"):
+        zero_interference_sinr(scene, np.array([0.0, 0.0, 10.0]))
 
 
 @given(seed=SEEDS)
@@ -62,15 +104,3 @@ def test_equation_3_4_is_for_two_nodes(form: Callable, nodes: int, random_scene:
     scene = random_scene(np.random.default_rng(2), nodes, 1)
     with pytest.raises(ValueError, match=f"two nodes; this scenario has {nodes}"):
         form(scene, np.array([0.0, 0.0, 10.0]))
-
-
-def test_shapes_follow_the_positions(random_scene: Callable, random_poses: Callable) -> None:
-    """Leading shapes of positions go through both functions, and each entry is the scalar call."""
-    rng = np.random.default_rng(5)
-    scene = random_scene(rng, 2, 2)
-    positions, _ = random_poses(rng, 3, 4)
-    assert maximum_gain_axis(scene, positions).shape == (3, 4, 3)
-    ratios = maximum_gain_sinr(scene, positions)
-    assert ratios.shape == (3, 4, 2)
-    for i, j in np.ndindex(3, 4):
-        np.testing.assert_allclose(ratios[i, j], maximum_gain_sinr(scene, positions[i, j]), rtol=1e-13)

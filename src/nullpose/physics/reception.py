@@ -1,0 +1,144 @@
+"""What the drone, the nodes and the eavesdroppers receive at a pose, and what an objective makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.objectives import USUAL
+from nullpose.physics.error_case import ErrorCase
+from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate_of
+from nullpose.physics.sinr import received_from_sources_w, received_power_w, sinr
+from nullpose.physics.types import FloatArray
+from nullpose.scenario import Scenario
+
+
+@dataclass(frozen=True, eq=False)
+class Reception:
+    """Everything that is received with the drone at one pose or at many, each number evaluated once.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one antenna, not an array.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``; the attitude ``(..., 3, 3)`` of an antenna
+            with a pattern.
+        case: where everything actually is; as stated, if left out.
+    """
+
+    scenario: Scenario
+    position_m: ArrayLike
+    axis: ArrayLike
+    case: ErrorCase | None = None
+
+    @cached_property
+    def sinr(self) -> FloatArray:
+        """Every node's SINR at the drone, ``(..., n_nodes)``, power ratios (paper eq. 2.1)."""
+        return sinr(self.scenario, *self._pose, self._sources_m)
+
+    @cached_property
+    def node_snr(self) -> FloatArray:
+        """Every node's SNR of the drone's signal, ``(..., n_nodes)``, power ratios."""
+        return node_snr(self.scenario, *self._pose)
+
+    @cached_property
+    def eavesdropper_snr(self) -> FloatArray:
+        """Every eavesdropper's SNR of the drone's signal, ``(..., n_eavesdroppers)``, power ratios."""
+        moved_m = 0.0 if self.case is None else self.case.eavesdropper_offsets_m
+        return eavesdropper_snr(self.scenario, *self._pose, self.scenario.eavesdropper_positions_m + moved_m)
+
+    @cached_property
+    def secrecy_rate(self) -> FloatArray:
+        """Every node's secrecy rate, ``(..., n_nodes)``, bits/s/Hz."""
+        return secrecy_rate_of(self.node_snr, self.eavesdropper_snr)
+
+    @cached_property
+    def received_w(self) -> FloatArray:
+        """The power that the drone receives, nodes first and then jammers, ``(..., n_sources)``, watts."""
+        return received_from_sources_w(self.scenario, *self._pose, self._sources_m)
+
+    @cached_property
+    def _pose(self) -> tuple[ArrayLike, ArrayLike]:
+        if self.case is None:
+            return self.position_m, self.axis
+        return self.case.pose(self.scenario, self.position_m, self.axis)
+
+    @property
+    def _sources_m(self) -> FloatArray | None:
+        return None if self.case is None else self.case.sources_m(self.scenario)
+
+
+def objective_value(
+    scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase | None = None
+) -> FloatArray:
+    """Evaluate the scenario's objective: the smallest SINR (paper eq. 2.2), margin or secrecy rate.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one antenna, not an array.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``; the attitude of an antenna with a pattern.
+        case: where everything actually is; as stated, if left out.
+
+    Returns:
+        Array of shape ``(...)``: power ratios, or bits/s/Hz.
+    """
+    return np.asarray(np.min(node_values(Reception(scenario, position_m, axis, case)), axis=-1))
+
+
+def node_values(reception: Reception) -> FloatArray:
+    """Evaluate the maximised quantity of every node, ``(..., n_nodes)``: power ratios, or bits/s/Hz."""
+    record = reception.scenario.objective_record
+    return np.asarray(record.evaluate(reception)[record.quantity(reception.scenario).field])
+
+
+def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase) -> FloatArray:
+    """Evaluate the ratios of which the objective takes the smallest, when an error case comes true.
+
+    Every node's margin, its SINR over its weight or requirement; or where the drone transmits the ratio
+    ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper, whose logarithm to base 2 is their rate.
+
+    Args:
+        scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
+        position_m: the commanded position, shape ``(..., 3)``, metres.
+        axis: the commanded unit antenna axis, shape ``(..., 3)``; the attitude of an antenna with a pattern.
+        case: where everything actually is.
+
+    Returns:
+        Array of shape ``(..., n_nodes, 1)``, or ``(..., n_nodes, n_eavesdroppers)``.
+    """
+    reception, ratios_at = Reception(scenario, position_m, axis, case), scenario.objective_record.ratios_at
+    return node_values(reception)[..., None] if ratios_at is None else ratios_at(reception)
+
+
+def values_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Evaluate the maximised quantity of every node in many scenes, a pose in each.
+
+    The same numbers as those of :func:`node_values`, scene by scene; together where the objective is the
+    smallest margin and all antennas are the same.
+
+    Args:
+        scenarios: with as many nodes and as many jammers each; their antennas may differ.
+        position_m: the drone's position in each scene, shape ``(s, 3)``, metres.
+        axis: unit antenna axis in each, shape ``(s, 3)``.
+
+    Returns:
+        Array of shape ``(s, n_nodes)``: power ratios, or bits/s/Hz.
+    """
+    antenna = scenarios[0].antenna_record
+    if any(
+        scene.objective != USUAL or scene.antenna_record != antenna or scene.source_antennas
+        for scene in scenarios
+    ):
+        poses = zip(scenarios, np.asarray(position_m), np.asarray(axis), strict=True)
+        return np.array([node_values(Reception(*pose)) for pose in poses])
+    g0 = np.array([[scene.reference_gain] for scene in scenarios])
+    noise_w = np.array([[scene.receiver.noise_power_w] for scene in scenarios])
+    required = np.array([scene.node_required_sinr for scene in scenarios])
+    source_m = np.array([scene.source_positions_m for scene in scenarios])
+    source_w = np.array([scene.source_powers_w for scene in scenarios])
+    received_w, nodes = received_power_w(position_m, axis, source_m, source_w, g0, antenna), required.shape[1]
+    interference_w = np.sum(received_w[:, nodes:], axis=-1, keepdims=True)
+    return np.asarray(received_w[:, :nodes] / (interference_w + noise_w) / required)

@@ -1,0 +1,60 @@
+"""What is received at poses, and the objective that a scenario makes of it."""
+
+from collections.abc import Callable
+
+import numpy as np
+from hypothesis import given, strategies as st
+
+from nullpose.physics import Reception, objective_value, received_power_w, secrecy_rate, sinr, values_of_many
+from nullpose.physics.reception import node_values
+from nullpose.scenario import Scenario, apply_overrides
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+@given(seed=SEEDS)
+def test_margin_is_the_sinr_over_what_is_required(
+    seed: int, random_scene: Callable, random_poses: Callable
+) -> None:
+    """In decibels a requirement is taken off, by a weight the SINR is divided, and else it is left."""
+    rng = np.random.default_rng(seed)
+    scene, pose = random_scene(rng, 3, 2), random_poses(rng, 4, 2)
+    demanding = apply_overrides(scene, ["nodes.S1.min_sinr_db=-4", "nodes.S3.weight=2.5"])
+    ratios_db = 10.0 * np.log10(sinr(scene, *pose))
+    margins_db = 10.0 * np.log10(node_values(Reception(demanding, *pose)))
+    np.testing.assert_allclose(margins_db, ratios_db - [-4.0, 0.0, 10.0 * np.log10(2.5)], atol=1e-9)
+    np.testing.assert_array_equal(objective_value(scene, *pose), sinr(scene, *pose).min(axis=-1))
+    assert objective_value(demanding, *pose).shape == (4, 2)
+
+
+def test_with_the_secrecy_rate(paper: Scenario, random_poses: Callable) -> None:
+    """With that objective the value is the smallest secrecy rate over the nodes."""
+    changes = ["transmitter.power_w=1", "jammers=[]", "eavesdroppers=[{position_m = [17, 15, 4]}]"]
+    secret = apply_overrides(paper, ["objective=secrecy-rate", *changes])
+    pose = random_poses(np.random.default_rng(1), 20)
+    np.testing.assert_array_equal(objective_value(secret, *pose), secrecy_rate(secret, *pose).min(axis=-1))
+
+
+def test_received_power(paper: Scenario) -> None:
+    """Broadside at 10 m, 2 W arrive as the path gain times 2 W over 100 square metres, nodes first."""
+    upright = ([0.0, 0.0, 1.0],)
+    assert received_power_w(np.zeros(3), *upright, [[10.0, 0.0, 0.0]], [2.0], 1e-4) == 1e-4 * 2.0 / 100.0
+    received_w = Reception(paper, [10.0, 0.0, 0.0], *upright).received_w
+    assert (received_w.shape, received_w[0]) == ((3,), 0.01)
+
+
+@given(seed=SEEDS, nodes=st.integers(1, 12), jammers=st.integers(0, 4))
+def test_many_scenes_at_once(
+    seed: int, nodes: int, jammers: int, random_scene: Callable, random_poses: Callable
+) -> None:
+    """Each has the margins that it has alone, whether all antennas are the same or not."""
+    rng = np.random.default_rng(seed)
+    scenes = [
+        apply_overrides(random_scene(rng, nodes, jammers), [f"nodes.S1.weight={rng.uniform(0.2, 5.0)}"])
+        for _ in range(4)
+    ]
+    pose = random_poses(rng, 4)
+    for leak in ("", "antenna.null_depth_db=20"):
+        several = scenes if not leak else [*scenes[:-1], apply_overrides(scenes[-1], [leak])]
+        alone = [node_values(Reception(*each)) for each in zip(several, *pose, strict=True)]
+        np.testing.assert_allclose(values_of_many(several, *pose), alone, rtol=1e-14)
