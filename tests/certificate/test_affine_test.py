@@ -36,11 +36,6 @@ def exact_link(
     return link(exact(point), p, axis, Fraction(leak), exact(dipole[0]))
 
 
-def plain_link(field: AxisField, point: np.ndarray, p: np.ndarray) -> float:
-    """Return the same in floating point."""
-    return float(exact_link(field, point, exact(p)))
-
-
 def one_box(rng: np.random.Generator) -> Boxes:
     """Return a box above the field, well clear of the ground points."""
     return Boxes(
@@ -118,19 +113,6 @@ def test_hessians_contain_finite_differences(
             second = at(p, (i, 1), (k, 1)) + at(p, (i, -1), (k, -1)) - at(p, (i, 1), (k, -1))
             second = (second - at(p, (i, -1), (k, 1))) / (4 * step**2)
         assert hessian[entry].low[0] - 1e-5 * scale <= float(second) <= hessian[entry].high[0] + 1e-5 * scale
-
-
-def test_small_boxes_have_narrow_bounds() -> None:
-    """The bounds close in on the link as the box shrinks: they are not merely wide."""
-    for field in FIELDS:
-        boxes = Boxes(
-            leaf=np.zeros(1, dtype=np.int64), centre=np.array([[9.0, 21.0, 12.0]]), half=np.full((1, 3), 1e-6)
-        )
-        value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[0][None], 0.0, NO_DIPOLE)
-        there = plain_link(field, POINTS[0], boxes.centre[0])
-        for x in (value, *(slopes[i] for i in range(3)), *(hessian[i] for i in range(6))):
-            assert x.high[0] - x.low[0] <= 1e-5 * there
-        assert ranged.high[0] - ranged.low[0] <= 1e-5 * there
 
 
 def quadratic(rng: np.random.Generator) -> tuple[float, np.ndarray, np.ndarray]:

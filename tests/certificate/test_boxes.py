@@ -84,16 +84,6 @@ def test_distances_are_bounds(seed: int, scale: float) -> None:
     assert float(boxes.nearest2(point)[0]) >= float(near2) - 1e-13 * float(far2)
 
 
-def test_chosen_boxes_keep_their_leaves() -> None:
-    """Masks, indices and slices choose boxes with their leaves."""
-    boxes = Boxes(leaf=np.array([4, 5, 6]), centre=np.arange(9.0).reshape(3, 3), half=np.ones((3, 3)))
-    for choice in (np.array([False, True, True]), np.array([1, 2]), slice(1, 3)):
-        few = boxes.chosen(choice)
-        assert len(few) == 2
-        assert few.leaf.tolist() == [5, 6]
-        assert few.centre[0].tolist() == [3.0, 4.0, 5.0]
-
-
 def test_mixes_fill_slots(make_leaves: Callable) -> None:
     """Each box gets its leaf's mix; unused slots, and leaves without a mix, weigh nothing."""
     leaves = make_leaves(3, mix=np.array([1, -1, 0]), mixes=({2: 0.25, 0: 0.75}, {1: 1.0}))

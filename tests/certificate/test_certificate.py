@@ -11,18 +11,6 @@ import pytest
 from nullpose.certificate import claimed_axes
 from nullpose.problem.axis_field import AxisField
 from nullpose.scenario import Airframe
-from nullpose.solver import Scheme
-
-
-def test_each_scheme_names_its_axes(random_scene: Callable) -> None:
-    """The axes of a scheme, by the names that its trees must have."""
-    two, three = random_scene(1, 2, 2), random_scene(1, 3, 2)
-    for scenario in (two, three):
-        assert list(claimed_axes(scenario, "optimum", None)) == ["free"]
-        assert list(claimed_axes(scenario, "vertical", None)) == ["vertical"]
-        assert list(claimed_axes(scenario, "zero-interference", None)) == ["null M1", "null M2"]
-        assert list(claimed_axes(scenario, "zero-interference", "M2")) == ["null M2"]
-    assert list(claimed_axes(two, "maximum-gain", None)) == ["broadside"]
 
 
 def test_the_axes_are_the_schemes(random_scene: Callable) -> None:
@@ -73,18 +61,6 @@ def test_the_optimum_keeps_to_the_airframe(random_scene: Callable) -> None:
 def test_others_have_none(scheme: str, null_jammer: str | None, random_scene: Callable) -> None:
     """Unknown schemes and jammers, and a jammer to null where no null is pointed, claim nothing."""
     assert claimed_axes(random_scene(1, 2, 2), scheme, null_jammer) is None
-
-
-def test_some_scenarios_have_none(random_scene: Callable) -> None:
-    """Maximum gain for other than two nodes, and a null without jammers, claim nothing."""
-    assert claimed_axes(random_scene(1, 3, 1), "maximum-gain", None) is None
-    assert claimed_axes(random_scene(1, 1, 1), "maximum-gain", None) is None
-    assert claimed_axes(random_scene(1, 2, 0), "zero-interference", None) is None
-
-
-def test_schemes_are_spelled_as_the_solver_s() -> None:
-    """The names that a certificate uses are those of the schemes."""
-    assert {"optimum", "vertical", "maximum-gain", "zero-interference"} <= {scheme.value for scheme in Scheme}
 
 
 def test_the_verifier_needs_no_solver() -> None:

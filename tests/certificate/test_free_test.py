@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.forms import COLUMN, ROW, matrices
+from nullpose.certificate.forms import COLUMN, ROW, Linear, matrices, negative_definite
 from nullpose.certificate.frames import expansion, frames_of
 from nullpose.certificate.free_test import (
     free_holds,
@@ -16,7 +16,6 @@ from nullpose.certificate.free_test import (
     with_constants,
 )
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.linear import Linear, negative_definite
 from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
@@ -53,22 +52,6 @@ def test_definiteness_is_that_of_the_eigenvalues(seed: int) -> None:
         noise = slack * rng.choice([-1.0, 1.0], (20, 3, 3))
         noise = np.triu(noise) + np.swapaxes(np.triu(noise, 1), 1, 2)
         assert np.linalg.eigvalsh(matrix + noise).max() < 0.0
-
-
-@given(seed=seeds)
-def test_definiteness_on_the_horizontal_plane_is_that_of_the_block(seed: int) -> None:
-    """Where only horizontal axes count, the vertical's row and column do not."""
-    rng = np.random.default_rng(seed)
-    matrix = rng.normal(size=(3, 3))
-    matrix = matrix + matrix.T
-    top = np.linalg.eigvalsh(matrix[:2, :2])[-1]
-    matrix[:2, :2] -= np.eye(2) * (top + 10.0 ** rng.uniform(-6, 1) * rng.choice([-1, 1]))
-    matrix[2, 2] *= 10.0 ** rng.uniform(0, 8)
-    horizontal = np.array([True])
-    assert negative_definite(six_of(matrix), horizontal)[0] == (np.linalg.eigvalsh(matrix[:2, :2])[-1] < 0.0)
-    for bad in (0.0, np.inf, np.nan):
-        with np.errstate(all="ignore"):
-            assert not negative_definite(Interval(np.full((6, 1), bad)), horizontal)[0]
 
 
 def test_undefined_forms_are_not_definite() -> None:
@@ -298,17 +281,3 @@ def test_multipliers_of_a_band_count(
         assert np.any(held)
         assert not np.any(free_holds(family, AxisField.within(0.0, 1.0), leaves, alike))
     assert hits > 3
-
-
-def test_unused_denominators_do_not_count(random_family: Callable, make_leaves: Callable) -> None:
-    """A box around a point is excluded by ratios whose denominators have nothing to do with it."""
-    rng = np.random.default_rng(4)
-    family = random_family(rng, 2, 2, groups=2)
-    other = family.denominator_point[-1]
-    boxes = Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=family.points_m[[other]] + np.array([[0.3, 0.1, 0.2]]),
-        half=np.full((1, 3), 0.5),
-    )
-    with np.errstate(all="ignore"):
-        assert free_holds(family, AxisField.free(), make_leaves(1, level=np.array([1e6])), boxes)[0]

@@ -137,14 +137,3 @@ def test_alternatives_are_as_few_as_can_be() -> None:
     outline = Outline.of(L_EDGES, True)
     assert outline.alternatives([1, 3], *wide) == [(1, 3)]
     assert Outline.of(L_EDGES, False).alternatives([1, 3], *wide) == [(1,), (3,)]
-
-
-def test_edges_named_in_vain_do_no_harm() -> None:
-    """Where an edge was named that does not meet the rectangle, its side is asked for only if it may be."""
-    for corner, forbids in (([5.0, 1.0], True), ([-2.0, 1.0], False)):
-        low = np.array(corner)
-        for met in ([0], [5], [0, 5], [2, 3], [1, 2]):
-            outline = Outline.of(L_EDGES, False)
-            found = outline.alternatives(met, low, low + 1.0)
-            for point in corners(exact(low), exact(low + 1.0)):
-                assert forbids or any(all(outline.allowance(e, point) >= 0 for e in one) for one in found)

@@ -56,10 +56,3 @@ def test_what_an_airframe_reaches() -> None:
     wanted = [(np.sin(angle), np.cos(angle)) for angle in np.radians([10.0, 50.0])]
     np.testing.assert_allclose(ProfileField(tilted.antenna_record, tilted).ends, wanted, atol=1e-15)
     assert ProfileField(scenario.antenna_record, scenario).ends == ((0.0, 1.0), (0.0, -1.0))
-
-
-def test_a_gain_that_changes_round_the_axis_has_no_profile() -> None:
-    """Only an antenna that is the same all round has one."""
-    scenario = load("examples/frame.toml")
-    with pytest.raises(ValueError, match="changes round its axis"):
-        ProfileField(scenario.antenna_record, scenario)

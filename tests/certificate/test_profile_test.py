@@ -12,7 +12,7 @@ from nullpose.antenna.pattern import profile_harmonics
 from nullpose.certificate import Certificate, claimed_axes, parse_certificate, verify
 from nullpose.certificate.certificate import WORLD
 from nullpose.certificate.file import certificate_text
-from nullpose.certificate.profile_test import sine_cosine
+from nullpose.certificate.profile_links import sine_cosine
 from nullpose.scenario import Scenario, apply_overrides, load
 from nullpose.solver.certificate_from_proof import certificate_of
 

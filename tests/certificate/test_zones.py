@@ -3,16 +3,12 @@
 from collections.abc import Callable
 
 import numpy as np
-import pytest
 from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.constraint import Constraint
-from nullpose.certificate.distance_tests import kept_out_holds
 from nullpose.certificate.interval import dot
-from nullpose.certificate.zones import forbidden, zone_alternatives
+from nullpose.certificate.zones import Constraint, forbidden, zone_alternatives
 from nullpose.errors import ScenarioError
-from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
@@ -144,35 +140,3 @@ def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
             half=np.array([case[2] for case in cases]),
         )
         assert np.all(forbidden(family, zone, boxes) == expected)
-
-
-def test_balls_and_zones_are_counted_on(paper: Callable, make_leaves: Callable) -> None:
-    """Leaves name zones by numbers that follow the balls', and both are looked at."""
-    airspace = Airspace(no_fly=[{"x_m": (0.0, 30.0), "y_m": (0.0, 30.0)}], keep_out_m=12.0, **ALTITUDES)
-    family = family_of(airspace, paper)
-    balls = len(family.keep_out_points_m)
-    assert balls == 3
-    boxes = Boxes(
-        leaf=np.arange(4),
-        centre=np.array([[0.0, 0.0, 9.0], [15.0, 15.0, 20.0], [0.0, 0.0, 9.0], [15.0, 15.0, 20.0]]),
-        half=np.full((4, 3), 0.5),
-    )
-    leaves = make_leaves(4, point=np.array([0, 0, balls, balls]))
-    assert kept_out_holds(family, AxisField.free(), leaves, boxes).tolist() == [True, False, False, True]
-
-
-@pytest.mark.parametrize("side", [0, 1])
-def test_constraints_are_of_the_walls(side: int, paper: Callable) -> None:
-    """At a wall the one constraint is how far a position is outside, to scale; above and below are added."""
-    airspace = Airspace(
-        no_fly=[{"x_m": (0.0, 10.0), "y_m": (0.0, 10.0), "altitude_m": (9.0, 20.0)}],
-        **ALTITUDES,
-    )
-    family = family_of(airspace, paper)
-    centre = np.array([[10.0, 5.0, 20.0]]) if side else np.array([[5.0, 0.0, 9.0]])
-    boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=centre, half=np.full((1, 3), 0.5))
-    found = zone_alternatives(family, np.zeros(1, dtype=np.int64), boxes)
-    ways = [one.constraints[0].slopes.middle()[:, 0] for one in found]
-    ways = sorted(tuple(way / np.linalg.norm(way)) for way in ways)
-    out = (1.0, 0.0, 0.0) if side else (0.0, -1.0, 0.0)
-    assert ways == sorted([out, (0.0, 0.0, 1.0 if side else -1.0)])

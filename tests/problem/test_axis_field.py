@@ -11,6 +11,8 @@ from hypothesis import given, strategies as st
 from nullpose.physics import maximum_gain_axis, zero_interference_axis
 from nullpose.problem.axis_field import AxisField
 
+SHARES = st.floats(0.0, 1.0)
+
 
 def axis_at(field: AxisField, position_m: np.ndarray) -> np.ndarray:
     """Returns the unit axis that an affine field gives at a position."""
@@ -35,18 +37,6 @@ def test_the_paper_s_orientations_are_affine(seed: int, random_problem: Callable
     across = AxisField.affine(np.cross(first, second), np.cross(second - first, np.eye(3)).T)
     parallel = axis_at(across, position) @ maximum_gain_axis(scene, position)
     assert abs(parallel) == pytest.approx(1.0, abs=1e-12)
-
-
-def test_a_free_field_is_zero() -> None:
-    """A free field is marked 0 and holds zeros; an affine one is marked 1."""
-    kind, offset, matrix = AxisField.free().arrays
-    assert kind == 0
-    assert AxisField.free().is_free
-    np.testing.assert_array_equal(offset, np.zeros(3))
-    np.testing.assert_array_equal(matrix, np.zeros((3, 3)))
-    vertical = AxisField.affine([0, 0, 1], np.zeros((3, 3)))
-    assert not vertical.is_free
-    assert vertical.arrays.kind == 1
 
 
 def test_a_field_is_frozen() -> None:
@@ -76,3 +66,40 @@ def test_bad_arrays_are_refused(offset: list, matrix: np.ndarray, name: str) -> 
     """An array of the wrong shape, or not finite, is refused by name with its shape."""
     with pytest.raises(ValueError, match=f"axis field {name} must be finite, of shape"):
         AxisField.affine(offset, matrix)
+
+
+@given(SHARES, SHARES)
+def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
+    """Kind 2 is a band, 3 a cone; all axes are kind 0 and the vertical one is an affine field."""
+    least, greatest = sorted((one, other))
+    field = AxisField.within(least, greatest)
+    kind, ends = field.arrays.kind, field.arrays.offset
+    if (least, greatest) == (0.0, 1.0):
+        assert kind == 0
+    elif least == 1.0:
+        assert kind == 1
+        np.testing.assert_array_equal(ends, [0.0, 0.0, 1.0])
+    else:
+        assert kind == (3 if least == greatest else 2)
+        np.testing.assert_array_equal(ends, [least, greatest, 0.0])
+        assert field.is_free
+    ends[:] = 9.0  # a copy: the field itself does not change
+    assert field.band == ((least, greatest) if field.is_free else (0.0, 1.0))
+    assert not np.any(field.arrays.offset == 9.0)
+
+
+def test_bands_at_their_ends() -> None:
+    """The whole sphere is the free field, level axes are a cone, the upright one is the vertical field."""
+    assert AxisField.within(0.0, 1.0).arrays.kind == AxisField.free().arrays.kind
+    assert AxisField.within(0.0, 0.0).arrays.kind == 3
+    for ours, theirs in zip(AxisField.within(1.0, 1.0).arrays, AxisField.vertical().arrays, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+@pytest.mark.parametrize(
+    "band", [(0.5, 0.4), (-0.1, 0.5), (0.5, 1.1), (math.nan, 0.5), (0.5, math.nan), (math.inf, math.inf)]
+)
+def test_bands_that_hold_no_axis_are_refused(band: tuple[float, float]) -> None:
+    """Ends out of order, out of range or no numbers are refused with what was given."""
+    with pytest.raises(ValueError, match=r"band must be 0 <= low <= high <= 1; given \("):
+        AxisField.within(*band)

@@ -28,40 +28,6 @@ def test_ratios_are_the_sinrs(
     )
 
 
-@given(seed=SEEDS, length=st.floats(1e-3, 1e3))
-def test_ratios_do_not_depend_on_the_length_of_the_axis(
-    seed: int, length: float, random_problem: Callable, dense_ratios: Callable
-) -> None:
-    """A longer axis gives the same ratios: what lets an axis be an affine function of the position."""
-    rng = np.random.default_rng(seed)
-    family = build_family(random_problem(rng, 3, 2))
-    axis = rng.normal(size=3)
-    position = np.array([50.0, 50.0, 20.0])
-    np.testing.assert_allclose(
-        dense_ratios(family, position, length * axis), dense_ratios(family, position, axis), rtol=1e-12
-    )
-
-
-@given(seed=SEEDS, nodes=st.integers(1, 8), jammers=st.integers(0, 4))
-def test_the_denominator_is_shared_and_starts_at_one(
-    seed: int, nodes: int, jammers: int, random_problem: Callable
-) -> None:
-    """Divided through by the noise, all ratios share one denominator: 1 plus every jammer once."""
-    scene = random_problem(np.random.default_rng(seed), nodes, jammers)
-    family = build_family(scene)
-    scale = 1e-4 / 1e-9  # path gain over noise, 1/W
-    np.testing.assert_array_equal(family.points_m[:nodes], scene.node_positions_m)
-    np.testing.assert_array_equal(family.points_m[nodes:], scene.jammer_positions_m)
-    np.testing.assert_array_equal(family.numerator_point, np.arange(nodes))
-    np.testing.assert_array_equal(family.denominator_point, nodes + np.arange(jammers))
-    np.testing.assert_array_equal(family.denominator_of, np.zeros(nodes))
-    np.testing.assert_array_equal(family.denominator_start, [0, jammers])
-    np.testing.assert_array_equal(family.numerator_isotropic, np.zeros(nodes))
-    np.testing.assert_array_equal(family.denominator_isotropic, [1.0])
-    np.testing.assert_allclose(family.numerator_weight, scale * scene.node_powers_w, rtol=1e-12)
-    np.testing.assert_allclose(family.denominator_weight, scale * scene.jammer_powers_w, rtol=1e-12)
-
-
 def test_units_end_here() -> None:
     """The same powers in watts or dBm, and the same gain in dB or from a frequency, make the same ratios."""
     wavelength_m = 299792458.0 / 2.4e9

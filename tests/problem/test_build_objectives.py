@@ -129,25 +129,6 @@ def test_a_fence_bounds_the_box(random_problem: Callable) -> None:
     np.testing.assert_array_equal(boxed.high_m, [90.0, 80.0, 40.0])
 
 
-def test_the_sense_of_rotation_does_not_matter(random_problem: Callable) -> None:
-    """A fence and a zone given clockwise have the same edges and pieces as counter-clockwise."""
-    fence = [(-10.0, 0.0), (70.0, -20.0), (60.0, 30.0), (90.0, 50.0), (0.0, 80.0)]
-    zone = [(20.0, 20.0), (40.0, 20.0), (30.0, 30.0), (35.0, 45.0)]
-    one, other = (
-        build_family(
-            random_problem(
-                np.random.default_rng(2), 2, 1, geofence_m=fence[::way], no_fly=({"polygon_m": zone[::way]},)
-            )
-        )
-        for way in (1, -1)
-    )
-    np.testing.assert_array_equal(one.zone_kind, [0, 2])
-    np.testing.assert_array_equal(other.zone_kind, [0, 2])
-    for name in ("zone_edges", "piece_sides"):
-        rows, others = (np.unique(np.round(getattr(each, name), 9), axis=0) for each in (one, other))
-        np.testing.assert_array_equal(rows, others)
-
-
 @pytest.mark.parametrize(
     ("jammer", "path"),
     [({"power_w": 1e18}, "jammers[1].power_w"), ({"power_dbm": 210.0}, "jammers[1].power_dbm")],

@@ -63,29 +63,6 @@ def test_kernels_get_one_type_of_number(family: Family, name: str, given: type) 
     assert kept.flags.c_contiguous
 
 
-def test_what_kernels_take_is_the_family(family: Family) -> None:
-    """The tuple for the kernels holds the arrays themselves, contiguous, in the order of the fields."""
-    for name, value in family.arrays._asdict().items():
-        assert value is getattr(family, name)
-        assert name not in ARRAYS or value.flags.c_contiguous
-
-
-def test_digest_is_stable(family: Family) -> None:
-    """The digest is 64 hexadecimal digits, the same on every call, for a copy and for strided input."""
-    assert len(bytes.fromhex(family.digest)) == 32
-    assert family.digest == family.digest
-    assert family.changed().digest == family.digest
-    strided = np.repeat(family.points_m, 2, axis=0)[::2]
-    assert family.changed(points_m=strided).digest == family.digest
-
-
-def test_digest_of_equal_scenes_is_equal(random_problem: Callable) -> None:
-    """Two scenes with the same numbers, built apart, are the same problem; another one is not."""
-    digests = [build_family(random_problem(np.random.default_rng(seed), 4, 1)).digest for seed in (6, 6, 7)]
-    assert digests[0] == digests[1]
-    assert digests[0] != digests[2]
-
-
 @pytest.mark.parametrize("name", FIELDS)
 def test_digest_sees_every_number(family: Family, name: str) -> None:
     """Changing any one number by its last digit changes the digest, to a different one each time."""

@@ -105,17 +105,6 @@ def test_without_errors_it_is_the_nominal_family(secret: bool) -> None:
     )
 
 
-@pytest.mark.parametrize("secret", [False, True])
-def test_the_airspace_stays_the_nominal_one(secret: bool) -> None:
-    """Errors move points, but not the keep-outs and the box that poses are sought in."""
-    rng = np.random.default_rng(5)
-    scene = a_scene(rng, secret=secret)
-    family = build_robust_family(scene, [BindingCase(0, some_case(rng, scene))])
-    nominal = build_family(scene)
-    for ours, theirs in zip(family.domain, nominal.domain, strict=True):
-        np.testing.assert_array_equal(ours, theirs)
-
-
 def test_points_have_the_sets_of_whom_they_stand_for() -> None:
     """Nodes are known; jammers, or with secrecy rates eavesdroppers, have their own matrices."""
     for secret in (False, True):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nullpose import Pose, Result, evaluate, solve
+from nullpose import Link, Pose, Result, evaluate, solve
 from nullpose.errors import UsageError
 from nullpose.report.geojson import require_origin, solution_geojson, write_geojson
 from nullpose.scenario import Scenario, load
@@ -156,7 +156,7 @@ def test_without_an_origin(solution: Result, paper: Scenario, tmp_path: Path) ->
 
 def test_a_written_file_is_the_collection(solution: Result, tmp_path: Path) -> None:
     """The file holds the same, a feature a line; a number that JSON lacks is null."""
-    silent = replace(solution, links=(replace(solution.links[0], sinr_db=-math.inf), solution.links[1]))
+    silent = replace(solution, links=(Link("S1", {"sinr": 0.0, "sinr_db": -math.inf}), solution.links[1]))
     path = write_geojson(silent, tmp_path / "out.geojson")
     text = path.read_text(encoding="utf-8")
     collection = json.loads(text)

@@ -39,7 +39,7 @@ Jet: TypeAlias = tuple[Interval, Interval, Interval, Interval]
 
 
 def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> Jet:
-    """Return a link's value and gradient at the centres, its Hessian and its value over the boxes.
+    """Expand a link: value and gradient at the centres, Hessian and value over the boxes.
 
     Args:
         field: the axis field.
@@ -53,9 +53,9 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, ax
         return _isotropic_jet(field, boxes, points, leak)
     jets = _dipole_jet(field, boxes, points, axes)
     if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
-        own = _isotropic_jet(axes, boxes, points, 0.0)
+        alone = _isotropic_jet(axes, boxes, points, 0.0)
         share = 1.0 - Interval(leak)
-        jets = tuple(jet * share + other * leak for jet, other in zip(jets, own, strict=True))
+        jets = tuple(jet * share + other * leak for jet, other in zip(jets, alone, strict=True))
     if not np.all(has):
         others = _isotropic_jet(field, boxes, points, leak)
         jets = tuple(where(has, jet, other) for jet, other in zip(jets, others, strict=True))
@@ -63,7 +63,7 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, ax
 
 
 def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> tuple[Interval, ...]:
-    """Return what :func:`link_jet` does where points have dipoles, without what leaks.
+    """Expand links as :func:`link_jet` where points have dipoles, without what leaks.
 
     Their link is ``B^2 / (|u|^2 |r|^6)``, ``B = (u.v) |r|^2 - (u.r) (v.r)``.
     """
@@ -79,10 +79,10 @@ def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatA
         bent = both[ROW, COLUMN] * vr - outer(slope, r) * 2.0 + outer(ahead, v)
         return dot(_cross(u, r), _cross(v, r)), gradient, bent + uv * 2.0 * IDENTITY[:, None]
 
-    u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
+    u, r = _axis_and_offset(field, points, Interval(boxes.centre.T))
     product, gradient, bend = parts(u, r)
     value, slopes, _ = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
-    u, r = _axis_and_way(field, points, boxes.hull)
+    u, r = _axis_and_offset(field, points, boxes.hull)
     _, _, bend = parts(u, r)
     half = Interval(boxes.half.T)
     swing = dot(Interval(bend.magnitude())[PLACE], half[:, None]).high
@@ -94,10 +94,10 @@ def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatA
 
 
 def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
-    """Return what :func:`link_jet` does where points have no dipoles; the axis may be given, (b, 3)."""
+    """Expand links as :func:`link_jet` where points have no dipoles; the axis may be given, (b, 3)."""
     matrix = Interval(field.matrix[:, :, None] if isinstance(field, AxisField) else np.zeros((3, 3, 1)))
     half = Interval(boxes.half.T)
-    u, r = _axis_and_way(field, points, Interval(boxes.centre.T))
+    u, r = _axis_and_offset(field, points, Interval(boxes.centre.T))
     cross, slopes = _cross(u, r), _cross(matrix, r[:, None]) - _cross(u[:, None], _UNIT)
     bend = -(_cross(matrix[:, ROW], _UNIT[:, COLUMN]) + _cross(matrix[:, COLUMN], _UNIT[:, ROW]))
     if leak > 0.0:  # a fourth entry, sqrt(leak) u.r: the sum of squares is |u x r|^2 + leak (u.r)^2
@@ -113,7 +113,7 @@ def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArr
     steep = Interval(slopes.magnitude()) + Interval(swing) * 0.5
     reach = dot(swapped(steep), half[:, None]).high
     cross, slopes = cross + Interval(-reach, reach), slopes + Interval(-swing, swing)
-    u, r = _axis_and_way(field, points, boxes.hull)
+    u, r = _axis_and_offset(field, points, boxes.hull)
     over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
     # the gain is at most 1, and never below zero
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
@@ -124,7 +124,7 @@ def _cross(x: Interval, y: Interval) -> Interval:
     return x[_AFTER] * y[_LAST] - x[_LAST] * y[_AFTER]
 
 
-def _axis_and_way(
+def _axis_and_offset(
     field: AxisField | FloatArray, points: FloatArray, p: Interval
 ) -> tuple[Interval, Interval]:
     """Return ``u = o + M p``, or the axis given, and ``r = q - p``, (3, b) each."""
@@ -168,7 +168,7 @@ def _quotient(
 
 
 def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes their leaf's multipliers exclude under the axis field.
+    """Check which boxes their leaf's multipliers exclude under the axis field.
 
     Args:
         family: the ratios.
@@ -188,11 +188,11 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     )
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
-        here, steep, bent = value[rows], slopes[:, rows], hessian[:, rows]
+        middle, steep, bent = value[rows], slopes[:, rows], hessian[:, rows]
         for nu, bound in constraints:
-            here, steep = here + bound.value * nu, steep + bound.slopes * nu
+            middle, steep = middle + bound.value * nu, steep + bound.slopes * nu
             bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITY[:, None]
-        return _quadratic_negative(boxes.half[rows].T, here, steep, bent)
+        return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, slopes.middle)
     counts = np.any([scale.high > 0.0 for _, scale in above], axis=0)
@@ -200,7 +200,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
 
 
 def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hessian: Interval) -> np.ndarray:
-    """Return where ``f + g.x + x^T H x / 2`` is negative for all ``|x_i| <= h_i`` and every H in bounds.
+    """Check where ``f + g.x + x^T H x / 2`` is negative for all ``|x_i| <= h_i`` and every H in bounds.
 
     The radius of H is paid for in full; then any mu with A = diag(mu) - H positive definite and
     ``f + sum(mu) / 2 + g^T A^-1 g / 2 < 0`` is a proof. Which mu is a guess, and may be a poor one.

@@ -9,9 +9,8 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
-from nullpose.certificate.constraint import Constraint
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.zones import zone_alternatives
+from nullpose.certificate.zones import Constraint, zone_alternatives
 from nullpose.problem.family import Family
 
 # Constraints with a multiplier, not negative, for each box.
@@ -25,7 +24,7 @@ def negative_where_allowed(
     test: Callable[[IntArray, Weighted], np.ndarray],
     gradient: Callable[[], FloatArray],
 ) -> np.ndarray:
-    """Return which boxes a test excludes at every position that is allowed.
+    """Check which boxes a test excludes at every position that is allowed.
 
     A ball's multiplier is the leaf's. Those of a zone are guessed here, for each of its alternatives: any
     that are not negative are sound.
@@ -52,12 +51,12 @@ def negative_where_allowed(
         return holds
     steep = gradient()
     holds[left] = True
-    for one in zone_alternatives(family, leaves.ball[left] - balls, boxes.chosen(left)):
-        here = left[one.rows]
-        held = np.zeros(len(here), dtype=bool)
-        for multipliers in _guesses(one.constraints, steep[:, here]):
-            held |= test(here, list(zip(multipliers, one.constraints, strict=True)))
-        holds[here[~held]] = False  # a box may be named twice
+    for alternative in zone_alternatives(family, leaves.ball[left] - balls, boxes.chosen(left)):
+        named = left[alternative.rows]
+        excluded = np.zeros(len(named), dtype=bool)
+        for multipliers in _guesses(alternative.constraints, steep[:, named]):
+            excluded |= test(named, list(zip(multipliers, alternative.constraints, strict=True)))
+        holds[named[~excluded]] = False  # a box may be named twice
     return holds
 
 

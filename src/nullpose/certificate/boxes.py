@@ -1,4 +1,4 @@
-"""Leaves as boxes of floating-point centres and half sides that contain the exact ones."""
+"""Leaves as boxes of floating-point numbers that contain the exact ones, and whether they cover the root."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import PROFILE, FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval
 
 
@@ -28,11 +28,7 @@ class Boxes:
         return len(self.leaf)
 
     def chosen(self, mask: IntArray | np.ndarray | slice) -> Boxes:
-        """Return some of the boxes.
-
-        Args:
-            mask: a mask, indices or a slice.
-        """
+        """Select boxes by a mask, indices or a slice."""
         return Boxes(leaf=self.leaf[mask], centre=self.centre[mask], half=self.half[mask])
 
     @property
@@ -41,17 +37,17 @@ class Boxes:
         return (Interval(self.centre) + Interval(-self.half, self.half)).T
 
     def nearest2(self, points: FloatArray) -> FloatArray:
-        """Return lower bounds on the squared distance from points, (b, 3) or (3,), to the boxes."""
+        """Bound from below the squared distance from points, (b, 3) or (3,), to the boxes."""
         away = Interval(points) - self.centre
         gap = np.maximum(np.maximum(away.low, -away.high) - self.half, 0.0)
         return Interval(np.maximum(np.nextafter(gap, -np.inf), 0.0)).squared().T.total().low
 
     def nearest(self, points: FloatArray) -> Interval:
-        """Return lower bounds on the distance from points, (b, 3), to the boxes, as exact numbers."""
+        """Bound from below the distance from points, (b, 3), to the boxes, as exact numbers."""
         return Interval(Interval(self.nearest2(points)).sqrt().low)
 
     def farthest2(self, points: FloatArray) -> FloatArray:
-        """Return upper bounds on the squared distance from points, (b, 3) or (3,), to all of the boxes."""
+        """Bound from above the squared distance from points, (b, 3) or (3,), to all of the boxes."""
         reach = Interval((Interval(points) - self.centre).magnitude()) + self.half
         return reach.squared().T.total().high
 
@@ -62,13 +58,13 @@ class Boxes:
 
 
 def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
-    """Return one box for each leaf.
+    """Enclose each leaf in a box.
 
     Args:
         root_m: (2, 3) the root's corners.
         leaves: dyadic parts of it.
     """
-    depth, index = leaves.box[:, 0::2], leaves.box[:, 1::2]
+    depth, index = leaves.depths[:, :3], leaves.indices[:, :3]
     side = Interval(root_m[1]) - root_m[0]
     # powers of two are exact; an index of more than 53 bits is not, and is enclosed
     ends = [Interval(np.nextafter(i, -np.inf), np.nextafter(i, np.inf)) for i in (index, index + 1)]
@@ -79,10 +75,48 @@ def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
 
 
 def parts(boxes: Boxes) -> Boxes:
-    """Return the eight parts of each box, a hair larger than an eighth."""
+    """Cut into the eight parts of each box, a hair larger than an eighth."""
     signs = np.array([[1.0 if c >> i & 1 else -1.0 for i in range(3)] for c in range(8)])
     centre = (boxes.centre[:, None, :] + 0.5 * signs * boxes.half[:, None, :]).reshape(-1, 3)
     slack = 4e-16 * (np.abs(boxes.centre) + boxes.half)
     # the step upwards counts where the slack is too small to be a number
     half = np.repeat(np.nextafter(0.5 * boxes.half + slack, np.inf), 8, axis=0)
     return Boxes(leaf=np.repeat(boxes.leaf, 8), centre=centre, half=half)
+
+
+def uncovered(leaves: Leaves) -> str:
+    """Find a region of the root that the leaves do not cover; an empty string if there is none.
+
+    A region is covered if one leaf holds it, or if it can be halved across a direction in which every leaf
+    in it is finer, and both halves are covered.
+
+    Args:
+        leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
+            hold all axes in any one chart; those of a dipole on three faces.
+    """
+    face, depths, indices = leaves.face, leaves.depths, leaves.indices
+    depths[face < 0, 3:] = 0  # without a cell it is whole
+    everything, is_profile = np.arange(len(leaves)), bool(np.all(leaves.test == PROFILE))
+    todo: list[tuple[IntArray, tuple[int, ...], int, str]] = [(everything, (0,) * 5, -1, "root")]
+    while todo:
+        members, depth, on_face, path = todo.pop()
+        if not len(members):
+            return f"the leaves do not cover the root: nothing covers {path}"
+        least = depths[members].min(axis=0)
+        if on_face < 0 and np.all(face[members] >= 0):
+            charts = set(face[members].tolist()) if is_profile else {0, 1, 2}
+            if not is_profile or len(charts) == 1:
+                todo += [(members[face[members] == f], depth, f, f"{path}/face{f}") for f in charts]
+                continue
+        finer = [i for i in range(5 if on_face >= 0 else 3) if least[i] > depth[i]]
+        if not finer:
+            as_large = np.all(depths[members] <= depth, axis=1)
+            if not np.any(as_large & ((face[members] < 0) | (on_face >= 0))):
+                return f"the leaves do not cover the root: no leaf holds {path}, and no cut parts those in it"
+            continue
+        side = finer[0]
+        bit = indices[members, side] >> (depths[members, side] - depth[side] - 1) & 1
+        deeper = (*depth[:side], depth[side] + 1, *depth[side + 1 :])
+        for half in range(2):
+            todo.append((members[bit == half], deeper, on_face, f"{path}/{'xyzab'[side]}{half}"))
+    return ""

@@ -78,12 +78,23 @@ class Leaves:
     def __len__(self) -> int:
         return len(self.box)
 
-    def chosen(self, rows: IntArray | np.ndarray) -> Leaves:
-        """Return some of the leaves.
+    @property
+    def face(self) -> IntArray:
+        """The face of the cube of axes, (l,), -1 for every axis; or the chart."""
+        return self.cell[:, 0]
 
-        Args:
-            rows: a mask or indices.
-        """
+    @property
+    def depths(self) -> IntArray:
+        """The depths along x, y, z and the two sides of the cell, (l, 5)."""
+        return np.concatenate([self.box[:, 0::2], self.cell[:, 1::2]], axis=1)
+
+    @property
+    def indices(self) -> IntArray:
+        """The indices that belong to the depths, (l, 5)."""
+        return np.concatenate([self.box[:, 1::2], self.cell[:, 2::2]], axis=1)
+
+    def chosen(self, rows: IntArray | np.ndarray) -> Leaves:
+        """Select leaves by a mask or indices."""
         return replace(self, **{name: getattr(self, name)[rows] for name in COLUMNS})
 
 

@@ -36,7 +36,7 @@ _MOST_RAD = 4.0
 
 
 def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField] | None) -> str:
-    """Return why a certificate states nothing that can be proved, or an empty string.
+    """Find a reason why a certificate states nothing that can be proved; an empty string if there is none.
 
     Args:
         certificate: what it states.
@@ -58,7 +58,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
 
 
 def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField]) -> str:
-    """Return why a pose is not allowed or has another value than stated, or an empty string.
+    """Find a reason why a pose is not allowed or its value not the stated one; an empty string if none.
 
     Args:
         certificate: with pose and value.
@@ -96,8 +96,8 @@ def _place_fault(scenario: Scenario, position_m: FloatArray) -> str:
     least = max(Fraction(airspace.keep_out_m) - Fraction(_EDGE_M), Fraction(0))
     points = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
     for point in np.vstack(points):
-        way = exact(point) - exact(position_m)
-        if way @ way < least**2:
+        offset = exact(point) - exact(position_m)
+        if offset @ offset < least**2:
             return f"closer than keep_out_m to the ground point {point.tolist()}"
     return ""
 

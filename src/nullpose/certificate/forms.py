@@ -1,10 +1,14 @@
-"""Symmetric forms of three coordinates as six numbers each, along the first axis of an array."""
+"""Symmetric forms of three coordinates, six numbers each along the first axis, and their definiteness."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import product
+
 import numpy as np
 
-from nullpose.certificate.interval import FloatArray, Interval, stack
+from nullpose.certificate.certificate import FloatArray, IntArray
+from nullpose.certificate.interval import Interval, dot, stack
 
 IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
@@ -12,6 +16,8 @@ ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
 
 # Where among the six a row and a column are.
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
+
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 # How often each of the six is in the matrix.
 COUNTED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
@@ -46,7 +52,7 @@ def adjugate(a: Interval) -> Interval:
 
 
 def definite(a: Interval) -> tuple[np.ndarray, np.ndarray, Interval]:
-    """Return whether leading blocks of two and of three rows are positive definite for certain, and det.
+    """Check leading blocks of two and of three rows for being positive definite; and the determinants.
 
     Args:
         a: the forms, (6, b).
@@ -55,3 +61,125 @@ def definite(a: Interval) -> tuple[np.ndarray, np.ndarray, Interval]:
     det = a[2] * minor - a[0] * a[5].squared() - a[1] * a[4].squared() + a[3] * a[4] * a[5] * 2.0
     block = (a[0].low > 0.0) & (minor.low > 0.0)
     return block, block & (det.low > 0.0), det
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Linear:
+    """Symmetric matrices ``Q + sum_i x_i Q_i`` of the step x from a box's centre.
+
+    Args:
+        value: (6, b) Q.
+        slopes: (6, 3, b) the three Q_i.
+    """
+
+    value: Interval
+    slopes: Interval
+
+    def __add__(self, other: Linear) -> Linear:
+        return Linear(self.value + other.value, self.slopes + other.slopes)
+
+    def plus(self, constant: Interval) -> Linear:
+        """Return the matrices with constant ones, (6, b), added."""
+        return Linear(self.value + constant, self.slopes)
+
+    def times(self, scale: Interval) -> Linear:
+        """Return multiples, one for each box."""
+        return Linear(self.value * scale, self.slopes * scale)
+
+    def chosen(self, rows: IntArray) -> Linear:
+        """Return those of some boxes."""
+        return Linear(self.value[:, rows], self.slopes[:, :, rows])
+
+    def negative(self, half: FloatArray, horizontal: np.ndarray) -> np.ndarray:
+        """Check which are negative definite at all eight corners of their box, and so all over it.
+
+        Args:
+            half: (3, b) the boxes' half sides.
+            horizontal: (b,) whether the horizontal plane is all that counts.
+        """
+        ahead = self.slopes * half
+        holds = np.ones(half.shape[1], dtype=bool)
+        for x, y, z in product(*((ahead[:, i], -ahead[:, i]) for i in range(3))):
+            holds &= negative_definite(self.value + x + y + z, horizontal)
+        return holds
+
+
+def negative_definite(a: Interval, horizontal: np.ndarray | bool = False) -> np.ndarray:
+    """Check which forms, (6, b), are negative definite for certain.
+
+    Args:
+        a: the forms.
+        horizontal: where the first two coordinates are all that counts.
+    """
+    block, whole, _ = definite(-a)
+    holds = np.where(horizontal, block, whole)
+    left = np.flatnonzero(~holds & np.logical_not(horizontal) & np.all(np.isfinite(a.low + a.high), axis=0))
+    if len(left):
+        holds[left] = _dominant(-a[:, left])
+    return np.asarray(holds)
+
+
+def _dominant(a: Interval) -> np.ndarray:
+    """Check which forms, (6, b), are positive definite for certain, seen along their own axes.
+
+    Where two eigenvalues are small, their product is lost in the determinant's rounding. In the basis of the
+    eigenvectors, about, a matrix is all but diagonal: definite, if each entry of the diagonal is larger than
+    the sum of the others in its row.
+    """
+    axes = np.moveaxis(np.linalg.eigh(matrices(a.middle()))[1], 0, -1)
+    half = dot(a[PLACE][:, :, None], Interval(axes)[:, None])
+    seen = dot(Interval(axes)[:, ROW], half[:, COLUMN])
+    # the axes themselves must span the space: their products are those of an orthonormal basis, about
+    gram = dot(Interval(axes)[:, ROW], Interval(axes)[:, COLUMN])
+    holds = np.ones(axes.shape[-1], dtype=bool)
+    for form in (seen, gram):
+        off = form.magnitude()[PLACE]
+        rest = Interval(off[_NEXT, range(3)]) + off[_LAST, range(3)]
+        holds &= np.all(form.low[:3] > rest.high, axis=0)
+    return holds
+
+
+def cell_ends(cell: IntArray, side: int) -> tuple[FloatArray, FloatArray]:
+    """Place the ends of one side of each cell, (b,) each; exact, as dyadic numbers of few bits.
+
+    Args:
+        cell: (b, 5) as in :class:`Leaves`.
+        side: 0 or 1.
+    """
+    width: FloatArray = np.ldexp(2.0, -cell[:, 1 + 2 * side])
+    low: FloatArray = -1.0 + cell[:, 2 + 2 * side] * width
+    return low, low + width
+
+
+def side_form(cell: IntArray, side: int) -> Interval:
+    """Build the form ``(v - low a)(high a - v)`` of one side of each cell, (6, b), not negative inside.
+
+    Args:
+        cell: (b, 5) as in :class:`Leaves`, each on a face.
+        side: 0 or 1.
+    """
+    row, a = np.arange(len(cell)), cell[:, 0]
+    v = (a + 1 + side) % 3
+    low, high = cell_ends(cell, side)
+    least = np.zeros((6, len(cell)))
+    least[v, row] = -1.0
+    least[PLACE[a, v], row] = 0.5 * (low + high)
+    most = least.copy()
+    ends = -(Interval(low) * high)
+    least[a, row], most[a, row] = ends.low, ends.high
+    return Interval(least, most)
+
+
+def top_vectors(form: Interval, horizontal: np.ndarray | None = None) -> FloatArray:
+    """Find about the vectors of the largest eigenvalues of forms, (6, b), as (3, b).
+
+    Args:
+        form: the forms.
+        horizontal: (b,) whether the horizontal plane is all that counts.
+    """
+    full = matrices(form.middle())
+    if horizontal is not None:
+        full[horizontal, 2, :] = full[horizontal, :, 2] = 0.0
+        full[horizontal, 2, 2] = -np.linalg.norm(full[horizontal], axis=(1, 2)) - 1.0
+    full[~np.all(np.isfinite(full), axis=(1, 2))] = 0.0
+    return np.asarray(np.linalg.eigh(full)[1][:, :, -1].T)

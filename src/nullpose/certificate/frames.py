@@ -12,16 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import TOWARDS, IntArray, Leaves
-from nullpose.certificate.forms import COLUMN, PLACE, ROW, outer, squares
+from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
+from nullpose.certificate.forms import COLUMN, PLACE, ROW, Linear, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
-from nullpose.certificate.linear import Linear
+from nullpose.certificate.lemmas import AREA_BEND
 from nullpose.problem.family import Family
 
-# Second derivative of a constant form in a turning frame, times rho^2 over its spread, rounded up.
-SWING = (1.0 + np.sqrt(2.0)) * (1.0 + 1e-12)
-
-_AREA = 4.0 / np.sqrt(3.0) * (1.0 + 1e-12)  # twice the largest |b''| of the turning, 2 / sqrt(3), rounded up
 _UNIT = np.eye(3)[:, :, None]  # the world's axes, for any number of boxes
 
 
@@ -62,13 +58,10 @@ def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
     turning = leaves.test == TOWARDS
     anchor = np.where(turning, leaves.point, 0)
     anchor_m = family.points_m[anchor]
-    way = (Interval(anchor_m) - boxes.centre).T
-    rho = way.squared().total().sqrt()
-    direction = where(turning, way / rho, 0.0)
-    third = direction.middle()[:, turning].T
-    pairs = np.stack([third, np.eye(3)[np.argmin(np.abs(third), axis=1)]], axis=-1)
-    axes = np.tile(_UNIT, len(boxes))
-    axes[:, :2, turning] = np.moveaxis(np.linalg.qr(pairs, "complete")[0][:, :, 1:], 0, -1)
+    offset = (Interval(anchor_m) - boxes.centre).T
+    rho = offset.squared().total().sqrt()
+    direction = where(turning, offset / rho, 0.0)
+    axes = axes_across(direction.middle(), turning)
     basis = Interval(axes.copy(), axes)
     basis.low[:, 2, turning], basis.high[:, 2, turning] = (
         direction.low[:, turning],
@@ -79,6 +72,15 @@ def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
     no_row = turning & (COLUMN == 2)[:, None]
     across = where(no_row, 0.0, gram - squares(dot(basis, direction[:, None])))
     return Frames(turning, anchor, direction, rho, boxes.nearest(anchor_m), basis, gram, across)
+
+
+def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
+    """Build bases, (3, 3, b), whose first two columns are across vectors, (3, b); else the world's axes."""
+    chosen = third[:, mask].T
+    pairs = np.stack([chosen, np.eye(3)[np.argmin(np.abs(chosen), axis=1)]], axis=-1)
+    axes = np.tile(_UNIT, third.shape[1])
+    axes[:, :2, mask] = np.moveaxis(np.linalg.qr(pairs, "complete")[0][:, :, 1:], 0, -1)
+    return axes
 
 
 def expansion(
@@ -93,8 +95,8 @@ def expansion(
     points_m = family.points_m[point]
     a = (Interval(points_m) - boxes.centre).T
     s = a.squared().total()
-    here = frames.turned(a)
-    twice = less_leak(squares(here), family)
+    seen = frames.turned(a)
+    twice = less_leak(squares(seen), family)
     # the anchor's is (I - (1 - leak) d d^T) / rho^2, without the rounding of a - rho d
     shape = anchor_shape(family, frames)
     form = where(anchored, shape / s, (frames.gram * s - twice) / s.squared())
@@ -102,7 +104,7 @@ def expansion(
     swing = (dot(frames.direction, a) * _UNIT - frames.direction[:, None] * a) / frames.rho
     step = where(frames.turning, swing, 0.0) - _UNIT
     rate = dot(a[:, None], step) * 2.0
-    turned = less_leak(outer(frames.turned(step), here[:, None]), family)
+    turned = less_leak(outer(frames.turned(step), seen[:, None]), family)
     bent = turned + rate * frames.gram[:, None]
     slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
     pull = frames.direction * 2.0 / (s * frames.rho)
@@ -111,8 +113,8 @@ def expansion(
     fourth = 1.0 / near.squared().squared()
     mixed = where(turn, 1.0 / (near.squared() * near * frames.rho_least), 0.0)
     both = where(turn, 1.0 / (near.squared() * frames.rho_least.squared()), 0.0)
-    up = fourth * 6.0 + mixed * 16.0 + both * (6.0 + _AREA)
-    down = fourth * np.where(anchored, 2.0, 4.0) + mixed * 12.0 + both * (4.0 + _AREA)
+    up = fourth * 6.0 + mixed * 16.0 + both * (6.0 + AREA_BEND)
+    down = fourth * np.where(anchored, 2.0, 4.0) + mixed * 12.0 + both * (4.0 + AREA_BEND)
     return Linear(form, slopes), up.most(), down.most()
 
 

@@ -8,25 +8,22 @@ from dataclasses import replace
 import numpy as np
 
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
-from nullpose.certificate.axis_cells import side_form
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD, FloatArray, IntArray, Leaves
 from nullpose.certificate.dipoles import dipole_sum
-from nullpose.certificate.forms import COUNTED, IDENTITY, matrices, quadratic
-from nullpose.certificate.frames import SWING, Frames, anchor_shape, constant, expansion, frames_of
+from nullpose.certificate.forms import COUNTED, IDENTITY, Linear, quadratic, side_form, top_vectors
+from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.linear import Linear
+from nullpose.certificate.lemmas import FORM_SWING, NULL_SWERVE, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 _LARGEST_ETA = 0.5
-_SWERVE = (2.0 + 2.0 / np.sqrt(3.0)) * (1.0 + 1e-12)  # see "Near a null", rounded up
-_DIAGONAL = np.sqrt(2.0) * (1.0 + 1e-12)  # a form's spread of eigenvalues over its Frobenius norm, rounded up
 
 
 def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes their leaf's multipliers exclude, whatever the axis in the leaf's cell and the band.
+    """Check which boxes their leaf's multipliers exclude, whatever the axis in the leaf's cell and the band.
 
     Where every axis is horizontal, the sum need only be negative on the horizontal plane.
 
@@ -38,18 +35,18 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
     """
     holds, vectors = _holds(family, field, leaves, boxes, None)
     left = np.flatnonzero(~holds)
-    some = leaves.chosen(left)
+    failed = leaves.chosen(left)
     if len(left) and family.ground_axes is not None:  # in coordinates that turn too fast, still ones may do
-        some = replace(some, test=np.where(some.test == TOWARDS, WORLD, some.test))
+        failed = replace(failed, test=np.where(failed.test == TOWARDS, WORLD, failed.test))
     if len(left):  # near a null the denominators' remainders may be had smaller
-        holds[left], _ = _holds(family, field, some, boxes.chosen(left), vectors[:, left])
+        holds[left], _ = _holds(family, field, failed, boxes.chosen(left), vectors[:, left])
     return holds
 
 
 def _holds(
     family: Family, field: AxisField, leaves: Leaves, boxes: Boxes, vectors: FloatArray | None
 ) -> tuple[np.ndarray, FloatArray]:
-    """Return which boxes are excluded, and about the largest eigenvalues' vectors at their centres."""
+    """Check which boxes are excluded, and find about the largest eigenvalues' vectors at their centres."""
     if family.ground_axes is not None:
         held = [(q, weight) for q, weight, _ in constants(field, leaves)]
         total, shear = dipole_sum(family, leaves, boxes, held)
@@ -60,14 +57,14 @@ def _holds(
         total = with_constants(total, field, leaves, boxes, frames)
         whole, turning = frames.gram, frames.turning
     horizontal = ~turning & (field.is_free and field.band[1] == 0.0)
-    top = top_vectors(total, horizontal)
+    top = top_vectors(total.value, horizontal)
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
-        here, gram, half = total.chosen(rows), whole[:, rows], boxes.half[rows].T
-        for weight, bound in constraints:
-            value = bound.value + (Interval(half).squared() * bound.bend).total()
-            here = here + Linear(gram * (value * weight), gram[:, None] * (bound.slopes * weight))
-        return here.negative(half, horizontal[rows])
+        bound, gram, half = total.chosen(rows), whole[:, rows], boxes.half[rows].T
+        for weight, constraint in constraints:
+            value = constraint.value + (Interval(half).squared() * constraint.bend).total()
+            bound = bound + Linear(gram * (value * weight), gram[:, None] * (constraint.slopes * weight))
+        return bound.negative(half, horizontal[rows])
 
     return negative_where_allowed(family, leaves, boxes, test, lambda: steepest(total, top)), top
 
@@ -120,16 +117,16 @@ def sharper(
         plain: lemma 2's remainder, positive.
     """
     at_centre = form.middle()
-    here = quadratic(at_centre, vectors)
+    seen = quadratic(at_centre, vectors)
     near, rho = boxes.nearest(point_m), frames.rho_least
-    turning = 6.0 / (near.squared() * rho) + _SWERVE / (near * rho.squared())
+    turning = 6.0 / (near.squared() * rho) + NULL_SWERVE / (near * rho.squared())
     bend = 2.0 / (near.squared() * near) + where(frames.turning, turning, 0.0)
     square = (bend * boxes.half2 * 0.5).squared()
-    eta = np.sqrt(square.high / np.maximum(here, 1e-12 * at_centre[:3].sum(axis=0)))
+    eta = np.sqrt(square.high / np.maximum(seen, 1e-12 * at_centre[:3].sum(axis=0)))
     use = (eta > 0.0) & (eta < _LARGEST_ETA) & ~(frames.turning & (point == frames.anchor))
     eta = np.where(use, eta, _LARGEST_ETA)
     rest = (square / eta).most()
-    use &= eta * here + rest.high < plain.high
+    use &= eta * seen + rest.high < plain.high
     return np.where(use, eta, 0.0), where(use, rest, plain)
 
 
@@ -137,7 +134,7 @@ def with_constants(total: Linear, field: AxisField, leaves: Leaves, boxes: Boxes
     """Return a sum with multiples of the forms that are not negative in the cells and the band added."""
     for q, weight, spread in constants(field, leaves):
         if np.any(weight != 0.0):
-            bend = spread / frames.rho_least.squared() * SWING * np.abs(weight) * (boxes.half2 * 0.5)
+            bend = spread / frames.rho_least.squared() * FORM_SWING * np.abs(weight) * (boxes.half2 * 0.5)
             used = where(frames.turning, bend.most(), 0.0)
             total = total + constant(frames, q).times(Interval(weight)).plus(frames.gram * used)
     return total
@@ -149,30 +146,16 @@ def constants(field: AxisField, leaves: Leaves) -> Iterator[tuple[Interval, Floa
     For the sides of the cells ``(v - low a)(high a - v)``; for the band ``c_hi I - e3 e3^T`` with a positive
     multiplier, ``e3 e3^T - c_lo I`` with minus a negative one.
     """
-    on_face = leaves.cell[:, 0] >= 0
+    on_face = leaves.face >= 0
     cell = np.where(on_face[:, None], leaves.cell, 0)
     for side in range(2):
         q = side_form(cell, side)
         norm = (q.squared() * COUNTED[:, None]).total().sqrt()
-        yield q, np.where(on_face, leaves.sides[:, side], 0.0), norm * _DIAGONAL
+        yield q, np.where(on_face, leaves.sides[:, side], 0.0), norm * SPREAD_OVER_NORM
     ends = np.where(leaves.band > 0.0, field.band[1], field.band[0])
     upright = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])[:, None]
     # the multiple of the identity does not turn, and the spread of e3 e3^T is one
     yield Interval(IDENTITY[:, None] * ends) - upright, leaves.band, Interval(np.ones(len(leaves)))
-
-
-def top_vectors(total: Linear, horizontal: np.ndarray) -> FloatArray:
-    """Return about the vectors of the largest eigenvalues at the centres, (3, b).
-
-    Args:
-        total: the sums.
-        horizontal: (b,) whether the horizontal plane is all that counts.
-    """
-    full = matrices(total.value.middle())
-    full[horizontal, 2, :] = full[horizontal, :, 2] = 0.0
-    full[horizontal, 2, 2] = -np.linalg.norm(full[horizontal], axis=(1, 2)) - 1.0
-    full[~np.all(np.isfinite(full), axis=(1, 2))] = 0.0
-    return np.asarray(np.linalg.eigh(full)[1][:, :, -1].T)
 
 
 def steepest(total: Linear, top: FloatArray) -> FloatArray:

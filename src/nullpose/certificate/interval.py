@@ -70,8 +70,8 @@ class Interval:
     def __truediv__(self, other: Interval | ArrayLike) -> Interval:
         o = as_interval(other)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            known = (o.low > 0.0) | (o.high < 0.0)
-            quotient = self * where(known, Interval(_down(1.0 / o.high), _up(1.0 / o.low)), _ANY)
+            defined = (o.low > 0.0) | (o.high < 0.0)
+            quotient = self * where(defined, Interval(_down(1.0 / o.high), _up(1.0 / o.low)), _ANY)
         # 0 times infinity: nothing is known
         return where(np.isnan(quotient.low) | np.isnan(quotient.high), _ANY, quotient)
 
@@ -145,5 +145,5 @@ def swapped(x: Interval) -> Interval:
 
 def where(mask: np.ndarray, a: Interval | ArrayLike, b: Interval | ArrayLike) -> Interval:
     """Return a where the mask holds, else b."""
-    one, other = as_interval(a), as_interval(b)
-    return Interval(np.where(mask, one.low, other.low), np.where(mask, one.high, other.high))
+    a, b = as_interval(a), as_interval(b)
+    return Interval(np.where(mask, a.low, b.low), np.where(mask, a.high, b.high))

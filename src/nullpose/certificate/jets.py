@@ -88,14 +88,14 @@ def largest(value: Interval, slopes: Interval, bends: Interval, half: FloatArray
     mixed = np.where((_FIRST == _SECOND)[:, None], 0.0, bends.magnitude())
     total = value
     for i in range(5):
-        h, own = Interval(half[i]), int(np.flatnonzero((i == _FIRST) & (i == _SECOND))[0])
+        h, square = Interval(half[i]), int(np.flatnonzero((i == _FIRST) & (i == _SECOND))[0])
         spread = Interval(np.zeros(half.shape[1]))
         for pair in np.flatnonzero((i == _FIRST) ^ (i == _SECOND)):
             other = _SECOND[pair] if _FIRST[pair] == i else _FIRST[pair]
             spread = spread + Interval(mixed[pair]) * half[other]
         # what x_i can add: (G + (mixed + own h / 2)) h at the end, or the parabola's top before it
         steep = Interval(slopes[i].magnitude())
-        curve = Interval(bends[own].high) * h + spread
+        curve = Interval(bends[square].high) * h + spread
         end = steep * h + curve * h * 0.5
         top = steep.squared() * h / (curve * -2.0)
         before = (curve.high < 0.0) & ~(steep.low >= -curve.low)

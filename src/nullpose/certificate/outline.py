@@ -21,7 +21,7 @@ def exact(numbers: Iterable[float]) -> Point:
 
 
 def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray:
-    """Return which edges may meet which rectangles, (b, e): false only where they certainly do not.
+    """Check which edges may meet which rectangles, (b, e): false only where they certainly do not.
 
     Two convex sets are apart if their ranges are, along x, along y or across the edge.
 
@@ -72,7 +72,7 @@ class Outline:
         return left if self.is_fence else -left
 
     def forbids(self, point: Point) -> bool:
-        """Return whether a point that is on no edge is forbidden (even-odd rule).
+        """Check whether a point that is on no edge is forbidden (even-odd rule).
 
         Args:
             point: the point.
@@ -99,33 +99,37 @@ class Outline:
         match met:
             case []:
                 return [] if self.forbids(region[0]) else [()]
-            case [one]:
-                return [(one,)] if self._forbids_beyond(one, region) else [()]
-            case [one, two] if self._keeps_to(one, two, region) and self._keeps_to(two, one, region):
-                both = self._forbids_beyond(one, region) and self._forbids_beyond(two, region)
-                return [(one, two)] if both else [()]
-            case [one, two]:
-                return [(one,), (two,)] if self._forbids_beyond_both(one, two, region) else [()]
+            case [edge]:
+                return [(edge,)] if self._forbids_beyond(edge, region) else [()]
+            case [first, second] if self._keep_apart(first, second, region):
+                both = self._forbids_beyond(first, region) and self._forbids_beyond(second, region)
+                return [(first, second)] if both else [()]
+            case [first, second]:
+                return [(first,), (second,)] if self._forbids_beyond_both(first, second, region) else [()]
         return [()]
 
     def _forbids_beyond(self, edge: int, region: list[Point]) -> bool:
-        """Return whether all of a rectangle beyond an edge's line is forbidden, no other edge being there."""
+        """Check that all of a rectangle beyond an edge's line is forbidden, no other edge being there."""
         worst = min(region, key=lambda corner: self.allowance(edge, corner))
         return self.allowance(edge, worst) >= 0 or self.forbids(worst)
 
-    def _keeps_to(self, one: int, two: int, region: list[Point]) -> bool:
-        """Return whether the part of an edge in a rectangle is on the allowed side of another's line."""
-        return all(self.allowance(two, end) >= 0 for end in clipped(self.edges[one], region[0], region[2]))
+    def _keep_apart(self, first: int, second: int, region: list[Point]) -> bool:
+        """Check that the part of each edge in a rectangle is on the allowed side of the other's line."""
+        return all(
+            self.allowance(other, end) >= 0
+            for edge, other in ((first, second), (second, first))
+            for end in clipped(self.edges[edge], region[0], region[2])
+        )
 
-    def _forbids_beyond_both(self, one: int, two: int, region: list[Point]) -> bool:
-        """Return whether all of a rectangle beyond the lines of the two edges that meet it is forbidden."""
-        for edge in (one, two):
+    def _forbids_beyond_both(self, first: int, second: int, region: list[Point]) -> bool:
+        """Check that all of a rectangle beyond the lines of the two edges that meet it is forbidden."""
+        for edge in (first, second):
             region = cut(region, [-self.allowance(edge, point) for point in region])
         if not region:
             return True
         # the mean of its vertices is beyond a line if any of them is
         mean = tuple(sum(each, Fraction(0)) / len(region) for each in zip(*region, strict=True))
-        return self.allowance(one, mean) >= 0 or self.allowance(two, mean) >= 0 or self.forbids(mean)
+        return any(self.allowance(edge, mean) >= 0 for edge in (first, second)) or self.forbids(mean)
 
 
 def left_of(edge: Point, point: Point) -> Fraction:

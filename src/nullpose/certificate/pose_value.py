@@ -79,12 +79,12 @@ def square_root(x: Fraction) -> Fraction:
 
 def sine_cosine(x: Fraction) -> tuple[Fraction, Fraction]:
     """Return sine and cosine of an angle within four, to thirty digits."""
-    one = 2**_BITS
-    angle, power, sums = round(x * one), one, [0, 0]
+    unit = 2**_BITS
+    angle, power, sums = round(x * unit), unit, [0, 0]
     for n in range(2 * _TERMS):  # in units of 2^-bits, each term off by a few of them
         sums[n % 2] += power * (-1) ** (n // 2)
-        power = power * angle // (one * (n + 1))
-    return Fraction(sums[1], one), Fraction(sums[0], one)
+        power = power * angle // (unit * (n + 1))
+    return Fraction(sums[1], unit), Fraction(sums[0], unit)
 
 
 def sine2(x: Exact, y: Exact) -> Fraction:

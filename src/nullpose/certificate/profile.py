@@ -36,8 +36,8 @@ class Profile:
 
     def __init__(self, weights: FloatArray) -> None:
         self.powers = _powers(weights)
-        one = 1 << _BITS
-        at = np.array([(2 * i + 1 - _CELLS) * one // _CELLS for i in range(_CELLS)], dtype=object)
+        unit = 1 << _BITS
+        at = np.array([(2 * i + 1 - _CELLS) * unit // _CELLS for i in range(_CELLS)], dtype=object)
         self.middles: FloatArray = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
         self.terms = [_values(self.powers, order, at) for order in range(_ORDER + 1)]  # over the factorials
         self.rest = _upwards(_most(weights, _ORDER + 1) / math.factorial(_ORDER + 1))
@@ -169,12 +169,15 @@ def _ends(scenario: Scenario) -> tuple[tuple[float, float], tuple[float, float]]
 def _powers(weights: FloatArray) -> list[Fraction]:
     """Return the coefficients of the powers of c, exactly."""
     total = [Fraction(0)] * len(weights)
-    before, here = [Fraction(0)] * len(weights), [Fraction(0)] * len(weights)
-    here[0] = Fraction(1)
+    before, current = [Fraction(0)] * len(weights), [Fraction(0)] * len(weights)
+    current[0] = Fraction(1)
     for n, weight in enumerate(weights.tolist()):
-        total = [t + Fraction(weight) * a for t, a in zip(total, here, strict=True)]
-        ahead = [Fraction(0), *here[:-1]]
-        before, here = here, [((2 * n + 1) * a - n * b) / (n + 1) for a, b in zip(ahead, before, strict=True)]
+        total = [t + Fraction(weight) * a for t, a in zip(total, current, strict=True)]
+        ahead = [Fraction(0), *current[:-1]]
+        before, current = (
+            current,
+            [((2 * n + 1) * a - n * b) / (n + 1) for a, b in zip(ahead, before, strict=True)],
+        )
     return total
 
 

@@ -1,8 +1,8 @@
 """Leaves of an antenna that is the same all round: a weighted sum, negative whatever position and axis.
 
-With r the way from a position to the leaf's anchor, a ground point, an axis is given by the angle u from r to
-it and a spin s about r. With ``w_j = r + d_j`` the way to point j and x, y, z the coordinates of r in cyclic
-order from the leaf's chart on, the cosine between axis and w_j is
+With r the vector from a position to the leaf's anchor, a ground point, an axis is given by the angle u from r
+to it and a spin s about r. With ``w_j = r + d_j`` the vector to point j and x, y, z the coordinates of r in
+cyclic order from the leaf's chart on, the cosine between axis and w_j is
 
     c_j |w_j| = cos u (r.w_j) / |r| + sin u sin s (f d_y - y (x d_x + z d_z)) / (|r| sqrt f)
                 - sin u cos s (z d_x - x d_z) / sqrt f,   f = x^2 + z^2.
@@ -15,17 +15,16 @@ interferer the sum is then too large, which is safe; for a node its ratio is bel
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import factorial
-from typing import TypeAlias
 
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
-from nullpose.certificate.distance_tests import kept_out_holds
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.jets import PAIRS, Jet, flat, largest
+from nullpose.certificate.jets import PAIRS, largest
+from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
+from nullpose.certificate.profile_links import PI, Link, about, links_of, sine_cosine
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -34,16 +33,9 @@ _ROUNDS = 60  # of halving what is not excluded
 _MOST = (
     4  # pieces of a leaf at once, on average, and some thousand: a certificate that holds needs one or two
 )
-_PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
-_TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
 _CHUNK = 4096
 _DEEPEST = 50  # halvings of a turn: with more its middle is no floating-point number
-_HAIR = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
-_SQUARES = [n for n, (i, j) in enumerate(PAIRS) if i == j]
-
-
-Link: TypeAlias = tuple[Jet, Jet]
-"""The cosine between antenna axis and the way to a point, and one over the squared distance."""
+_ANGLE_SLACK_RAD = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +55,7 @@ class _Cells:
 
 
 def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes their leaves exclude.
+    """Check which boxes their leaves exclude.
 
     Args:
         family: the ratios.
@@ -76,8 +68,8 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     isotropic = family.denominator_isotropic[family.denominator_of]
     unheard = Interval(leaves.level[:, None]) * isotropic - family.numerator_isotropic
     rows = np.flatnonzero(~holds & np.all(unheard.low > 0.0, axis=1))
-    own = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows])
-    cells = _Cells(own, leaves.cell[rows, 1:])
+    whole = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows])
+    cells = _Cells(whole, leaves.cell[rows, 1:])
     most = _MOST * len(rows) + _CHUNK
     for _ in range(_ROUNDS):
         if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > _DEEPEST):
@@ -90,7 +82,7 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
 
 
 def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes lie in some keep-out ball or zone."""
+    """Check which boxes lie in some keep-out ball or zone."""
     holds = np.zeros(len(boxes), dtype=bool)
     for border in range(len(family.keep_out_points_m) + len(family.zone_kind)):
         same = replace(leaves, point=np.full(len(leaves), border))
@@ -99,22 +91,22 @@ def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Bo
 
 
 def _halved(cells: _Cells, side: IntArray) -> _Cells:
-    """Return both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
+    """Cut into both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
     boxes, turn = cells.boxes, cells.turn
     both, rows = [], np.arange(len(boxes))
-    for way in (-1, 1):
+    for sign in (-1, 1):
         centre, half, depth = boxes.centre.copy(), boxes.half.copy(), turn.copy()
         cut = rows[side < 3], side[side < 3]
         slack = 4e-16 * (np.abs(centre[cut]) + half[cut])
-        centre[cut] += way * 0.5 * half[cut]
+        centre[cut] += sign * 0.5 * half[cut]
         half[cut] = np.nextafter(0.5 * half[cut] + slack, np.inf)
         at = rows[side >= 3], 2 * (side[side >= 3] - 3)
         depth[at] += 1
-        depth[at[0], at[1] + 1] = 2 * depth[at[0], at[1] + 1] + (way > 0)
+        depth[at[0], at[1] + 1] = 2 * depth[at[0], at[1] + 1] + (sign > 0)
         both.append((Boxes(leaf=boxes.leaf, centre=centre, half=half), depth))
-    (one, low), (other, high) = both
+    (first, low), (second, high) = both
     whole = {
-        name: np.concatenate([getattr(one, name), getattr(other, name)])
+        name: np.concatenate([getattr(first, name), getattr(second, name)])
         for name in ("leaf", "centre", "half")
     }
     return _Cells(Boxes(**whole), np.concatenate([low, high]))
@@ -123,41 +115,41 @@ def _halved(cells: _Cells, side: IntArray) -> _Cells:
 def _excluded(
     family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
 ) -> tuple[np.ndarray, IntArray]:
-    """Return which cells are excluded, and the coordinate to halve of those that are not."""
+    """Check which cells are excluded, and find the coordinate to halve of those that are not."""
     excluded = _all_kept_out(family, field, leaves, cells.boxes)
     side = np.zeros(len(cells.boxes), dtype=np.int64)
-    key = leaves.point * 3 + leaves.cell[:, 0]
-    for one in np.unique(key):
-        rows = np.flatnonzero((key == one) & ~excluded)
+    key = leaves.point * 3 + leaves.face
+    for shared in np.unique(key):
+        rows = np.flatnonzero((key == shared) & ~excluded)
         for start in range(0, len(rows), _CHUNK):
-            some = rows[start : start + _CHUNK]
-            excluded[some], side[some] = _negative(family, field, leaves.chosen(some), cells.chosen(some))
+            block = rows[start : start + _CHUNK]
+            excluded[block], side[block] = _negative(family, field, leaves.chosen(block), cells.chosen(block))
     return excluded, side
 
 
 def _negative(
     family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
 ) -> tuple[np.ndarray, IntArray]:
-    """Return whether the sums of cells with one anchor and one chart are negative, or no axis is reached."""
+    """Check the sums of cells with one anchor and one chart for being negative, or no axis is reached."""
     chart, anchor = int(leaves.cell[0, 0]), int(leaves.point[0])
     order = np.array([chart, chart + 1, chart + 2]) % 3
     points_m, centre_m = family.points_m[:, order], cells.boxes.centre.T[order]
-    apart, way = Interval(points_m) - points_m[anchor], Interval(points_m[anchor][:, None]) - centre_m
+    apart, offset = Interval(points_m) - points_m[anchor], Interval(points_m[anchor][:, None]) - centre_m
     depth, index = cells.turn.T[::2], cells.turn.T[1::2]
     span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
-    half = np.vstack([cells.boxes.half.T[order], (_PI * (span * np.ldexp(0.5, -depth))).high])
+    half = np.vstack([cells.boxes.half.T[order], (PI * (span * np.ldexp(0.5, -depth))).high])
     turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
-    missed = _out_of_reach(field, way, turns, half, (2 - chart) % 3)
+    missed = _out_of_reach(field, offset, turns, half, (2 - chart) % 3)
     if np.any(missed):
         side, left = np.zeros(len(missed), dtype=np.int64), ~missed
         if np.any(left):
             missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))
         return missed, side
-    wide = way + Interval(-half[:3], half[:3]), [_about(t, h) for t, h in zip(turns, half[3:], strict=True)]
-    links = _links(apart, anchor, way, turns), _links(apart, anchor, *wide)
+    wide = offset + Interval(-half[:3], half[:3]), [about(t, h) for t, h in zip(turns, half[3:], strict=True)]
+    links = links_of(apart, anchor, offset, turns), links_of(apart, anchor, *wide)
     bound, shares = _largest(family, field.profile, leaves, links, half)
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
-    length_m = np.linalg.norm(way.middle(), axis=0)
+    length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
     side = np.argmax(np.where(np.all(np.isfinite(shares), axis=0), shares, sizes), axis=0)
     return bound < 0.0, np.where(side < 3, order[np.minimum(side, 2)], side)
@@ -197,37 +189,37 @@ def _largest(
 
 def _out_of_reach(
     field: ProfileField,
-    way: Interval,
+    offset: Interval,
     turns: list[tuple[Interval, Interval]],
     half: FloatArray,
     upright: int,
 ) -> np.ndarray:
-    """Return which cells have no axis that the airframe reaches.
+    """Check which cells have no axis that the airframe reaches.
 
-    Along a straight line the frame turns by less than the way over its least distance from the chart's pole.
+    Along a straight line the frame turns by less than the step over its least distance from the chart's pole.
     With t the angle between the vertical and the axis at the centre, and b that of an end of what is reached,
     ``sin(t - b)`` and ``cos t`` change by less than the axis moves.
 
     Args:
         field: with the ends of what is reached.
-        way: (3, b) to the anchor, at the centres.
+        offset: (3, b) to the anchor, at the centres.
         turns: sine and cosine of the angle, then of the spin, at the centres.
         half: (5, b) the cells' half sides.
         upright: which coordinate is the altitude.
     """
     (su, cu), (ss, cs) = turns
-    x, y, z = way[0], way[1], way[2]
+    x, y, z = offset[0], offset[1], offset[2]
     level = (x.squared() + z.squared()).sqrt()
-    length = (way.squared().total()).sqrt()
+    length = (offset.squared().total()).sqrt()
     first = z / level, Interval(0.0), -x / level
     second = -(x * y) / (level * length), level / length, -(y * z) / (level * length)
-    axis = [su * (ss * second[i] - cs * first[i]) + cu * (way[i] / length) for i in range(3)]
+    axis = [su * (ss * second[i] - cs * first[i]) + cu * (offset[i] / length) for i in range(3)]
     sine = (axis[upright - 1].squared() + axis[upright - 2].squared()).sqrt()
-    wide = way + Interval(-half[:3], half[:3])
+    wide = offset + Interval(-half[:3], half[:3])
     nearest2 = Interval((wide[0].squared() + wide[2].squared()).low)
     turned = (Interval(half[:3]).squared().total() / nearest2).sqrt()
     spun = Interval(np.minimum(su.magnitude() + half[3], 1.0)) * half[4]
-    moved = Interval((turned + half[3] + spun + _HAIR).high)
+    moved = Interval((turned + half[3] + spun + _ANGLE_SLACK_RAD).high)
     (sine_low, cosine_low), (sine_high, cosine_high) = field.ends
     missed = np.ones(half.shape[1], dtype=bool)
     for cosine in (axis[upright], -axis[upright])[: 1 + field.even]:
@@ -254,77 +246,3 @@ def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], 
             each.append(total)
         sides.append(each)
     return identity, sides[0], sides[1]
-
-
-def _links(apart: Interval, anchor: int, way: Interval, turns: list[tuple[Interval, Interval]]) -> list[Link]:
-    """Return, for each point, the cosine to the antenna's axis, and one over the squared distance.
-
-    Args:
-        apart: (m, 3) from the anchor to each point, in the chart's order.
-        anchor: which point that is.
-        way: (3, b) from the positions to the anchor.
-        turns: sine and cosine of the angle, then of the spin.
-    """
-    (su, cu), (ss, cs) = turns
-    angle = flat(su, {3: cu}, {_SQUARES[3]: -su})
-    along = flat(cu, {3: -su}, {_SQUARES[3]: -cu})
-    spin = flat(ss, {4: cs}, {_SQUARES[4]: -ss})
-    across = angle * flat(cs, {4: -ss}, {_SQUARES[4]: -cs})
-    upwards = angle * spin
-    level2 = _square(way, (0, 2))
-    level, length = level2.inverse_root(), _square(way, (0, 1, 2)).inverse_root()
-    both = level * length
-    found = []
-    for j, d in enumerate(apart[j] for j in range(len(apart.low))):
-        to = way + d[:, None]
-        near = _square(to, (0, 1, 2)).inverse_root()
-        if j == anchor:
-            found.append((along, near * near))
-            continue
-        flat_way = flat(way[0] * d[0] + way[2] * d[2], {0: -d[0], 2: -d[2]}, {})
-        whole = flat(way[1] * d[1], {1: -d[1]}, {}) + flat_way + _square(way, (0, 1, 2))
-        level_part = flat(way[2] * d[0] - way[0] * d[2], {2: -d[0], 0: d[2]}, {}) * level
-        height = flat(way[1], {1: Interval(-1.0)}, {})
-        steep_part = (level2.times(d[1]) - height * flat_way) * both
-        cosine = (along * (whole * length) + upwards * steep_part - across * level_part) * near
-        found.append((cosine, near * near))
-    return found
-
-
-def _square(way: Interval, sides: tuple[int, ...]) -> Jet:
-    """Return the sum of squares of some coordinates of a way, (3, b), which positions shorten."""
-    return flat(
-        Interval(*(end[list(sides)] for end in way.ends)).squared().total(),
-        {i: way[i] * -2.0 for i in sides},
-        {_SQUARES[i]: Interval(2.0) for i in sides},
-    )
-
-
-def sine_cosine(x: FloatArray) -> tuple[Interval, Interval]:
-    """Return sine and cosine of multiples of pi, (b,), by their Taylor series within an eighth of a turn.
-
-    Args:
-        x: (b,) exact, from -1 to 1.
-    """
-    quarter = np.rint(2.0 * x)
-    angle = _PI * (x - 0.5 * quarter)
-    square = angle.squared()
-    sine, cosine = Interval(np.zeros(len(x))), Interval(np.zeros(len(x)))
-    for n in reversed(range(_TERMS)):
-        sine = Interval((-1.0) ** n) / factorial(2 * n + 1) + sine * square
-        cosine = Interval((-1.0) ** n) / factorial(2 * n) + cosine * square
-    rest = Interval(-_REST, _REST)
-    sine, cosine = sine * angle + rest, cosine + rest
-    turn = quarter.astype(np.int64) % 4
-    swap, first, second = turn % 2 == 1, np.where(turn >= 2, -1.0, 1.0), np.where(turn % 3 > 0, -1.0, 1.0)
-    return where(swap, cosine, sine) * first, where(swap, sine, cosine) * second
-
-
-def _about(turn: tuple[Interval, Interval], half: FloatArray) -> tuple[Interval, Interval]:
-    """Return sine and cosine within so many radians of an angle, (b,)."""
-    sine, cosine = turn
-    shrunk = Interval(np.maximum((1.0 - Interval(half).squared() * 0.5).low, -1.0), np.ones(len(half)))
-    step = Interval(-half, half)
-    both = sine * shrunk + cosine * step, cosine * shrunk + sine * step
-    one, other = (Interval(np.maximum(x.low, -1.0), np.minimum(x.high, 1.0)) for x in both)
-    return one, other

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.certificate.affine_test import affine_holds
-from nullpose.certificate.axis_cells import off_band_holds
-from nullpose.certificate.boxes import Boxes, boxes_of, parts
+from nullpose.certificate.boxes import Boxes, boxes_of, parts, uncovered
 from nullpose.certificate.certificate import (
     AFFINE,
     FAR,
@@ -25,12 +24,11 @@ from nullpose.certificate.certificate import (
     claimed_axes,
 )
 from nullpose.certificate.claim import claim_fault, pose_fault
-from nullpose.certificate.coverage import uncovered
-from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
 from nullpose.certificate.free_test import free_holds
+from nullpose.certificate.plain_tests import far_holds, kept_out_holds, off_band_holds, root_holds
 from nullpose.certificate.profile import ProfileField, loudest
 from nullpose.certificate.profile_test import profile_holds
-from nullpose.certificate.sentence import sentence
+from nullpose.certificate.subject import sentence
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -90,7 +88,7 @@ _TESTS = {
 
 
 def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | None = None) -> Verdict:
-    """Return whether a certificate proves its claim, by code that imports nothing from the solver.
+    """Check whether a certificate proves its claim, by code that imports nothing from the solver.
 
     The pose must be allowed and have the value that is stated (exact arithmetic); the leaves must cover
     every position and axis that could exceed the bound, and each leaf's test must hold (outward-rounded
@@ -141,25 +139,25 @@ def _tree_fault(
 
 
 def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[[int], None]) -> str:
-    """Return the first leaf that its test does not exclude, or an empty string."""
+    """Find the first leaf that its test does not exclude, or an empty string."""
     leaves, boxes = tree.leaves, boxes_of(tree.root_m, tree.leaves)
     for start in range(0, len(leaves), _CHUNK):
-        one = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
-        if one is not None:
-            hull = boxes.hull[:, one]
+        leaf = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
+        if leaf is not None:
+            hull = boxes.hull[:, leaf]
             where = ", ".join(
                 f"{low:.6g} to {high:.6g}" for low, high in zip(hull.low, hull.high, strict=True)
             )
             return (
-                f"leaf {one} (x, y, z: {where} m) is not excluded at {leaves.level[one]:.12g} "
-                f"by its test ({_TESTS[int(leaves.test[one])].name})"
+                f"leaf {leaf} (x, y, z: {where} m) is not excluded at {leaves.level[leaf]:.12g} "
+                f"by its test ({_TESTS[int(leaves.test[leaf])].name})"
             )
         checked(min(start + _CHUNK, len(leaves)))
     return ""
 
 
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
-    """Return the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
+    """Find the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
     leaves, ratios = tree.leaves, len(family.numerator_point)
     no_point, no_mix = np.zeros((2, len(leaves)), dtype=bool)
     for kind, test in _TESTS.items():
@@ -167,21 +165,20 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
             no_point |= (leaves.test == kind) & _outside(leaves.point, test.points(family))
         if test.has_mix:
             no_mix |= (leaves.test == kind) & _outside(leaves.mix, len(leaves.mixes))
-    depth = np.concatenate([leaves.box[:, 0::2], leaves.cell[:, 1::2]], axis=1)
-    index = np.concatenate([leaves.box[:, 1::2], leaves.cell[:, 2::2]], axis=1)
+    depth, index = leaves.depths, leaves.indices
     faults = {
         "its level is above the bound": leaves.level > upper_bound,
         "its level is not positive": ~(leaves.level > 0.0),
         "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
         "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
-        "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.cell[:, 0] < 0),
+        "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.face < 0),
         "its point does not exist": no_point,
         "its multipliers do not exist": no_mix,
         "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
-        "its cell does not exist": _outside(leaves.cell[:, 0] + 1, 4),
+        "its cell does not exist": _outside(leaves.face + 1, 4),
         "its depth is out of range": np.any(_outside(depth, _DEEPEST + 1), axis=1),
         "its index is out of range": np.any(_outside(index, 1 << np.clip(depth, 0, _DEEPEST)), axis=1),
     }
@@ -199,7 +196,7 @@ def _outside(index: IntArray, count: int | IntArray) -> np.ndarray:
 
 
 def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> int | None:
-    """Return the first leaf of the boxes that is not excluded, cutting boxes that fail narrowly, or None."""
+    """Find the first leaf of the boxes that is not excluded, cutting boxes that fail narrowly, or None."""
     failed = boxes.chosen(~_holds(family, field, leaves, boxes))
     if isinstance(field, ProfileField) and len(failed):  # whose test cuts cells by itself
         return int(failed.leaf.min())
@@ -216,11 +213,11 @@ def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
 
 
 def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes their leaves exclude."""
+    """Check which boxes their leaves exclude."""
     holds, kinds = np.zeros(len(boxes), dtype=bool), leaves.test[boxes.leaf]
     for check in dict.fromkeys(test.holds for test in _TESTS.values()):
         mask = np.isin(kinds, [kind for kind, test in _TESTS.items() if test.holds is check])
         if np.any(mask):
-            some = boxes.chosen(mask)
-            holds[mask] = check(family, field, leaves.chosen(some.leaf), some)
+            tested = boxes.chosen(mask)
+            holds[mask] = check(family, field, leaves.chosen(tested.leaf), tested)
     return holds

@@ -12,13 +12,49 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray
-from nullpose.certificate.constraint import Constraint
-from nullpose.certificate.interval import Interval, stack
+from nullpose.certificate.interval import Interval, dot, stack
 from nullpose.certificate.outline import Outline, may_meet
+from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER
 from nullpose.problem.family import Family
 
-_CYLINDER, _FENCE = 1, 2
 _FLAT = np.array([1.0, 1.0, 0.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Constraint:
+    """A quadratic of the position for each box, ``g(c + x) = value + slopes.x + sum_i bend_i x_i^2``.
+
+    Args:
+        value: (b,) at the boxes' centres.
+        slopes: (3, b) its gradient there.
+        bend: (3, b) not negative.
+    """
+
+    value: Interval
+    slopes: Interval
+    bend: FloatArray
+
+    @classmethod
+    def beyond(cls, away: Interval, normal: Interval) -> Constraint:
+        """Return ``n.(p - q)``.
+
+        Args:
+            away: (3, b) from a point q of the plane to the boxes' centres.
+            normal: (3, b) n, of any length.
+        """
+        return cls(dot(away, normal), normal, np.zeros(normal.low.shape))
+
+    @classmethod
+    def outside(cls, away: Interval, radius: FloatArray | float, counted: FloatArray) -> Constraint:
+        """Return ``|p - q|^2 - R^2`` over the coordinates that count.
+
+        Args:
+            away: (3, b) from q to the boxes' centres, zero along the others.
+            radius: (b,) or one R.
+            counted: (3,) one for each coordinate that counts, zero for the others.
+        """
+        value = away.squared().total() - Interval(radius).squared()
+        return cls(value, away * 2.0, np.outer(counted, np.ones(value.low.shape)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,31 +83,34 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
     hull, rows = boxes.hull, np.arange(len(boxes))
     floor, ceiling = family.zone_range_m[zone].T
     found = []
-    for mask, height, way in ((hull.high[2] >= ceiling, ceiling, 1.0), (hull.low[2] <= floor, floor, -1.0)):
+    for mask, height, upwards in (
+        (hull.high[2] >= ceiling, ceiling, 1.0),
+        (hull.low[2] <= floor, floor, -1.0),
+    ):
         corner = np.outer(height[mask], [0.0, 0.0, 1.0])
-        up = Interval(np.tile([[0.0], [0.0], [way]], len(corner)))
+        up = Interval(np.tile([[0.0], [0.0], [upwards]], len(corner)))
         away = (Interval(boxes.centre[mask]) - corner).T
         found.append(Alternative(rows[mask], (Constraint.beyond(away, up),)))
-    is_cylinder = family.zone_kind[zone] == _CYLINDER
+    is_cylinder = family.zone_kind[zone] == FORBIDDEN_CYLINDER
     found.append(_outside_cylinder(family, zone, boxes, rows[is_cylinder]))
     beyond = [
-        one
+        (row, *edges)
         for z in np.unique(zone[~is_cylinder])
-        for one in _beyond_edges(family, int(z), rows[zone == z], boxes.chosen(zone == z))
+        for row, *edges in _beyond_edges(family, int(z), rows[zone == z], boxes.chosen(zone == z))
     ]
     for count in range(3):
-        table = np.array([one for one in beyond if len(one) == 1 + count], dtype=np.int64).reshape(
+        table = np.array([choice for choice in beyond if len(choice) == 1 + count], dtype=np.int64).reshape(
             -1, 1 + count
         )
         row, *edges = table.T
-        sign = np.where(family.zone_kind[zone[row]] == _FENCE, -1.0, 1.0)
+        sign = np.where(family.zone_kind[zone[row]] == FENCE, -1.0, 1.0)
         bounds = (_right_of(boxes.chosen(row), family.zone_edges[edge], sign) for edge in edges)
         found.append(Alternative(row, tuple(bounds)))
-    return [one for one in found if len(one.rows)]
+    return [alternative for alternative in found if len(alternative.rows)]
 
 
 def forbidden(family: Family, zone: IntArray, boxes: Boxes) -> np.ndarray:
-    """Return which boxes a zone forbids as a whole.
+    """Check which boxes a zone forbids as a whole.
 
     Args:
         family: with its zones.
@@ -79,8 +118,8 @@ def forbidden(family: Family, zone: IntArray, boxes: Boxes) -> np.ndarray:
         boxes: b of them.
     """
     holds = np.ones(len(boxes), dtype=bool)
-    for one in zone_alternatives(family, zone, boxes):
-        holds[one.rows] = False
+    for alternative in zone_alternatives(family, zone, boxes):
+        holds[alternative.rows] = False
     return holds
 
 
@@ -88,7 +127,7 @@ def _beyond_edges(family: Family, zone: int, rows: IntArray, boxes: Boxes) -> It
     """Yield a box's row and the edges, by their index in the family, of an alternative."""
     first, last = family.zone_start[zone], family.zone_start[zone + 1]
     edges = family.zone_edges[first:last]
-    outline = Outline.of(edges, bool(family.zone_kind[zone] == _FENCE))
+    outline = Outline.of(edges, bool(family.zone_kind[zone] == FENCE))
     low, high = boxes.hull.low[:2].T, boxes.hull.high[:2].T
     for row, meets, south_west, north_east in zip(rows, may_meet(edges, low, high), low, high, strict=True):
         for chosen in outline.alternatives(np.flatnonzero(meets).tolist(), south_west, north_east):
@@ -96,7 +135,7 @@ def _beyond_edges(family: Family, zone: int, rows: IntArray, boxes: Boxes) -> It
 
 
 def _right_of(boxes: Boxes, edges: FloatArray, sign: FloatArray) -> Constraint:
-    """Return how far a position is to the right of an edge, or with the other sign to its left; any scale."""
+    """Measure how far a position is to the right of an edge, or with the other sign to its left."""
     x1, y1, x2, y2 = edges.T
     zero = np.zeros(len(boxes))
     normal = stack([(Interval(y2) - y1) * sign, (Interval(x1) - x2) * sign, Interval(zero)])

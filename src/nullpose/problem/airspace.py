@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from nullpose.objectives import FloatArray, IntArray
-from nullpose.problem.convex import convex_parts, hull_and_pockets
 from nullpose.problem.family import DEFAULTS, Family
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import area_m2
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 _Zone: TypeAlias = tuple[int, FloatArray, float, float]  # kind, edges, lowest and highest altitude
 
@@ -19,11 +21,7 @@ FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FENCE = 0, 1, 2
 
 
 def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
-    """Return the fields of a domain for no-fly zones and fence, without those that change nothing.
-
-    Args:
-        airspace: box, zones and fence.
-    """
+    """Build the fields of a domain for no-fly zones and fence, without those that change nothing."""
     zones: list[_Zone] = []
     for zone in airspace.no_fly:
         is_flat = zone.shape == "box" and not area_m2(zone.outline_m) > 0.0
@@ -39,7 +37,7 @@ def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
 
 
 def loosened(family: Family, by_m: float) -> Family:
-    """Return a family with its keep-out balls and zones smaller and its fence larger: walls get a width.
+    """Build a family with its keep-out balls and zones smaller and its fence larger: walls get a width.
 
     Args:
         family: ratios and domain.
@@ -70,7 +68,7 @@ def _arrays(zones: list[_Zone]) -> dict[str, FloatArray | IntArray]:
 
 
 def _pieces(kind: int, edges: FloatArray, low: float, high: float) -> list[FloatArray]:
-    """Return the sides of a zone's convex pieces, with its floor and ceiling if it has them."""
+    """List the sides of a zone's convex pieces, with its floor and ceiling if it has them."""
     ends = [(0.0, 0.0, 0.0, sign, sign * z) for sign, z in ((1.0, high), (-1.0, low)) if np.isfinite(z)]
     parts = [np.array([[1.0, *edges[0, :2], 0.0, edges[0, 2]]])]
     if kind == FORBIDDEN_POLYGON:
@@ -83,7 +81,7 @@ def _pieces(kind: int, edges: FloatArray, low: float, high: float) -> list[Float
 
 
 def _inset(outline_m: FloatArray, by_m: float) -> FloatArray:
-    """Return a counter-clockwise polygon with its edges moved inwards; less at the sharpest corners."""
+    """Move the edges of a counter-clockwise polygon inwards; less at the sharpest corners."""
     normal = _outer_sides(outline_m)[:, 1:3]
     before = np.roll(normal, 1, axis=0)
     bend = np.maximum(1.0 + np.sum(normal * before, axis=1, keepdims=True), 0.05)
@@ -99,9 +97,44 @@ def _edges(outline_m: FloatArray) -> FloatArray:
 
 
 def _outer_sides(part_m: FloatArray) -> FloatArray:
-    """Return the half-planes outside each edge of a convex polygon, counter-clockwise."""
+    """List the half-planes outside each edge of a convex polygon, counter-clockwise."""
     along = np.roll(part_m, -1, axis=0) - part_m
     normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
     offset = np.sum(normal * part_m, axis=1)
     zero = np.zeros(len(part_m))
     return np.column_stack([zero, normal, zero, offset])
+
+
+def convex_parts(outline_m: FloatArray) -> list[FloatArray]:
+    """Cut a simple polygon, counter-clockwise, into triangles; leave a convex one as it is.
+
+    Args:
+        outline_m: vertices, (n, 2), metres.
+    """
+    import shapely  # here, for most scenarios have no polygon
+
+    along = np.roll(outline_m, -1, axis=0) - outline_m
+    after = np.roll(along, -1, axis=0)
+    if np.all(along[:, 0] * after[:, 1] >= along[:, 1] * after[:, 0]):
+        return [outline_m]
+    return _outlines(shapely.constrained_delaunay_triangles(shapely.Polygon(outline_m)))
+
+
+def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+    """Find the convex hull of a simple polygon and the parts of the hull outside the polygon.
+
+    Args:
+        outline_m: vertices, (n, 2), metres; like those returned, counter-clockwise.
+    """
+    import shapely
+
+    polygon = shapely.Polygon(outline_m)
+    return _outlines(polygon.convex_hull)[0], _outlines(polygon.convex_hull - polygon)
+
+
+def _outlines(shapes: BaseGeometry) -> list[FloatArray]:
+    """List the vertices of shapely's polygons, each counter-clockwise."""
+    import shapely
+
+    parts = shapely.get_parts(shapely.orient_polygons(shapes))
+    return [shapely.get_coordinates(part)[:-1] for part in parts if part.geom_type == "Polygon" and part.area]

@@ -48,13 +48,13 @@ class AxisField:
 
     @classmethod
     def free(cls) -> AxisField:
-        """Return the field that leaves the axis to the solver."""
+        """Build the field that leaves the axis to the solver."""
         return cls(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
 
     @classmethod
     @cache
     def within(cls, least: float, greatest: float) -> AxisField:
-        """Return the field of all axes with ``least <= u_z^2 <= greatest``, the vertical one if both are 1.
+        """Build the field of all axes with ``least <= u_z^2 <= greatest``, the vertical one if both are 1.
 
         Args:
             least: smallest squared vertical component of a unit axis.
@@ -69,38 +69,24 @@ class AxisField:
 
     @classmethod
     def affine(cls, offset: ArrayLike, matrix: ArrayLike) -> AxisField:
-        """Return the field ``u(p) = offset + matrix p``.
-
-        Args:
-            offset: shape ``(3,)``.
-            matrix: shape ``(3, 3)``.
-        """
+        """Build the field ``u(p) = offset + matrix p``, of shapes ``(3,)`` and ``(3, 3)``."""
         return cls(
             is_free=False, offset=np.asarray(offset, dtype=float), matrix=np.asarray(matrix, dtype=float)
         )
 
     @classmethod
     def vertical(cls) -> AxisField:
-        """Return the field that is vertical everywhere (paper section 4, case 4)."""
+        """Build the field that is vertical everywhere (paper section 4, case 4)."""
         return cls.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))
 
     @classmethod
     def towards(cls, point_m: ArrayLike) -> AxisField:
-        """Return the field ``u(p) = q - p``, a null on q (paper eq. 3.1, its length left out).
-
-        Args:
-            point_m: ``q``, shape ``(3,)``, metres.
-        """
+        """Build the field ``u(p) = q - p``, a null on q (paper eq. 3.1, its length left out)."""
         return cls.affine(point_m, -np.eye(3))
 
     @classmethod
     def broadside(cls, first_m: ArrayLike, second_m: ArrayLike) -> AxisField:
-        """Return the field ``(s1 - p) x (s2 - p) = s1 x s2 + (s2 - s1) x p`` (paper eq. 3.4, any length).
-
-        Args:
-            first_m: ``s1``, shape ``(3,)``, metres.
-            second_m: ``s2``, shape ``(3,)``, metres.
-        """
+        """Build the field ``(s1 - p) x (s2 - p) = s1 x s2 + (s2 - s1) x p`` (eq. 3.4, of any length)."""
         first, second = np.asarray(first_m, dtype=float), np.asarray(second_m, dtype=float)
         x, y, z = second - first
         matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -17,12 +17,12 @@ LOUDEST = 1e16
 
 
 def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
-    """Return the family whose smallest ratio is what the scenario asks to be maximised.
+    """Build the family whose smallest ratio is what the scenario maximises.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
 
     Args:
-        scenario: what is stated.
+        scenario: its units and names end here.
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
 
     Raises:
@@ -64,7 +64,7 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
 
 
 def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
-    """Return the fields of a family that say where its positions may be.
+    """Build the fields of a family that say where its positions may be.
 
     Args:
         scenario: with its airspace.
@@ -87,7 +87,7 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
 
 
 def distances_m(points_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> FloatArray:
-    """Return how far each point is from a box, (m,), metres.
+    """Measure how far each point is from a box, (m,), metres.
 
     Args:
         points_m: (m, 3).

@@ -1,4 +1,4 @@
-"""A family: the ratios of which the smallest is maximised, and the positions that it is asked about."""
+"""A family: the ratios of which the smallest is maximised, and the positions over which it is."""
 
 from __future__ import annotations
 
@@ -45,21 +45,13 @@ class Family:
         raise AttributeError(f"a family has no {name!r}")
 
     def changed(self, **fields: Any) -> Family:
-        """Return a family with other values in some fields.
-
-        Args:
-            fields: the new values by name.
-        """
+        """Copy the family with other values in the fields named."""
         return Family(**self.fields | fields)
 
     def at(self, position_m: FloatArray) -> Family:
-        """Return the family at one position, whatever the airspace says of it.
-
-        Args:
-            position_m: (3,), metres.
-        """
-        here = Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)
-        return Family(**self.arrays._asdict(), **here._asdict())
+        """Narrow the family to one position, (3,), metres, whether the airspace allows it or not."""
+        place = Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)
+        return Family(**self.arrays._asdict(), **place._asdict())
 
     @property
     def fields(self) -> dict[str, Any]:

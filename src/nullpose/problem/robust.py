@@ -21,16 +21,12 @@ class BindingCase(NamedTuple):
     case: ErrorCase
 
     def is_same(self, other: BindingCase) -> bool:
-        """Return whether another is the same case of the same ratio, to the last bit.
-
-        Args:
-            other: the other.
-        """
+        """Compare with another case, to the last bit."""
         return self.ratio == other.ratio and self.case.is_same(other.case)
 
 
 def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Family:
-    """Return the family with one ratio for each case: the nominal ratio when the case comes true.
+    """Build the family with one ratio for each case: the nominal ratio when the case comes true.
 
     Moving the drone by d moves all points by -d, and turning its axis by R is the turn that the points see,
     so ratio s is that of ``points - d_s + offsets_s`` with the turn ``R_s``. Ratios share a denominator if
@@ -46,7 +42,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     places: dict[bytes, int] = {}
 
     def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
-        """Return the index of a copy, new or not."""
+        """Index a copy, new or not."""
         key = point_m.tobytes() + rotation.tobytes()
         copies.setdefault(key, (point_m, rotation, point))
         return places.setdefault(key, len(places))
@@ -56,13 +52,13 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     entries: list[int] = []
     weights: list[FloatArray] = []
     start = [0]
-    for each in cases:
-        offsets_m = _of_points(nominal, scenario, getattr(each.case, moved))
-        moved_m = nominal.points_m - each.case.position_offset_m + offsets_m
-        rotation = each.case.rotation_world
-        point = int(nominal.numerator_point[each.ratio])
+    for ratio, case in cases:
+        offsets_m = _of_points(nominal, scenario, getattr(case, moved))
+        moved_m = nominal.points_m - case.position_offset_m + offsets_m
+        rotation = case.rotation_world
+        point = int(nominal.numerator_point[ratio])
         numerator_point.append(copied(point, moved_m[point], rotation))
-        group = int(nominal.denominator_of[each.ratio])
+        group = int(nominal.denominator_of[ratio])
         bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
         disturbers = nominal.denominator_point[bounds]
         disturbers_m = moved_m[disturbers]
@@ -75,8 +71,8 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
-    ratios = np.array([each.ratio for each in cases], dtype=np.int64)
-    points_m, rotations, originals = (np.array(each) for each in zip(*copies.values(), strict=True))
+    ratios = np.array([case.ratio for case in cases], dtype=np.int64)
+    points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
     return nominal.changed(
         ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
         ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
@@ -94,28 +90,19 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
-    """Return the matrices of the sets in which each point of the nominal family may be, (m, 3, 3), metres.
-
-    Args:
-        scenario: nodes, which are known, and jammers or eavesdroppers.
-    """
+    """Collect the matrices of the sets in which each point of the family may be, (m, 3, 3), metres."""
     sets_m = getattr(scenario, interferer_field(scenario, "uncertainty"))
     return _of_points(build_family(scenario), scenario, sets_m)
 
 
-def interferer_field(scenario: Scenario, what: str) -> str:
-    """Return the name of a field about those in the denominators, as in ``"jammer_offsets_m"``.
-
-    Args:
-        scenario: its objective says who they are.
-        what: offsets or uncertainty.
-    """
-    return f"{scenario.objective_record.interferers.removesuffix('s')}_{what}_m"
+def interferer_field(scenario: Scenario, kind: str) -> str:
+    """Name a field about those in the denominators, as in ``"jammer_offsets_m"``."""
+    return f"{scenario.objective_record.interferers.removesuffix('s')}_{kind}_m"
 
 
 def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:
-    """Return what belongs to the points in the denominators, with zeros for nodes and for all others."""
+    """Spread arrays of the points in the denominators over all points, with zeros for the others."""
     first = len(scenario.nodes)
-    everyone = np.zeros((len(nominal.points_m), *of_interferers.shape[1:]))
-    everyone[first : first + len(of_interferers)] = of_interferers
-    return everyone
+    of_points = np.zeros((len(nominal.points_m), *of_interferers.shape[1:]))
+    of_points[first : first + len(of_interferers)] = of_interferers
+    return of_points

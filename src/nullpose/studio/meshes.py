@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import Antenna
 from nullpose.physics import Pose
-from nullpose.problem.convex import convex_parts
+from nullpose.problem.airspace import convex_parts
 
 
 class Mesh(NamedTuple):

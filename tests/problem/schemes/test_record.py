@@ -20,13 +20,6 @@ def test_names_are_a_contract() -> None:
     assert [scheme.record.name for scheme in Scheme] == list(RECORDS)
 
 
-@pytest.mark.parametrize("scheme", Scheme)
-def test_a_scheme_is_found_by_name(scheme: Scheme) -> None:
-    """A scheme is found by its name and by itself."""
-    assert as_scheme(scheme.value) is scheme
-    assert as_scheme(scheme) is scheme
-
-
 @pytest.mark.parametrize("name", ["best", "Optimum", "", "zero_interference", "maximum-gain-printed"])
 def test_an_unknown_name_is_refused(name: str) -> None:
     """Another name is refused with what was given and every name that is allowed."""
@@ -43,10 +36,3 @@ def test_zero_interference_needs_a_jammer(scene: Callable) -> None:
     assert "needs a jammer" in Scheme.ZERO_INTERFERENCE.not_applicable(scene(nodes))
     for jammers in ([(9, 9, 1)], [(9, 9, 1), (20, 9, 1)]):
         assert Scheme.ZERO_INTERFERENCE.not_applicable(scene(nodes, jammers)) is None
-
-
-@pytest.mark.parametrize("scheme", [Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL])
-def test_the_others_always_apply(scheme: Scheme, scene: Callable) -> None:
-    """Optimum, maximum gain and vertical have a meaning for any number of nodes and jammers."""
-    assert scheme.not_applicable(scene([(0, 0, 0)])) is None
-    assert scheme.not_applicable(scene([(0, 0, 0), (5, 0, 0), (9, 9, 0)], [(1, 1, 1)])) is None

@@ -7,21 +7,9 @@ import pytest
 from scipy.optimize import differential_evolution
 
 from nullpose.physics import sinr
-from nullpose.problem.axis_field import AxisField
 from nullpose.solver import Scheme, solve
 
 UP = np.array([0.0, 0.0, 1.0])
-
-
-def test_the_axis_is_vertical(paper: Callable) -> None:
-    """The field is e3 everywhere, and the pose reported is level."""
-    kind, offset, matrix = AxisField.vertical().arrays
-    assert kind == 1
-    np.testing.assert_array_equal(offset, UP)
-    np.testing.assert_array_equal(matrix, np.zeros((3, 3)))
-    pose = solve(paper(1.0), Scheme.VERTICAL).pose
-    assert (pose.roll_rad, pose.pitch_rad) == (0.0, 0.0)
-    np.testing.assert_array_equal(pose.antenna_axis, UP)
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,9 @@ from hypothesis import given, strategies as st
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
-from nullpose.certificate.dipoles import dipole_sum, shear_of
+from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import matrices
+from nullpose.certificate.shear import shear_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.exclusion import add_dipole_sum

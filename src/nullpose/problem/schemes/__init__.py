@@ -33,7 +33,7 @@ class Scheme(StrEnum):
 
     @property
     def record(self) -> SchemeRecord:
-        """What the scheme states of itself."""
+        """The record of the scheme."""
         return RECORDS[self.value]
 
     @property
@@ -42,29 +42,18 @@ class Scheme(StrEnum):
         return self.record.label
 
     def not_applicable(self, scenario: Scenario) -> str | None:
-        """Return why the scheme has no meaning for a scenario, or None if it has.
-
-        Args:
-            scenario: any.
-        """
+        """Say why the scheme has no meaning for a scenario; None if it has."""
         return self.record.not_applicable(scenario)
 
     def require_applicable(self, scenario: Scenario) -> None:
-        """Do nothing if the scheme has a meaning for a scenario.
-
-        Args:
-            scenario: any.
-
-        Raises:
-            UsageError: it has none.
-        """
+        """Raise a UsageError if the scheme has no meaning for a scenario."""
         reason = self.not_applicable(scenario)
         if reason is not None:
             raise UsageError(f"scheme {self.value}: {reason}; try another scheme")
 
 
 def as_scheme(name: str) -> Scheme:
-    """Return the scheme of a name.
+    """Find the scheme of a name.
 
     Args:
         name: as in ``maximum-gain``.

@@ -1,4 +1,4 @@
-"""What a scheme states of itself, for everything that solves, checks, prints or draws it."""
+"""The record of a scheme, for everything that solves, checks, prints or draws it."""
 
 from __future__ import annotations
 
@@ -48,11 +48,7 @@ class SchemeRecord:
     unproved: str = ""
 
     def not_applicable(self, scenario: Scenario) -> str | None:
-        """Return why the scheme has no meaning for a scenario, or None if it has.
-
-        Args:
-            scenario: any.
-        """
+        """Say why the scheme has no meaning for a scenario; None if it has."""
         if scenario.objective_record.transmits and not self.any_objective:
             return "the paper states it for a drone that receives, and here it transmits"
         if scenario.axis_band != (0.0, 1.0) and not self.any_airframe:

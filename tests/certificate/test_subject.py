@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.certificate import Certificate
-from nullpose.certificate.sentence import sentence
-from nullpose.scenario import Airframe, Airspace, Array, Eavesdropper, Scenario, Transmitter
+from nullpose.certificate.subject import sentence
+from nullpose.scenario import Eavesdropper, Scenario, Transmitter
 
 numbers = st.floats(-6.0, 6.0).map(lambda x: 10.0**x)
 
@@ -85,60 +85,3 @@ def test_small_numbers_are_not_lost(claim: Certificate) -> None:
     words = sentence(replace(claim, value=1e-7, upper_bound=1.5e-7), 1)
     assert "above 1.5e-07 (" in words
     assert "within a relative 5.01e-01 of it" in words
-
-
-def test_places_are_named(claim: Certificate) -> None:
-    """Zones and fence, one or several."""
-    zone = {"x_m": (50.0, 60.0), "y_m": (0.0, 9.0)}
-    fence = [(-90.0, -90.0), (90.0, -90.0), (0.0, 90.0)]
-    cases = [
-        ({}, "no position and no antenna axis gives"),
-        ({"no_fly": [zone]}, "no position outside the no-fly zone and no antenna axis gives"),
-        ({"geofence_m": fence}, "no position inside the geofence and no antenna axis gives"),
-        (
-            {"geofence_m": fence, "no_fly": [zone, {"centre_m": (40.0, 0.0), "radius_m": 1.0}]},
-            "no position inside the geofence and outside the 2 no-fly zones and no antenna axis gives",
-        ),
-    ]
-    for parts, expected in cases:
-        scenario = changed(claim.scenario, airspace=Airspace(altitude_m=(8.0, 30.0), **parts))
-        assert expected in sentence(replace(claim, scenario=scenario), 1)
-
-
-def test_axes_are_named(claim: Certificate) -> None:
-    """The scheme's axes, or the airframe's reach where it is limited."""
-    for scheme, expected in (
-        ("vertical", "with a vertical antenna"),
-        ("zero-interference", "with an antenna whose null is on a jammer"),
-        ("maximum-gain", "with an antenna broadside to both nodes"),
-    ):
-        assert f"no position {expected} gives" in sentence(replace(claim, scheme=scheme), 1)
-    named = replace(claim, scheme="zero-interference", null_jammer="M1")
-    assert "whose null is on jammer M1 gives" in sentence(named, 1)
-    limited = changed(claim.scenario, airframe=Airframe(tilt_max_deg=12.5, mount_deg=90.0))
-    words = "within the airframe's reach (tilt at most 12.5 degrees, dipole mounted at 90 degrees) gives"
-    assert words in sentence(replace(claim, scenario=limited), 1)
-    free = changed(claim.scenario, airframe=Airframe(preset="omnidirectional"))
-    assert "airframe" not in sentence(replace(claim, scenario=free), 1)
-
-
-def test_what_is_left_out_is_named(claim: Certificate) -> None:
-    """Errors and arrays are no part of the claim."""
-    sure, jammers = claim.scenario, claim.scenario.jammers
-    unsure = changed(sure, jammers=(jammers[0].model_copy(update={"uncertainty_m": 1.0}),))
-    array = Array(elements=4, layout="linear", spacing_wavelengths=0.5)
-    for scenario, expected in (
-        (sure, "in this scenario no position"),
-        (unsure, "in this scenario, its errors left out, no position"),
-        (changed(sure, array=array), "in this scenario, its array left out, no position"),
-        (changed(unsure, array=array), "in this scenario, its errors and array left out, no position"),
-    ):
-        assert expected in sentence(replace(claim, scenario=scenario), 1)
-
-
-def test_margins_are_called_so(claim: Certificate) -> None:
-    """With a weight or a requirement it is a margin that is stated."""
-    nodes = (claim.scenario.nodes[0].model_copy(update={"min_sinr_db": 3.0}), claim.scenario.nodes[1])
-    words = sentence(replace(claim, scenario=changed(claim.scenario, nodes=nodes)), 1)
-    assert "gives every node a margin above 1.26" in words
-    assert "a secrecy rate above" in sentence(replace(claim, scenario=overheard(claim.scenario)), 1)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, strategies as st
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.distance_tests import far_holds, kept_out_holds, root_holds
+from nullpose.certificate.plain_tests import far_holds, kept_out_holds, root_holds
 from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
@@ -99,13 +99,3 @@ def test_nothing_beyond_the_root_beats_the_bound(seed: int, random_family: Calla
         enough = narrow[side, i] <= end if side == 0 else narrow[side, i] >= end
         assert (fault == "") == bool(enough)
         assert enough or f"ends at {'xyz'[i]} = " in fault
-
-
-def test_a_root_of_the_whole_domain_needs_no_reach(random_family: Callable) -> None:
-    """Where the airspace is bounded its own faces do; a hair inside does not."""
-    family = random_family(np.random.default_rng(1), 2, 1)
-    low, high = np.array([-5.0, -5.0, 8.0]), np.array([5.0, 5.0, 9.0])
-    bounded = family.changed(low_m=low, high_m=high, numerator_weight=np.full(2, 1e9))
-    assert root_holds(bounded, np.array([low, high]), 1e-3) == ""
-    assert "x = " in root_holds(bounded, np.array([low + np.array([1e-12, 0, 0]), high]), 1e-3)
-    assert "z = " in root_holds(bounded, np.array([low, high - np.array([0, 0, 1e-12])]), 1e-3)

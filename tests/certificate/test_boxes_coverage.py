@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, strategies as st
 
 from nullpose.certificate import Leaves
-from nullpose.certificate.coverage import uncovered
+from nullpose.certificate.boxes import uncovered
 
 Row = tuple[int, ...]  # depth and index along x, y, z; face; depth and index along two sides
 
@@ -114,25 +114,6 @@ def test_what_is_called_covered_is(seed: int, splits: int, changes: int, make_le
         rows[i] = tuple(row)
     if gaps(make_leaves, rows) == "":
         assert counted(rows)
-
-
-def test_a_larger_leaf_stands_in_for_a_missing_one(make_leaves: Callable) -> None:
-    """A half that one leaf holds needs nothing else; cells under a leaf of every axis are idle."""
-    left, right = halves(ROOT, 0)
-    quarters = [quarter for half in halves(left, 2) for quarter in halves(half, 4)]
-    assert gaps(make_leaves, [left, right, *quarters[1:]]) == ""
-    faces = [(*left[:6], f, 0, 0, 0, 0) for f in range(3)]
-    assert gaps(make_leaves, [left, right, faces[1]]) == ""
-    assert gaps(make_leaves, [right, *faces]) == ""
-    assert "face1" in gaps(make_leaves, [right, faces[0], faces[2]])
-
-
-def test_nothing_covers_nothing(make_leaves: Callable) -> None:
-    """Without a leaf the root itself is the hole, and the words say where a hole is."""
-    assert gaps(make_leaves, []) == "nothing covers root"
-    first, second = halves(ROOT, 0)
-    assert "root/x1" in gaps(make_leaves, [first])
-    assert "root/x0" in gaps(make_leaves, [second])
 
 
 def test_the_deepest_tree_is_checked(make_leaves: Callable) -> None:

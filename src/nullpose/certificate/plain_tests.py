@@ -1,4 +1,4 @@
-"""Leaves that distances alone exclude."""
+"""Leaves that need no multipliers: nodes out of reach, positions kept out, axes out of the band."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, Leaves
+from nullpose.certificate.forms import cell_ends
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
 from nullpose.problem.axis_field import AxisField
@@ -13,7 +14,7 @@ from nullpose.problem.family import Family
 
 
 def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes keep their node so far that it cannot reach the level, whatever the axis.
+    """Check which boxes keep their node too far off to reach the level, whatever the axis.
 
     ``N <= n + w / a^2`` and ``D >= d``, a being the least distance that box and keep-out ball allow.
 
@@ -32,7 +33,7 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
 
 
 def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Return which boxes lie inside their keep-out ball or zone, where no position is allowed.
+    """Check which boxes lie inside their keep-out ball or zone, where no position is allowed.
 
     Args:
         family: with its keep-out balls and zones.
@@ -52,7 +53,7 @@ def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxe
 
 
 def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
-    """Return what a root box leaves out that could beat the bound, or an empty string.
+    """Find a face of a root box that leaves out what could beat the bound; an empty string if there is none.
 
     Beyond each of its faces lies nothing of the domain, or nothing within a node's reach: there
     ``n + w / a^2 <= t d``.
@@ -74,3 +75,30 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
             end = f"{'xyz'[i]} = {face_m[i]:g} m"
             return f"the root box ends at {end}, beyond which poses could exceed the bound"
     return ""
+
+
+def off_band_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Check which leaves hold no axis of the band, wherever their boxes are.
+
+    With one coordinate at 1 and the squares of the two others in intervals, ``u_z^2 / |u|^2`` is largest
+    where z is and x and y are not, and the other way round.
+
+    Args:
+        family: of no effect.
+        field: a free axis within a band.
+        leaves: with cells.
+        boxes: of no effect.
+    """
+    cell = leaves.cell
+    row, on_face = np.arange(len(cell)), cell[:, 0] >= 0
+    face = np.maximum(cell[:, 0], 0)
+    least, most = np.ones((3, len(cell))), np.ones((3, len(cell)))
+    for side in range(2):
+        square = Interval(*cell_ends(cell, side)).squared()
+        v = (face + 1 + side) % 3
+        least[v, row], most[v, row] = square.low, square.high
+    lower, upper = field.band
+    # c (x^2 + y^2 + z^2) - z^2 for the greatest z^2 and the least x^2 and y^2, and the other way round
+    below = (Interval(least[0]) + least[1] + most[2]) * lower - most[2]
+    above = (Interval(most[0]) + most[1] + least[2]) * upper - least[2]
+    return np.asarray(on_face & ((below.low > 0.0) | (above.high < 0.0)))

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.certificate.axis_cells import cell_ends, off_band_holds, side_form
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.forms import quadratic
+from nullpose.certificate.forms import cell_ends, quadratic, side_form
+from nullpose.certificate.plain_tests import off_band_holds
 from nullpose.problem.axis_field import AxisField
 
 seeds = st.integers(0, 2**32 - 1)
@@ -91,27 +91,3 @@ def test_cells_off_the_band_hold_none_of_its_axes(seed: int, band: list, make_le
             assert max(below, above) > 0
         else:
             assert max(below, above) < 1e-12
-
-
-def test_bounds_of_the_elevation_are_met(make_leaves: Callable) -> None:
-    """Bands that end just beyond what a cell holds are missed, those that end just inside are not."""
-    rng = np.random.default_rng(3)
-    for cell in cells_of(rng, 200, 5):
-        least, most = (float(x) for x in elevations(cell))
-        leaves = make_leaves(1, cell=cell[None])
-        for end, inside in ((least, -1.0), (most, 1.0)):
-            for beyond in (1.0 - 1e-9, 1.0 + 1e-9):
-                c = end * beyond
-                outwards = (beyond - 1.0) * inside > 0.0
-                if not 0.0 < c < 1.0:
-                    continue
-                field = AxisField.within(c, 1.0) if inside > 0.0 else AxisField.within(0.0, c)
-                assert off_band_holds(NO_FAMILY, field, leaves, boxes_for(1))[0] == outwards
-
-
-def test_every_axis_is_within_the_whole_band(make_leaves: Callable) -> None:
-    """Without a band, or where the position gives the axis, no cell is out of reach."""
-    cells = cells_of(np.random.default_rng(5), 100, 10)
-    leaves = make_leaves(100, cell=cells)
-    for field in (AxisField.free(), AxisField.vertical()):
-        assert not np.any(off_band_holds(NO_FAMILY, field, leaves, boxes_for(100)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from nullpose.problem.convex import convex_parts, hull_and_pockets
+from nullpose.problem.airspace import convex_parts, hull_and_pockets
 from nullpose.scenario.polygon import area_m2, depth_m
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -81,14 +81,6 @@ def test_stars_are_cut_into_convex_parts(seed: int, count: int) -> None:
     check_parts(star(rng, count), rng)
 
 
-def test_a_convex_polygon_is_its_only_part() -> None:
-    """What is convex is not cut, with vertices in the middle of its sides or not."""
-    for name in ("triangle", "square", "square with a vertex in each side"):
-        polygon = np.array(SHAPES[name], dtype=float)
-        (part,) = convex_parts(polygon)
-        np.testing.assert_array_equal(part, polygon)
-
-
 def check_hull(polygon: np.ndarray, rng: np.random.Generator) -> None:
     """Checks that hull and pockets make up each other: hull = polygon + pockets, and nothing twice."""
     hull, pockets = hull_and_pockets(polygon)
@@ -121,14 +113,6 @@ def test_hull_and_pockets_of_stars(seed: int, count: int) -> None:
     """Random polygons: the hull is the polygon and its pockets, each counter-clockwise."""
     rng = np.random.default_rng(seed)
     check_hull(star(rng, count), rng)
-
-
-def test_a_convex_polygon_has_no_pockets() -> None:
-    """A convex polygon is its own hull."""
-    polygon = np.array(SHAPES["triangle"], dtype=float)
-    hull, pockets = hull_and_pockets(polygon)
-    assert {tuple(corner) for corner in hull} == {tuple(corner) for corner in polygon}
-    assert pockets == []
 
 
 def test_many_vertices_are_cut_in_seconds() -> None:

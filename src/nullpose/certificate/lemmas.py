@@ -1,0 +1,32 @@
+"""Numbers of the lemmas, rounded up; "The certificate explained" derives each, and so does a test.
+
+The solver has its own copies. Powers of distances are left to the place of use.
+"""
+
+from __future__ import annotations
+
+import math
+
+_UP = 1.0 + 1e-12
+ROUNDING = 1.0 + 1e-9
+"""More than the rounding of a basis: its columns may be longer than one by so much."""
+
+# A direction to a point, seen from a position that moves along a unit direction.
+DIRECTION_BEND = 2.0 / math.sqrt(3.0) * _UP
+"""The most that its frame's second derivative does to a unit vector: of 4 sin^2 - 3 sin^4, at sin^2 = 2/3."""
+DIRECTION_THIRD = 2.31
+"""Of its third derivative what is no multiple of the step: 6 cos^2 sin at most, 4 / sqrt(3)."""
+FORM_SWING = (1.0 + math.sqrt(2.0)) * _UP
+"""The second derivative of a constant form in a turning frame, over the spread of its eigenvalues."""
+AREA_BEND = 2.0 * DIRECTION_BEND
+"""The second derivative of a squared length in a turning frame, from the bend alone."""
+NULL_SWERVE = (2.0 + 2.0 / math.sqrt(3.0)) * _UP
+"""The second derivative of a direction in a turning frame, near a null."""
+
+# The derivatives of a link vector along a unit direction (lemma 5).
+VECTOR_SLOPE = 2.0 / math.sqrt(3.0) * ROUNDING
+VECTOR_BEND = 3.0 * ROUNDING
+VECTOR_THIRD = 9.89 * ROUNDING
+
+SPREAD_OVER_NORM = math.sqrt(2.0) * _UP
+"""The spread of a symmetric form's eigenvalues, over its Frobenius norm."""
