@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.problem.schemes import Curve, SchemeRecord
+from nullpose.problem.schemes import SchemeRecord
 
 if TYPE_CHECKING:
     from nullpose.problem.axis_field import AxisField
@@ -23,7 +23,6 @@ NORTHWARD = SchemeRecord(
     name="northward",
     label="Northward",
     short="north",
-    curve=Curve("northward", "#008040", "-", "v", 1.5, 3.1),
     sentence=lambda scenario, null_jammer: "with an antenna along the north",
     fields=_fields,
     any_objective=True,

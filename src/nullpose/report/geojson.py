@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -77,7 +76,7 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
         named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
         yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
     for node, link in zip(scenario.nodes, solution.links, strict=True):
-        values = {key: value for key, value in asdict(link).items() if value is not None and key != "node"}
+        values = dict(link.values)
         yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **values}
     for jammer in scenario.jammers:
         reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}

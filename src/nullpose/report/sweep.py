@@ -7,7 +7,7 @@ from pathlib import Path
 from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.document import View, document, grouped, table
-from nullpose.report.figures.style import CURVES, write_figure
+from nullpose.report.figures.style import curve_of, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.numbers import bound_text, capitalised
 from nullpose.solver import Status
@@ -59,7 +59,7 @@ def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:
     """Set a row for each value of a sweep."""
     rows = {value: {heading: f"{value:.6g}"} for value in sweep.values}
     for row in sweep.rows:
-        rows[row.value][CURVES[row.scheme].label] = _cell(row)
+        rows[row.value][curve_of(row.scheme).label] = _cell(row)
     return list(rows.values())
 
 

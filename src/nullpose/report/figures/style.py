@@ -56,6 +56,12 @@ CURVES: Mapping[str, Curve] = MappingProxyType(
 )
 """How schemes are drawn, by name."""
 
+
+def curve_of(scheme: str) -> Curve:
+    """Look up how a scheme is drawn: green and dotted, if it has no curve of its own."""
+    return CURVES.get(scheme) or Curve(scheme, "#007a3d", ":", "v", 1.5, 3.1)
+
+
 VEHICLES: Mapping[str, Curve] = MappingProxyType(
     {
         "level-vertical": Curve("level, vertical", "#cc79a7", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.0),

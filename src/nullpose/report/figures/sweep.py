@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, draw_curve, house_style, inches
+from nullpose.report.figures.style import CURVES, GREY, curve_of, draw_curve, house_style, inches
 from nullpose.report.numbers import axis_label, capitalised
 from nullpose.study import SweepRow, SweepTable
 
@@ -49,10 +49,10 @@ def draw_curves(axes: Axes, table: SweepTable) -> bool:
 
 def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bool:
     """Draw a curve with a band up to its bounds; return whether they can be seen apart."""
-    look, rows = CURVES[scheme], table.of(scheme)
+    look, rows = curve_of(scheme), table.of(scheme)
     values, bounds = _in_unit(rows, "value"), _in_unit(rows, "upper_bound")
     levels = [row.value for row in rows]
-    first = list(CURVES).index(scheme)  # staggered, so that curves which coincide both stay visible
+    first = [*CURVES, scheme].index(scheme)  # staggered, so that curves which coincide both stay visible
     step = math.ceil(len(rows) / _MARKERS)
     every = 1 if step == 1 else (first, max(len(CURVES), step))
     draw_curve(axes, look, levels, values, (values, bounds), every=every)
