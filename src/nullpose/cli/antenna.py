@@ -8,20 +8,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from nullpose.cli.options import (
-    AllowOutside,
-    Fast,
-    FigureFile,
-    Gap,
-    JsonOutput,
-    NodeLimit,
-    Overrides,
-    ScenarioFile,
-    Seed,
-    TimeLimit,
-    read_scenario,
-    solve_options,
-)
+from nullpose.cli.options import Fast, FigureFile, JsonOutput, ProofOptions, SceneOptions, expanded
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
 
@@ -30,7 +17,7 @@ class _FileOrVerb(TyperGroup):
     """Verbs, of which ``show`` may be left out before its file."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Return what is left of the arguments, a verb first."""
+        """Parse the arguments after putting a verb first."""
         if args and args[0] not in {*self.commands, *ctx.help_option_names}:
             args = ["show", *args]
         return super().parse_args(ctx, args)
@@ -88,27 +75,19 @@ def show(
 
 
 @antenna.command()
+@expanded
 def compare(
-    file: ScenarioFile,
-    overrides: Overrides = None,
-    allow_outside: AllowOutside = False,
-    gap: Gap = None,
-    time_limit: TimeLimit = 60.0,
-    node_limit: NodeLimit = 10**9,
-    fast: Fast = False,
-    seed: Seed = 0,
-    json_output: JsonOutput = False,
+    scene: SceneOptions, proof: ProofOptions, fast: Fast = False, json_output: JsonOutput = False
 ) -> None:
     """Compare ideal antennas (the paper's) with those of a scenario.
 
     It evaluates the best pose for ideal antennas with the antennas that the scenario states, and finds the
     best pose for the stated antennas. Ideal: a short dipole, and isotropic antennas on the ground.
     """
-    scenario = read_scenario(file, overrides, allow_outside)
-    options = solve_options(gap, time_limit, node_limit, fast, seed)
+    scenario = scene.read()
     from nullpose.report.antennas import answer, antennas_view
     from nullpose.study import compare_antennas
 
     with compiling_announced(), Ticker("comparing antennas") as ticker:
-        found = compare_antennas(scenario, on_progress=ticker, **options)
+        found = compare_antennas(scenario, on_progress=ticker, **proof.keywords(fast))
     tell(found, antennas_view, json_output, answer=answer(found))

@@ -9,14 +9,13 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.antenna import antenna
-from nullpose.cli.check import check
+from nullpose.cli.check import check, schema
 from nullpose.cli.compare import compare
 from nullpose.cli.evaluate import evaluate
 from nullpose.cli.faults import FaultReportingGroup
 from nullpose.cli.map import best_map
 from nullpose.cli.printing import replace_lacking_letters, say
 from nullpose.cli.reproduce import reproduce
-from nullpose.cli.schema import schema
 from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
 from nullpose.cli.study import study

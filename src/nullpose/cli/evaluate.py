@@ -14,27 +14,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nullpose.scenario import Scenario
-from nullpose.cli.options import (
-    AllowOutside,
-    Gap,
-    JsonOutput,
-    NodeLimit,
-    Off,
-    Overrides,
-    ScenarioFile,
-    Seed,
-    TimeLimit,
-    error_sizes,
-    read_scenario,
-    solve_options,
-)
+from nullpose.cli.options import JsonOutput, Off, ProofOptions, SceneOptions, error_sizes, expanded
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.printing import say
 from nullpose.cli.progress import GapBar
 
 
+@expanded
 def evaluate(
-    file: ScenarioFile,
+    *,
+    scene: SceneOptions,
     pose: Annotated[
         str | None,
         typer.Option("--pose", metavar="X,Y,Z", help="The drone's position in metres.", show_default=False),
@@ -68,12 +57,7 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
-    overrides: Overrides = None,
-    allow_outside: AllowOutside = False,
-    gap: Gap = None,
-    time_limit: TimeLimit = 60.0,
-    node_limit: NodeLimit = 10**9,
-    seed: Seed = 0,
+    proof: ProofOptions,
     off: Off = None,
     json_output: JsonOutput = False,
 ) -> None:
@@ -90,31 +74,30 @@ def evaluate(
         raise UsageError(
             "evaluate: give either --pose or --pose-lat-lon, with --attitude unless it is 0,0,0, or --poses"
         )
-    scenario = read_scenario(file, overrides, allow_outside)
+    scenario = scene.read()
     if scenario.array is not None:
         raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
     mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
-    given: Poses | list[Pose]
+    candidates: Poses | list[Pose]
     if poses is not None:
-        given = poses_from_csv(poses, mount_rad, scenario.origin)
+        candidates = poses_from_csv(poses, mount_rad, scenario.origin)
     else:
-        angles_deg = _three("--attitude", attitude or "0,0,0")
-        roll, pitch, yaw = map(math.radians, angles_deg)
+        roll, pitch, yaw = map(math.radians, _three("--attitude", attitude or "0,0,0"))
         position_m = _three("--pose", pose or "") if pose_lat_lon is None else _placed(scenario, pose_lat_lon)
-        given = [Pose(position_m, roll, pitch, yaw, mount_rad)]
+        candidates = [Pose(position_m, roll, pitch, yaw, mount_rad)]
     remedy = "--pose-lat-lon LAT,LON,ALT, or in a file the columns lat_deg, lon_deg and alt_m"
-    for doubt in close_to_degrees(scenario.origin, [each.position_m for each in given], remedy):
-        say(f"warning: {'--pose' if poses is None else poses}: {doubt}", err=True)
-    options, sizes = solve_options(gap, time_limit, node_limit, False, seed), error_sizes(off)
+    for warning in close_to_degrees(scenario.origin, [each.position_m for each in candidates], remedy):
+        say(f"warning: {'--pose' if poses is None else poses}: {warning}", err=True)
+    options, sizes = proof.keywords(), error_sizes(off)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         best = solve(scenario, on_progress=bar, **options)
-    evaluation = evaluate_against(replace(best, error_sizes=sizes), given)
+    evaluation = evaluate_against(replace(best, error_sizes=sizes), candidates)
     found = evaluation.results[0] if poses is None else evaluation
     tell(found, lambda _: evaluation_view(evaluation), json_output)
 
 
 def _placed(scenario: Scenario, text: str) -> NDArray[np.float64]:
-    """Return the position of a latitude, longitude and altitude.
+    """Convert a latitude, longitude and altitude to a position.
 
     Raises:
         UsageError: the scenario has no origin, or the place is not near it.
@@ -131,7 +114,7 @@ def _placed(scenario: Scenario, text: str) -> NDArray[np.float64]:
 
 
 def _three(option: str, text: str) -> NDArray[np.float64]:
-    """Return three numbers that are separated by commas.
+    """Read three numbers that are separated by commas.
 
     Raises:
         UsageError: they are not.

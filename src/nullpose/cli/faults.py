@@ -33,11 +33,7 @@ class FaultReportingGroup(TyperGroup):
     """The command line's verbs; what they raise on purpose ends as a message, never as a traceback."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Return what the verb returns, or end the process with a message and an exit code.
-
-        Args:
-            ctx: the parsed command line.
-        """
+        """Run the verb, or end the process with a message and an exit code."""
         as_json = "--json" in [*ctx._protected_args, *ctx.args]
         # the compiler of the kernels calls back from native code, where an interrupt becomes another error
         pressed = threading.Event()
@@ -77,32 +73,30 @@ class FaultReportingGroup(TyperGroup):
 
 
 def _as_json(error: NullposeError, code: int) -> str:
-    """Return an error as one line of JSON."""
+    """Write an error as one line of JSON."""
     faults = error.faults if isinstance(error, ScenarioError) else (Fault("", str(error)),)
-    told = {
+    content = {
         "error": type(error).__name__,
         "source": getattr(error, "source", ""),
         "faults": [{"path": fault.path, "message": fault.message} for fault in faults],
         "exit_code": code,
     }
-    return json.dumps(told)
+    return json.dumps(content)
 
 
 def _plain_choice(message: str) -> str:
-    """Return what is said of a word that is no choice, with the one that may be meant."""
+    """Add to a message on a word that is no choice the choice that may be meant."""
     message = message.removeprefix("Value error, ")
-    given, *choices = re.findall(r"'([^']*)'", message) if "is not one of" in message else [""]
-    guess = get_close_matches(given, choices, 1)
+    word, *choices = re.findall(r"'([^']*)'", message) if "is not one of" in message else [""]
+    guess = get_close_matches(word, choices, 1)
     return f"{message.removesuffix('.')}; did you mean '{guess[0]}'?" if guess else message
 
 
 @contextmanager
 def signals_handled(handler: Callable[[int, FrameType | None], object], *names: str) -> Iterator[None]:
-    """Have signals handled by a function in the block; outside the main thread they stay as they are.
+    """Have the signals of these names, where the system knows them, handled by a function in the block.
 
-    Args:
-        handler: called with a signal's number and the frame that it met.
-        names: of the signals; those that the system does not know are left out.
+    Outside the main thread they stay as they are.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

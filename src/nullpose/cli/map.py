@@ -6,28 +6,16 @@ from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import (
-    AllowOutside,
-    Fast,
-    Gap,
-    JsonOutput,
-    NodeLimit,
-    OutFolder,
-    Overrides,
-    ScenarioFile,
-    Seed,
-    TimeLimit,
-    Width,
-    read_scenario,
-    solve_options,
-)
+from nullpose.cli.options import Fast, JsonOutput, OutFolder, ProofOptions, SceneOptions, Width, expanded
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import GapBar
 from nullpose.problem.schemes import Scheme
 
 
+@expanded
 def best_map(
-    file: ScenarioFile,
+    *,
+    scene: SceneOptions,
     out: OutFolder,
     scheme: Annotated[
         Scheme, typer.Option("--scheme", help="Scheme that chooses the axis.")
@@ -41,13 +29,8 @@ def best_map(
     cells: Annotated[
         int, typer.Option("--cells", metavar="N", help="Number of points along the longer side.")
     ] = 181,
-    overrides: Overrides = None,
-    allow_outside: AllowOutside = False,
-    gap: Gap = None,
-    time_limit: TimeLimit = 60.0,
-    node_limit: NodeLimit = 10**9,
+    proof: ProofOptions,
     fast: Fast = False,
-    seed: Seed = 0,
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
@@ -57,18 +40,16 @@ def best_map(
 
     It writes a table (CSV) and a figure (PNG, PDF).
     """
-    from nullpose.files import check_outputs, prepare_folder
+    from nullpose.files import prepare_folder
     from nullpose.report.value_map import map_view, write_map
-    from nullpose.scenario.loading import files_of
     from nullpose.solver import solve
     from nullpose.solver.options import SolveOptions
     from nullpose.study.value_map import require_map, value_map
 
-    scenario = read_scenario(file, overrides, allow_outside)
+    scenario = scene.read()
     require_map(scenario, altitude, cells)
-    outputs = {f"--out ({name})": out / name for name in ("map.csv", "map.png", "map.pdf")}
-    check_outputs(files_of(file, overrides or ()), outputs)
-    options = solve_options(gap, time_limit, node_limit, fast, seed)
+    scene.check_outputs({f"--out ({name})": out / name for name in ("map.csv", "map.png", "map.pdf")})
+    options = proof.keywords(fast)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         result = solve(scenario, scheme.value, on_progress=bar, **options)
         field = value_map(result, altitude_m=altitude, cells=cells)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
+from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +15,7 @@ from nullpose.cli.printing import say
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
-    from nullpose.solver import ErrorSizes
+    from nullpose.solver import ErrorSizes, SolveKeywords
 
 
 class FigureWidth(StrEnum):
@@ -144,38 +147,94 @@ OutFolder = Annotated[
 ]
 
 
-def solve_options(
-    gap: float | None, time_limit: float, node_limit: int, fast: bool, seed: int
-) -> dict[str, Any]:
-    """Return the options of a solve as the solver takes them.
+@dataclass(frozen=True, kw_only=True)
+class SceneOptions:
+    """The scenario file of a verb, and how it is read."""
 
-    Args:
-        gap: relative gap asked for, or None.
-        time_limit: seconds after which a proof stops.
-        node_limit: boxes after which it stops.
-        fast: whether nothing is to be proved.
-        seed: of the searches.
-    """
-    return {
-        "gap": gap,
-        "time_limit_s": time_limit,
-        "node_limit": node_limit,
-        "certify": not fast,
-        "seed": seed,
-    }
+    file: ScenarioFile
+    overrides: Overrides = None
+    allow_outside: AllowOutside = False
+
+    def read(self) -> Scenario:
+        """Read the scenario with its values changed; warn of what looks like a mistake.
+
+        Raises:
+            ScenarioError: with every fault of the file or of the changes.
+        """
+        from nullpose.scenario import doubts, load
+
+        scenario = load(
+            self.file,
+            allow_outside=self.allow_outside,
+            overrides=self.overrides or [],
+            on_note=lambda note: say(note, err=True),
+        )
+        for warning in doubts(scenario):
+            say(f"warning: {warning}", err=True)
+        return scenario
+
+    def check_outputs(self, outputs: Mapping[str, Path | None]) -> None:
+        """Make sure, before any work, that outputs can be written and take no input's place.
+
+        Raises:
+            OutputError: an output is an input or another output too, or it or its folder cannot be written.
+        """
+        from nullpose.files import check_outputs
+        from nullpose.scenario.loading import files_of
+
+        check_outputs(files_of(self.file, self.overrides or ()), outputs)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProofOptions:
+    """The options of every verb that proves."""
+
+    gap: Gap = None
+    time_limit: TimeLimit = 60.0
+    node_limit: NodeLimit = 10**9
+    seed: Seed = 0
+
+    def keywords(self, fast: bool = False) -> SolveKeywords:
+        """Name the options as the solver takes them."""
+        return {
+            "gap": self.gap,
+            "time_limit_s": self.time_limit,
+            "node_limit": self.node_limit,
+            "certify": not fast,
+            "seed": self.seed,
+        }
+
+
+def expanded(verb: Callable[..., None]) -> Callable[..., None]:
+    """Give a verb the options of each group that it takes, one by one, as Typer reads them."""
+    groups: dict[str, Any] = {}
+    parameters: list[Parameter] = []
+    for name, parameter in signature(verb, eval_str=True).parameters.items():
+        members = [parameter]
+        if is_dataclass(parameter.annotation):
+            groups[name] = parameter.annotation
+            members = list(signature(groups[name], eval_str=True).parameters.values())
+        parameters += [member.replace(kind=Parameter.KEYWORD_ONLY) for member in members]
+
+    def run(**values: object) -> None:
+        for name, group in groups.items():
+            values[name] = group(**{member.name: values.pop(member.name) for member in fields(group)})
+        verb(**values)
+
+    run.__name__, run.__doc__ = verb.__name__, verb.__doc__
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    return run
 
 
 def error_sizes(text: str | None) -> ErrorSizes:
     """Read the largest errors from a text such as ``attitude_deg=2,jammers_m=200``.
 
-    Args:
-        text: sizes by name, those left out being the default ones; None for all of these.
+    Those left out have their default; None leaves out all.
 
     Raises:
         UsageError: an unknown name, or no number.
     """
-    from dataclasses import fields
-
     from nullpose.errors import UsageError
     from nullpose.solver.sensitivity import ErrorSizes
 
@@ -196,43 +255,15 @@ def error_sizes(text: str | None) -> ErrorSizes:
     return ErrorSizes(**sizes)
 
 
-def read_scenario(file: Path, overrides: list[str] | None, allow_outside: bool) -> Scenario:
-    """Return the scenario of a file with some of its values changed; warn of what looks like a mistake.
-
-    Args:
-        file: TOML.
-        overrides: changes as ``PATH=VALUE``, or None.
-        allow_outside: whether it may name files outside its folder.
-
-    Raises:
-        ScenarioError: with every fault of the file or of the changes.
-    """
-    from nullpose.scenario import doubts, load
-
-    scenario = load(
-        file,
-        allow_outside=allow_outside,
-        overrides=overrides or [],
-        on_note=lambda note: say(note, err=True),
-    )
-    for doubt in doubts(scenario):
-        say(f"warning: {doubt}", err=True)
-    return scenario
-
-
-def refuse(where: str, **given: object) -> None:
-    """Raise a UsageError if an option was given where it has no meaning.
-
-    Args:
-        where: the case that has no such option, as in "with --robust".
-        given: the options by their names, false or None where not given.
+def refuse(where: str, **options: object) -> None:
+    """Refuse options where they have no meaning, as in "with --robust"; a false value is not given.
 
     Raises:
         UsageError: one of them was.
     """
     from nullpose.errors import UsageError
 
-    for name, value in given.items():
+    for name, value in options.items():
         if value:
             option = name.replace("_", "-")
             raise UsageError(f"--{option}: given {where}, which has none; leave out one of the two")

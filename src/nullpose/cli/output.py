@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import typer
 
@@ -15,29 +15,39 @@ from nullpose.cli.printing import say
 from nullpose.errors import SolveError, UsageError
 
 if TYPE_CHECKING:
+    from nullpose.cli.options import SceneOptions
     from nullpose.report.document import View
 
+
+class Plain(Protocol):
+    """What can be printed as JSON."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+
+
+Found = TypeVar("Found", bound=Plain)
 _COMPILING = "Compiling kernels for this machine (once for each kind of scene, about 20 s) ..."
 
 
 def tell(
-    found: Any,
-    view: Callable[[Any], View],
+    found: Found,
+    view: Callable[[Found], View],
     json_output: bool,
     *,
     files: Sequence[Path] = (),
     fault: str = "",
     **more: object,
 ) -> None:
-    """Print what was found, as JSON or as tables; end with the code of interrupts if one ended the work.
+    """Print a result as JSON or as tables; end with the code of interrupts if an interrupt ended the work.
 
     Args:
-        found: by the verb; has a ``to_dict``.
-        view: returns its tables, or a text.
-        json_output: whether JSON is wanted.
-        files: what was written, to be named.
-        fault: what is wrong with it all the same; empty for nothing.
-        more: what else the JSON object holds.
+        found: what the verb found.
+        view: turns it into tables, or a text.
+        json_output: whether JSON is printed in place of these.
+        files: the files that were written, to be named.
+        fault: what is wrong with the result; empty for nothing.
+        more: further keys of the JSON object.
 
     Raises:
         SolveError: there is a fault.
@@ -57,11 +67,7 @@ def tell(
 
 
 def show(view: View) -> None:
-    """Print a text as it is, or tables, on standard output.
-
-    Args:
-        view: a text, or anything else that rich can draw.
-    """
+    """Print a text as it is, or tables, on standard output."""
     if isinstance(view, str):
         say(view, broken=False)
         return
@@ -75,11 +81,7 @@ def show(view: View) -> None:
 
 
 def show_json(value: object) -> None:
-    """Print one JSON object on standard output.
-
-    Args:
-        value: plain data.
-    """
+    """Print plain data as one JSON object on standard output."""
     from nullpose.files import json_text
 
     say(json_text(value), broken=False)
@@ -97,34 +99,18 @@ def compiling_announced() -> Iterator[None]:
 
 
 def prepare_outputs(
-    file: Path,
-    overrides: Sequence[str] | None,
-    *,
-    figure: Path | None,
-    width: str | None = None,
-    **others: Path | None,
+    scene: SceneOptions, *, figure: Path | None, width: str | None = None, **others: Path | None
 ) -> None:
-    """Make sure, before any work, that what was asked for can be written, and takes no other file's place.
-
-    Args:
-        file: the scenario's.
-        overrides: its changes, or None.
-        figure: where to, or None if no figure was asked for.
-        width: of the figure in print, or None.
-        others: further outputs by the names of their options.
+    """Make sure, before any work, that a figure and other outputs, by their options, can be written.
 
     Raises:
         UsageError: a width without a figure; or the figure's name ends in none of .png, .svg and .pdf.
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
-    from nullpose.files import check_outputs
-    from nullpose.scenario.loading import files_of
-
     if width is not None and figure is None:
         raise UsageError("--width: given without --figure; add --figure FILE, or leave out --width")
     if figure is not None:
         from nullpose.report.figures.style import prepare_figure_file
 
         prepare_figure_file(figure)
-    outputs = {f"--{name}": path for name, path in {**others, "figure": figure}.items()}
-    check_outputs(files_of(file, overrides or ()), outputs)
+    scene.check_outputs({f"--{name}": path for name, path in {**others, "figure": figure}.items()})

@@ -44,7 +44,7 @@ class ProgressBar:
         if now - self._began < _QUIET_S:
             return
         if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
-            self._bar = self._bar or self._begun()
+            self._bar = self._bar or self._new_bar()
             self._bar.update(self._bar.task_ids[0], completed=share, description=words)
         elif now - self._logged >= _LOG_EVERY_S:
             self._logged = now
@@ -58,7 +58,7 @@ class ProgressBar:
         else:
             self._bar.console.print(line, markup=False, highlight=False)
 
-    def _begun(self) -> Progress:
+    def _new_bar(self) -> Progress:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -99,7 +99,7 @@ class GapBar(ProgressBar):
         self.show(self.closed(gap), f"gap {gap:.1e} of {self._target:.1e}, {boxes} boxes")
 
     def closed(self, gap: float) -> float:
-        """Return the share of the way from the widest gap seen to the target, in orders of magnitude."""
+        """Compute the share of the way from the widest gap seen to the target, in orders of magnitude."""
         if not gap > self._target:
             return 1.0
         if not self._widest > gap:
@@ -108,16 +108,16 @@ class GapBar(ProgressBar):
 
 
 class StudyBar(ProgressBar):
-    """Progress of a study, and what is to be told of it."""
+    """Progress of a study, with its notes."""
 
     def __init__(self) -> None:
         super().__init__("study")
-        self._told = ""
+        self._last_note = ""
 
     def __call__(self, progress: StudyProgress) -> None:
         """Take note of how far the study is: scenes, rate, time left, workers and failures."""
-        if progress.note and progress.note != self._told:
-            self._told = progress.note
+        if progress.note and progress.note != self._last_note:
+            self._last_note = progress.note
             self.say(progress.note)
         share, left = progress.done / progress.scenes, progress.seconds_left
         parts = [

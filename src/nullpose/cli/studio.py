@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.faults import signals_handled
-from nullpose.cli.options import AllowOutside, Overrides, read_scenario
+from nullpose.cli.options import AllowOutside, Overrides, SceneOptions
 from nullpose.cli.printing import say
 
 _LOOPBACK = "127.0.0.1"
@@ -43,7 +43,8 @@ def studio(
     if file is None:
         scenario, text = apply_overrides(new_scenario(), overrides or []), ""
     else:
-        scenario, text = read_scenario(file, overrides, allow_outside), file_text(file)
+        scene = SceneOptions(file=file, overrides=overrides, allow_outside=allow_outside)
+        scenario, text = scene.read(), file_text(file)
 
     ended = threading.Event()
     with (

@@ -9,15 +9,12 @@ import typer
 from nullpose.cli.options import (
     AllowOutside,
     Fast,
-    Gap,
     JsonOutput,
-    NodeLimit,
     OutFolder,
+    ProofOptions,
     ScenarioFile,
-    Seed,
-    TimeLimit,
     Width,
-    solve_options,
+    expanded,
 )
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.printing import say
@@ -25,7 +22,9 @@ from nullpose.cli.progress import Ticker
 from nullpose.problem.schemes import Scheme
 
 
+@expanded
 def sweep(
+    *,
     file: ScenarioFile,
     settings: Annotated[
         list[str],
@@ -53,11 +52,8 @@ def sweep(
             show_default="the paper's four",
         ),
     ] = None,
-    gap: Gap = None,
-    time_limit: TimeLimit = 60.0,
-    node_limit: NodeLimit = 10**9,
+    proof: ProofOptions,
     fast: Fast = False,
-    seed: Seed = 0,
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
@@ -77,7 +73,7 @@ def sweep(
         points=points,
         log=log,
         schemes=[name.value for name in scheme] if scheme else None,
-        **solve_options(gap, time_limit, node_limit, fast, seed),
+        **proof.keywords(fast),
     )
     outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg", "sweep.pdf")}
     check_outputs(files_of(file), outputs)

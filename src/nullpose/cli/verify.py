@@ -53,7 +53,9 @@ def verify(
             say(f"scheme {certificate.scheme}, scenario SHA-256 {digest}\n")
             show(scenario_view(certificate.scenario))
         if scenario is not None:
-            told = f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"
-            say("\n  ".join([told, *unlike]), err=bool(unlike))
+            words = (
+                f"not about {scenario}, which differs:" if unlike else f"about {scenario}: nothing differs"
+            )
+            say("\n  ".join([words, *unlike]), err=bool(unlike))
     if unlike or not verdict.proved:
         raise typer.Exit(INTERNAL)

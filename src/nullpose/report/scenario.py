@@ -199,7 +199,7 @@ def _place_rows(places: Sequence[Mapping[str, Any]]) -> list[Row]:
     for heading, (key, digits) in _EARTHLY.items():
         ends = [place.get(key) for place in places]
         ends = [end if end is None or isinstance(end, list) else [end] for end in ends]
-        columns[heading] = [end and " to ".join(f"{x:z.{digits}f}" for x in end) for end in ends]
+        columns[heading] = [end and "\nto ".join(f"{x:z.{digits}f}" for x in end) for end in ends]
     return rows(columns)
 
 
