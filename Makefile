@@ -26,9 +26,10 @@ test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who i
 	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }
 	$(BIN)/pytest -n 2 --dist loadfile tests/studio/browser/studio_*.py
 
-check: .venv/.with-lint ## lint, format, types and the import contract
+check: .venv/.with-lint ## lint, format, spelling, types and the import contract
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md benchmarks docs examples src
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 

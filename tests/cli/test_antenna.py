@@ -38,11 +38,3 @@ def test_json(run: Run, paper: str) -> None:
     ]
     assert list(data) == keys
     assert data["received"]["value"] < data["possible"]["objective"]["value"]
-
-
-def test_the_papers_antennas_are_refused(run: Run, paper: str) -> None:
-    """A file that states no other antenna is a fault of usage, told in one message."""
-    result = run("antenna", "compare", paper)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert "null_depth_db" in result.stderr

@@ -1,4 +1,4 @@
-"""The verb `check`: what a scenario amounts to, without solving it."""
+"""The verbs `check` and `schema`: what a scenario amounts to, without solving it."""
 
 import json
 import math
@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import pytest
 from typer.testing import Result
+
+from nullpose import json_schema
 
 Run = Callable[..., Result]
 
@@ -26,7 +28,8 @@ def test_best_ratio_is_that_of_the_closest_point(run: Run, paper: str) -> None:
     assert answer["jammers"][0]["nearest_m"] == pytest.approx(4.0)
 
 
-def test_overrides_apply(run: Run, paper: str) -> None:
-    """What is shown is the scenario with its overrides."""
-    answer = json.loads(run("check", paper, "--set", "jammers.M.power_dbm=40", "--json").stdout)
-    assert answer["jammers"][0]["power_w"] == pytest.approx(10.0)
+def test_schema_is_printed_whole(run: Run) -> None:
+    """Standard output is the schema and nothing else."""
+    result = run("schema")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert json.loads(result.stdout) == json_schema()

@@ -12,7 +12,6 @@ import pytest
 from typer.testing import Result
 
 import nullpose.cli.check
-from nullpose.cli.app import app
 from nullpose.cli.faults import BAD_INPUT, INTERNAL, INTERRUPTED, PIPE_CLOSED
 from nullpose.errors import SolveError
 from nullpose.study import SweepPlan
@@ -112,12 +111,6 @@ def test_all_faults_at_once(run: Run, tmp_path: Path) -> None:
     assert_refused(run("compare", path), *words)
 
 
-def test_missing_file(process: Process, tmp_path: Path) -> None:
-    """A file that is not there is named."""
-    path = tmp_path / "nowhere.toml"
-    assert_refused(process("solve", path), str(path), "no such file")
-
-
 def test_unreadable_file(run: Run, tmp_path: Path) -> None:
     """A folder in place of a file is refused, and so are bytes that are no text."""
     assert_refused(run("solve", tmp_path), str(tmp_path), "folder")
@@ -138,22 +131,6 @@ def test_unreadable_file(run: Run, tmp_path: Path) -> None:
 def test_bad_override(run: Run, good: Path, setting: str, words: list[str]) -> None:
     """An override that leads nowhere is refused with the nearest path that exists."""
     assert_refused(run("solve", good, "--set", setting), *words)
-
-
-def test_scheme_that_does_not_apply(run: Run, tmp_path: Path) -> None:
-    """Zero interference without a jammer is refused with the reason, in solve and in sweep."""
-    path = tmp_path / "calm.toml"
-    path.write_text(GOOD[: GOOD.index("[[jammers]]")], encoding="utf-8")
-    assert_refused(run("solve", path, "--scheme", "zero-interference"), "zero-interference", "jammer")
-    swept = ("sweep", path, "--set", "receiver.noise_w", "--from", 1, "--to", 2, "--out", tmp_path / "out")
-    assert_refused(run(*swept, "--scheme", "zero-interference"), "zero-interference", "jammer")
-    assert not (tmp_path / "out").exists()
-
-
-def test_null_jammer_that_does_not_exist(run: Run, good: Path) -> None:
-    """An unknown jammer is refused with the names that there are."""
-    arguments = ("solve", good, "--scheme", "zero-interference", "--null-jammer", "Q")
-    assert_refused(run(*arguments), "'Q'", "M")
 
 
 @pytest.mark.parametrize(
@@ -197,13 +174,6 @@ def test_bad_limit(
     assert not out.exists()
 
 
-def test_a_certificate_of_nothing(run: Run, good: Path, tmp_path: Path) -> None:
-    """--fast proves nothing that could be written down."""
-    path = tmp_path / "proof.json"
-    assert_refused(run("solve", good, "--fast", "--certificate", path), "--certificate", "--fast")
-    assert not path.exists()
-
-
 def test_bad_range(run: Run, good: Path, tmp_path: Path) -> None:
     """A sweep's range is refused with all that is wrong with it, and nothing is written."""
     out = tmp_path / "out"
@@ -211,13 +181,6 @@ def test_bad_range(run: Run, good: Path, tmp_path: Path) -> None:
     result = run("sweep", good, "--set", "jammers.M.power_w", *arguments)
     assert_refused(result, "3 faults", "from: -1", "to: nan", "points: 1")
     assert not out.exists()
-
-
-def test_bad_value_in_the_middle_of_a_range(run: Run, good: Path, tmp_path: Path) -> None:
-    """Values that make no scenario are refused before the first solve."""
-    arguments = ("--from", -1, "--to", 1, "--points", 9, "--out", tmp_path / "out")
-    result = run("sweep", good, "--set", "jammers.M.power_w", *arguments)
-    assert_refused(result, "jammers[0].power_w", "at -1 and 4 other values")
 
 
 def test_not_exactly_one_path_to_vary(run: Run, good: Path, tmp_path: Path) -> None:
@@ -332,8 +295,3 @@ def test_reader_that_goes_away(good: Path, arguments: list[str]) -> None:
             [sys.executable, "-m", "nullpose", *words], stdout=pipe, stderr=subprocess.PIPE, check=False
         )
     assert (done.returncode, done.stderr) == (PIPE_CLOSED, b"")
-
-
-def test_the_group_is_what_the_program_uses() -> None:
-    """Errors are turned into messages by the application itself, not only by its entry point."""
-    assert app.info.cls.__name__ == "FaultReportingGroup"

@@ -7,11 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
-from nullpose import load
 from nullpose.cli import printing
-from nullpose.report.scenario import scenario_view
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NAME = "Größe \N{MINUS SIGN} ∞ ☃"
@@ -56,19 +53,6 @@ def test_an_encoding_that_lacks_letters(
     if "∞.svg" in arguments:
         (figure,) = folder.glob("*.svg")
         assert "DOCTYPE" in figure.read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("width", [30, 40, 60, 80])
-@pytest.mark.parametrize("name", ["no-fly", "whips", "eavesdropper", "geodetic"])
-def test_tables_break_between_words(name: str, width: int) -> None:
-    """Each word and number of a wide terminal stands whole in a narrow one."""
-
-    def words(columns: int) -> set[str]:
-        console = Console(width=columns, file=io.StringIO(), highlight=False, emoji=False)
-        console.print(scenario_view(load(EXAMPLES / f"{name}.toml")), crop=False)
-        return set(console.file.getvalue().replace("─", " ").split())
-
-    assert words(width) == words(400)
 
 
 @pytest.mark.parametrize("width", [20, 40, 80])

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 import nullpose.cli.progress
-from nullpose.cli.progress import GapBar, ProgressBar, StudyBar, Ticker
+from nullpose.cli.progress import GapBar, StudyBar, Ticker
 from nullpose.study.monte_carlo import StudyProgress
 
 
@@ -107,16 +107,6 @@ def test_a_terminal_gets_a_bar(
     assert words in terminal.getvalue()
 
 
-def test_what_is_in_brackets_is_no_markup(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A path of a setting is shown as it is."""
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    with Ticker("sweep of [bold]nodes") as bar:
-        clock.now_s += 2.0
-        bar(1, 2)
-    assert "[bold]nodes" in terminal.getvalue()
-
-
 @pytest.mark.parametrize("on_terminal", [True, False])
 def test_notes_are_told_at_once_and_once(
     on_terminal: bool, clock: Clock, monkeypatch: pytest.MonkeyPatch
@@ -154,14 +144,3 @@ def test_the_bar_stays_on_the_bar(gaps: list[float], target: float) -> None:
     shares = [bar.closed(gap) for gap in sorted(gaps, reverse=True)]
     assert all(0.0 <= share <= 1.0 for share in shares)
     assert shares == sorted(shares)
-
-
-def test_errors_pass_through() -> None:
-    """An exception during the work is not swallowed."""
-
-    def interrupted() -> None:
-        with ProgressBar("work"):
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from typer.testing import Result
@@ -86,23 +85,6 @@ def test_every_scheme_prints_tables(run: Run, paper: str, scheme: Scheme) -> Non
     assert "\nupper bound " in result.stdout
 
 
-def test_null_jammer(run: Run, paper: str) -> None:
-    """The null can be pointed at a jammer by name, which the note tells."""
-    arguments = ("--scheme", "zero-interference", "--null-jammer", "M")
-    assert "null on jammer M" in _solve_json(run, paper, *arguments)["note"]
-    assert "nulled" in run("solve", paper, *arguments).stdout
-
-
-def test_a_scenario_without_jammers(run: Run, tmp_path: Path, paper: str) -> None:
-    """Nothing to null is no fault, and no table of jammers is printed."""
-    text = Path(paper).read_text(encoding="utf-8")
-    calm = tmp_path / "calm.toml"
-    calm.write_text(text[: text.index("[[jammers]]")], encoding="utf-8")
-    result = run("solve", calm)
-    assert result.exit_code == 0
-    assert "Jammers" not in result.stdout
-
-
 def test_numbers_that_json_lacks_are_null(run: Run, paper: str) -> None:
     """No NaN and no infinity is ever printed."""
 
@@ -111,16 +93,6 @@ def test_numbers_that_json_lacks_are_null(run: Run, paper: str) -> None:
 
     result = run("solve", paper, "--json", "--scheme", "vertical")
     json.loads(result.stdout, parse_constant=refuse)
-
-
-def test_known_statistics_are_plausible(run: Run, paper: str) -> None:
-    """Several searches were run, and each link's decibels are those of its ratio."""
-    answer = _solve_json(run, paper)
-    assert answer["stats"]["starts"] > 1
-    for link in answer["links"]:
-        assert link["sinr_db"] == pytest.approx(10.0 * math.log10(link["sinr"]))
-    assert answer["objective"]["value"] == min(link["sinr"] for link in answer["links"])
-    assert math.hypot(*answer["pose"]["antenna_axis"]) == pytest.approx(1.0)
 
 
 def test_the_bound_is_printed_below_the_value(run: Run, paper: str) -> None:

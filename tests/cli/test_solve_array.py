@@ -52,22 +52,6 @@ def test_what_arrays_have_not_is_refused(
     assert f"{name}: given for a scenario with an [array]" in result.stderr
 
 
-def test_a_figure_of_the_array(run: Run, array: str, tmp_path: Path) -> None:
-    """It is drawn beside what is printed."""
-    path = tmp_path / "new" / "array.png"
-    result = run("solve", array, "--fast", "--figure", path)
-    assert result.exit_code == 0
-    assert "Array of 4, digital" in result.stdout
-    assert path.read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_figure_of_another_kind_is_refused(run: Run, array: str, tmp_path: Path) -> None:
-    """Before anything is solved."""
-    result = run("solve", array, "--figure", tmp_path / "array.gif")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert "ends in .png, .svg or .pdf" in result.stderr
-
-
 def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: Path) -> None:
     """Cases of one dipole are solved without the array, and it is said."""
     assert "All cases use one dipole" in run("compare", array, "--fast").stdout
@@ -75,11 +59,3 @@ def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: 
     result = run("sweep", array, *settings, "--out", tmp_path / "out")
     assert result.exit_code == 0
     assert "the file's array is left out" in result.stderr
-
-
-def test_a_margin_of_an_array(run: Run, array: str) -> None:
-    """Requirements count for arrays too, and are judged."""
-    result = run("solve", array, "--fast", "--set", "nodes.S1.min_sinr_db=3")
-    assert result.exit_code == 0
-    assert "smallest margin" in result.stdout
-    assert "requirement is met; node S1: 5.79 dB above" in result.stdout

@@ -58,20 +58,3 @@ def test_a_proof_is_verified_in_one_go(run: Run, paper: str) -> None:
     assert json.loads(run("solve", paper, "--verify", "--json").stdout)["rigour"] == "verified"
     refused = run("solve", paper, "--verify", "--fast")
     assert (refused.exit_code, refused.stdout) == (2, "")
-
-
-def test_without_a_proof_there_is_no_certificate(run: Run, paper: str, tmp_path: Path) -> None:
-    """--fast, a scheme without a proof and a file for a folder are bad input; nothing is written."""
-    path = tmp_path / "proof.json"
-    result = run("solve", paper, "--fast", "--certificate", path)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert "--fast" in result.stderr
-    several = ("--scheme", "maximum-gain", "--node-limit", 1)
-    result = run("solve", "examples/field.toml", *several, "--certificate", path)
-    assert result.exit_code == 2
-    assert "certificate: " in result.stderr
-    assert not path.exists()
-    (tmp_path / "file").touch()
-    result = run("solve", paper, "--certificate", tmp_path / "file" / "proof.json")
-    assert result.exit_code == 2
-    assert "cannot write" in result.stderr

@@ -76,13 +76,6 @@ def test_a_figure_of_both_poses(run: Run, tmp_path: Path) -> None:
     assert b"<svg" in path.read_bytes()
 
 
-def test_a_figure_of_another_kind_is_refused(run: Run, tmp_path: Path) -> None:
-    """Before anything is solved."""
-    result = run("solve", ROBUST, "--robust", "--figure", tmp_path / "robust.gif")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert "ends in .png, .svg or .pdf" in result.stderr
-
-
 def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     """With an origin both poses are told on the Earth and in NED, in tables, in JSON and as GeoJSON."""
     earthly = tmp_path / "scene.toml"

@@ -32,12 +32,6 @@ def test_a_pose_on_a_null_is_called_one(run, paper):
     assert "stands on a null" not in still
 
 
-def test_a_null_is_one_whatever_the_gain_of_the_antenna_in_it(run, paper):
-    """A jammer with a directional antenna stands in the null as one with an isotropic antenna does."""
-    said = run("solve", paper, "--set", "jammers.M.gain_dbi=20").stdout
-    assert "stands on a null (towards M)" in " ".join(said.split())
-
-
 @pytest.mark.parametrize("text", ["", "attitude=1", "position_m=far", "jammers_m=-1", "jammers_m"])
 def test_sizes_that_are_none_are_refused_by_name(run, paper, text):
     """A size that cannot be read ends with exit code 2 and says what is allowed."""

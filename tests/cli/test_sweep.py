@@ -49,17 +49,6 @@ def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
     assert [Path(path).exists() for path in answer["files"]] == [True] * 4
 
 
-def test_a_case_that_does_not_apply_is_named(run: Run, paper: str, tmp_path: Path) -> None:
-    """Without a jammer three cases are swept, and the fourth is named with the reason."""
-    text = Path(paper).read_text(encoding="utf-8")
-    calm = tmp_path / "calm.toml"
-    calm.write_text(text[: text.index("[[jammers]]")], encoding="utf-8")
-    arguments = ("--from", 0.5, "--to", 2, "--points", 2, "--out", tmp_path / "out")
-    result = run("sweep", calm, "--set", "nodes.S1.power_w", *arguments)
-    assert result.exit_code == 0
-    assert "Zero interference: not applicable" in result.stdout
-
-
 def test_proofs_can_be_limited_or_left_out(run: Run, paper: str, tmp_path: Path) -> None:
     """The options of a proof hold for every row, and the file says what became of it."""
     arguments = ("--from", 0.5, "--to", 2, "--points", 2, "--scheme", "optimum", "--json", "--out", tmp_path)
@@ -79,14 +68,3 @@ def test_proofs_can_be_limited_or_left_out(run: Run, paper: str, tmp_path: Path)
         assert [(row["status"], row["reason"]) for row in written] == [(status, reason)] * 2
         assert all((row["upper_bound_db"] == "") is (status == "best-found") for row in written)
         assert all(row["upper_bound"] is None or row["upper_bound"] >= row["min_sinr"] for row in rows)
-
-
-def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -> None:
-    """Each proof that runs out of time says so in its row, and its bound still holds."""
-    arguments = ("--from", 30, "--to", 40, "--points", 2, "--scheme", "optimum", "--json", "--out", tmp_path)
-    field = paper.replace("paper.toml", "field.toml")
-    result = run("sweep", field, "--set", "jammers.van.power_dbm", *arguments, "--time-limit", "1e-6")
-    assert result.exit_code == 0
-    for row in json.loads(result.stdout)["rows"]:
-        assert (row["status"], row["reason"]) == ("gap-not-reached", "the time limit of 1e-06 s")
-        assert row["upper_bound"] >= row["min_sinr"]

@@ -51,30 +51,6 @@ def test_a_proof_as_json(run: Run, proof: Path) -> None:
     assert answer["leaves"] == len(json.loads(proof.read_text())["trees"][0]["leaves"]["test"])
 
 
-def test_what_was_proved_is_about_something(run: Run, proof: Path) -> None:
-    """The text names case, scenario and digest, nodes, jammer, powers, airspace and antenna; so does JSON."""
-    text = run("verify", proof).stdout
-    digest = json.loads(proof.read_text())["scenario_sha256"]
-    for word in (
-        "scheme optimum",
-        digest,
-        "S1",
-        "S2",
-        " M ",
-        "8 to 30",
-        "short dipole, any axis direction",
-        "power",
-    ):
-        assert word in text
-    answer = json.loads(run("verify", proof, "--json").stdout)
-    assert (answer["scheme"], answer["antenna"], answer["scenario_sha256"]) == (
-        "optimum",
-        "short dipole",
-        digest,
-    )
-    assert [node["name"] for node in answer["scenario"]["nodes"]] == ["S1", "S2"]
-
-
 def test_whether_it_is_about_a_scenario(run: Run, proof: Path, tmp_path: Path) -> None:
     """The same problem in other units and names is the same; a jammer elsewhere is told, and fails."""
     stated = Path("examples/paper.toml").read_text(encoding="utf-8")
@@ -151,13 +127,6 @@ def test_malformed_parts_are_named(run: Run, proof: Path) -> None:
     result = run("verify", proof.with_name("none.json"))
     assert result.exit_code == 2
     assert "cannot be read" in result.stderr
-
-
-def test_a_toml_file_is_no_certificate(run: Run, paper: str) -> None:
-    """The scenario file given by mistake is refused in words."""
-    result = run("verify", paper)
-    assert result.exit_code == 2
-    assert "is a scenario, not a certificate" in result.stderr
 
 
 def test_a_process_of_its_own_needs_no_solver(process: Process, proof: Path) -> None:

@@ -97,9 +97,10 @@ def solve(
         scenario = _with_errors(scenario, sizes)
     chosen = SolveOptions(**options)
     target = (chosen.of(scenario, ROBUST_GAP) if robust else chosen.of(scenario)).target
-    kind: dict[str, Any] = {"null_jammer": null_jammer, "robust": robust}
     with compiling_announced(), GapBar(target) as bar:
-        found = solve_scenario(scenario, scheme.value, on_progress=bar, **kind, **options)
+        found = solve_scenario(
+            scenario, scheme, null_jammer=null_jammer, robust=robust, on_progress=bar, **options
+        )
     if is_checked:
         with Ticker("checking leaves") as ticker:
             found = verified(found, ticker)
