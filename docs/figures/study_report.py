@@ -1,7 +1,7 @@
 """Bring the page "The report of a study" up to date: `python docs/figures/study_report.py out/study`.
 
 From the folder of the study of ``examples/study.toml``: its pictures into ``docs/images/study-report-*.png``,
-its summary and its answer beside this script.
+its summary, its sentences and its table beside this script.
 """
 
 from __future__ import annotations
@@ -12,9 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from nullpose.files import write_text
-from nullpose.report.document import markdown_table
 from nullpose.report.study import report_study
-from nullpose.report.study.markdown import gain_tables
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"
@@ -22,7 +20,7 @@ REQUIREMENT_DB = 0.0
 
 
 def main(study: Path) -> None:
-    """Write pictures, summary and answer of a study's report.
+    """Write pictures, summary, sentences and table of a study's report.
 
     Args:
         study: its folder.
@@ -32,9 +30,11 @@ def main(study: Path) -> None:
         for image in (Path(folder) / "figures").glob("*.png"):
             shutil.copyfile(image, IMAGES / f"study-report-{image.name}")
         shutil.copyfile(Path(folder) / "summary.csv", FOLDER / "study-report.csv")
-    write_text(FOLDER / "study-report-answer.txt", "\n\n".join([report.answer, *report.notes]) + "\n")
-    tables = [f"**{title}**\n\n{markdown_table(rows)}" for title, rows in gain_tables(report.summary).items()]
-    write_text(FOLDER / "study-report-gains.txt", "\n\n".join(tables) + "\n")
+        lines = (Path(folder) / "report.md").read_text(encoding="utf-8").splitlines()
+    write_text(FOLDER / "study-report-answer.txt", " ".join([report.answer, *report.notes]) + "\n")
+    table = [line for line in lines if line.startswith("|")]
+    last = table[:2] + table[-len(report.summary.cases) :]
+    write_text(FOLDER / "study-report-table.txt", "\n".join(last) + "\n")
 
 
 if __name__ == "__main__":

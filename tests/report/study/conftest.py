@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 from nullpose.report.study.cases import report_cases
-from nullpose.report.study.summary import Summary, summarise
-from nullpose.report.study.values import gather
+from nullpose.report.study.summary import Summary, gather, summarise
 from nullpose.study.monte_carlo import StudySpec, read_study
 from nullpose.study.monte_carlo.folder import Folder
 from nullpose.study.monte_carlo.rows import Row, as_parquet, row_of

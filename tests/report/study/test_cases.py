@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from nullpose.report.study.cases import report_cases
+from nullpose.report.study.cases import point_words, report_cases, shown_points
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.monte_carlo import StudySpec
 
@@ -37,7 +37,7 @@ def test_vehicles_have_their_phrases(specify: Specify) -> None:
         specify(*({"name": f"v{n}", "airframe": c.name} for n, c in enumerate(AIRFRAME_CASES)))
     )
     assert [case.phrase for case in cases] == [case.phrase for case in AIRFRAME_CASES]
-    assert [case.tilt_deg for case in cases] == [0.0, 0.0, 10.0, 30.0, 180.0]
+    assert [case.is_level for case in cases] == [True, True, False, False, False]
     (stated,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}}))
     assert (stated.role, stated.phrase) == ("tilt-10", AIRFRAME_CASES[2].phrase)
     (other,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}}))
@@ -94,15 +94,13 @@ def test_what_others_are_measured_against(specify: Specify) -> None:
         assert (robust.reference, robust.whole) == (robust.place, None)
 
 
-def test_robust_cases_have_their_nominal_ones(specify: Specify) -> None:
-    """The same vehicle without errors; none where it was not solved, or only by another scheme."""
-    cases = report_cases(
-        specify(
-            {"name": "r", "robust": True},
-            {"name": "t", "airframe": "tilt-10", "robust": True},
-            {"name": "z", "scheme": "zero-interference"},
-            {"name": "n"},
-        )
-    )
-    assert [case.nominal for case in cases] == [3, None, None, None]
-    assert cases[0].robust
+def test_combinations_in_words(specify: Specify) -> None:
+    """Values have their units; few of many are shown, the first and the last among them."""
+    grid = specify({"name": "a"}, sweep={"receiver.noise_w": [1e-3, 1e-2], "jammers.M.power_w": [2.0, 4.0]})
+    assert point_words(grid, 3) == "receiver.noise_w = 0.01 W, jammers.M.power_w = 4 W"
+    assert shown_points(grid) == [0, 1, 2, 3]
+    many = {"jammers.M.power_w": {"from": 1.0, "to": 100.0, "points": 37, "spacing": "log"}}
+    shown = shown_points(specify({"name": "a"}, sweep=many))
+    assert (len(shown), shown[0], shown[-1]) == (6, 0, 36)
+    nothing = specify({"name": "a"})
+    assert (point_words(nothing, 0), shown_points(nothing)) == ("", [0])

@@ -1,128 +1,128 @@
-"""The cases of a study as its report names them, and which of them is measured against which."""
+"""The cases of a study as its report names them, and the case that each is compared with."""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from nullpose.errors import UsageError
 from nullpose.problem.schemes import Scheme
+from nullpose.report.numbers import unit_of
 from nullpose.scenario import Airframe
 from nullpose.study.airframe_cases import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
 from nullpose.study.monte_carlo import StudyCase, StudySpec
 
-LEVEL = AIRFRAME_CASES[0]  # what the others are measured against
+LEVEL = AIRFRAME_CASES[0]  # the others are compared with it
+MOST_SHOWN = 6  # combinations that have a panel and rows; the tables on disk have all
+
 _ANY = Airframe(tilt_max_deg=180.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportCase:
-    """A case of a study as its report sees it; the places are those in the spec.
+    """A case of a study in its report; the places are those in the spec.
 
     Args:
-        place: its own.
+        place: of the case.
         name: as in the spec, for tables and figures.
         phrase: in a sentence, as in "a 10 degree tilt with a horizontal dipole".
-        role: which of ``AIRFRAME_CASES`` its vehicle is; empty if none, or something else than its best pose.
-        tilt_deg: how far its vehicle tilts; None where that is not known or it is not a vehicle's best pose.
-        robust: whether its values are what is guaranteed under errors.
-        reference: place of the case that it is measured against: a robust one only against robust ones.
-        whole: place of the omnidirectional case among those that it is compared with; None if there is none.
-        nominal: of a robust case, place of the one that differs only in trusting the scene; None without.
+        role: name of its vehicle among ``AIRFRAME_CASES``; empty if it is none, or not its best pose.
+        is_level: whether it is the best pose of a vehicle that does not tilt.
+        robust: whether its values are guaranteed under errors.
+        reference: place of the case that it is compared with: a robust one only with robust ones.
+        whole: place of the omnidirectional case among those that it is compared with; None without one.
     """
 
     place: int
     name: str
     phrase: str
     role: str = ""
-    tilt_deg: float | None = None
+    is_level: bool = False
     robust: bool = False
     reference: int = 0
     whole: int | None = None
-    nominal: int | None = None
 
 
 def report_cases(spec: StudySpec, against: str | None = None) -> tuple[ReportCase, ...]:
-    """Return the cases of a study in order, each with its own phrase.
+    """Name the cases of a study, in order.
 
-    What others are measured against is the level vehicle with a vertical dipole; without one, the first that
-    is level; without any, the first case.
+    The reference is the level vehicle with a vertical dipole; without one, the first that is level; without
+    any, the first case.
 
     Args:
         spec: the study.
-        against: name of another case to measure against.
+        against: name of another reference.
 
     Raises:
         UsageError: there is no case of that name.
     """
     if against is not None and against not in spec.case_names:
         raise UsageError(f"against: given {against!r}; allowed: {', '.join(spec.case_names)}")
-    own = _scenes_airframe(spec)
-    cases = [_described(place, case, own) for place, case in enumerate(spec.cases)]
+    scenes_airframe = _scenes_airframe(spec)
+    cases = [_described(place, case, scenes_airframe) for place, case in enumerate(spec.cases)]
     times = Counter(case.phrase for case in cases)
-    told = []
-    for case in cases:
-        group = [other for other in cases if other.robust is case.robust]
-        reference = max(
-            group, key=lambda case: (case.name == against, case.role == LEVEL.name, case.tilt_deg == 0.0)
-        )  # the first of equals
-        told.append(
-            replace(
-                case,
-                phrase=f"{case.phrase} ({case.name})" if times[case.phrase] > 1 else case.phrase,
-                reference=reference.place,
-                whole=next((other.place for other in group if other.role == OMNIDIRECTIONAL), None),
-                nominal=_nominal(spec, case, cases),
-            )
+    return tuple(
+        replace(
+            _compared(case, [other for other in cases if other.robust is case.robust], against),
+            phrase=f"{case.phrase} ({case.name})" if times[case.phrase] > 1 else case.phrase,
         )
-    return tuple(told)
-
-
-def _nominal(spec: StudySpec, case: ReportCase, cases: Sequence[ReportCase]) -> int | None:
-    """Return the place of the best pose of a robust case's vehicle if everything is as stated."""
-    airframe = spec.cases[case.place].airframe
-    places = (
-        other.place
-        for other in cases
-        if not other.robust
-        and spec.cases[other.place].is_best_pose
-        and spec.cases[other.place].airframe == airframe
+        for case in cases
     )
-    return next(places, None) if case.robust else None
+
+
+def _compared(case: ReportCase, group: Sequence[ReportCase], against: str | None) -> ReportCase:
+    """Choose the reference and the omnidirectional case among those of a group; the first of equals."""
+    reference = max(
+        group, key=lambda other: (other.name == against, other.role == LEVEL.name, other.is_level)
+    )
+    whole = next((other.place for other in group if other.role == OMNIDIRECTIONAL), None)
+    return replace(case, reference=reference.place, whole=whole)
 
 
 def _scenes_airframe(spec: StudySpec) -> Airframe | None:
-    """Return the vehicle of all scenes; None if they differ, or if it is swept."""
+    """Read the vehicle of all scenes; None if they differ, or if it is swept."""
     if any(path.split(".", 1)[0] in ("airframe", "scene") for path in spec.swept):
         return None
     scenes = spec.scene.scenarios or (spec.scene,)
     airframes = {scene.airframe or _ANY for scene in scenes}
-    known = len(airframes) == 1 and all(scene.array is None for scene in scenes)
-    return airframes.pop() if known else None
+    is_same = len(airframes) == 1 and all(scene.array is None for scene in scenes)
+    return airframes.pop() if is_same else None
 
 
-def _described(place: int, case: StudyCase, own: Airframe | None) -> ReportCase:
-    airframe = own if case.airframe is None else case.airframe
+def _described(place: int, case: StudyCase, scenes_airframe: Airframe | None) -> ReportCase:
+    airframe = scenes_airframe if case.airframe is None else case.airframe
     plain = ReportCase(place=place, name=case.name, phrase=f"the case {case.name}", robust=bool(case.robust))
     if case.pose is not None:
         return replace(plain, phrase=f"the given pose {case.name}")
     if case.array is not None:
         return replace(plain, phrase=array_phrase(case.array.elements))
     if case.scheme is Scheme.VERTICAL:
-        return replace(plain, phrase=LEVEL.phrase, role=LEVEL.name, tilt_deg=0.0)
+        return replace(plain, phrase=LEVEL.phrase, role=LEVEL.name, is_level=True)
     if case.scheme not in (None, Scheme.OPTIMUM):
         return replace(plain, phrase=f"the {case.scheme.label.lower()} pose")
     if airframe is None:
         return plain
-    same = (each for each in AIRFRAME_CASES if each.airframe.axis_band == airframe.axis_band)
+    same = (usual for usual in AIRFRAME_CASES if usual.airframe.axis_band == airframe.axis_band)
     usual = next(same, None)  # two vehicles that reach the same axes are one
     phrase = mounted_phrase(airframe) if usual is None else usual.phrase
     chosen = f" (the best mount tried, on up to {case.mount_scenes} scenes)" if case.mount_scenes else ""
     return replace(
         plain,
-        phrase=f"{phrase}{chosen} in its robust pose" if case.robust else f"{phrase}{chosen}",
+        phrase=f"{phrase}{chosen}{' in its robust pose' if case.robust else ''}",
         role="" if usual is None else usual.name,
-        tilt_deg=round(math.degrees(airframe.tilt_max_rad), 9),
+        is_level=airframe.tilt_max_rad == 0.0,
     )
+
+
+def shown_points(spec: StudySpec) -> list[int]:
+    """Choose the combinations of swept values that are shown: all, or a few from the first to the last."""
+    last = len(spec.points) - 1
+    steps = min(last, MOST_SHOWN - 1)
+    return sorted({round(step * last / max(1, steps)) for step in range(steps + 1)})
+
+
+def point_words(spec: StudySpec, point: int) -> str:
+    """Write a combination of swept values, as in "jammers.M.power_w = 100 W"; empty if nothing is swept."""
+    values = spec.points[point].items()
+    return ", ".join(f"{path} = {value:.6g} {unit_of(path)}".rstrip() for path, value in values)

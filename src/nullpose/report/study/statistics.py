@@ -1,4 +1,4 @@
-"""The statistics of a study: quantiles, shares and differences, each with how sure it is."""
+"""The statistics of a study: quantiles, shares and differences, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DRAWN = 20_000_000  # so many draws of scenes, if that leaves enough replicates
 
 
 def quantile(values: FloatArray, share: float) -> float:
-    """Return the smallest number that at least a share of the numbers do not exceed; NaN if there are none.
+    """Find the smallest number that at least a share of the numbers do not exceed; NaN if there are none.
 
     It is one of the numbers, so that minus infinity (no signal, in dB) does no harm.
 
@@ -35,7 +35,7 @@ def quantile(values: FloatArray, share: float) -> float:
 
 
 def quantile_interval(values: FloatArray, share: float) -> tuple[float, float]:
-    """Return an interval that holds the true quantile with the confidence at least, whatever is distributed.
+    """Bound the true quantile with the confidence at least, for any distribution.
 
     Its ends are order statistics, by the binomial distribution of how many numbers lie below the quantile. An
     end for which there are too few numbers is NaN.
@@ -54,7 +54,7 @@ def quantile_interval(values: FloatArray, share: float) -> tuple[float, float]:
 
 
 def band_half_width(count: int) -> float:
-    """Return how far the true distribution function is at most from the empirical one, with the confidence.
+    """Bound the distance of the true distribution function from the empirical one, with the confidence.
 
     The inequality of Dvoretzky, Kiefer and Wolfowitz with Massart's constant, for all values at once.
 
@@ -65,7 +65,7 @@ def band_half_width(count: int) -> float:
 
 
 def share_interval(hits: int, count: int) -> tuple[float, float]:
-    """Return the Clopper-Pearson interval of a share; NaN if nothing was counted.
+    """Bound a share by Clopper and Pearson; NaN if nothing was counted.
 
     Args:
         hits: in how many scenes it is so.
@@ -80,7 +80,7 @@ def share_interval(hits: int, count: int) -> tuple[float, float]:
 
 
 def difference(values: FloatArray, others: FloatArray) -> FloatArray:
-    """Return the differences; nothing where both are the same infinity, which is no signal in both.
+    """Subtract; 0 where both are the same infinity, which is no signal in both.
 
     Args:
         values: numbers, any shape.
@@ -92,7 +92,7 @@ def difference(values: FloatArray, others: FloatArray) -> FloatArray:
 
 
 def replicates_of(count: int) -> int:
-    """Return how many times so many scenes are resampled: fewer of very many, which vary little.
+    """Choose the number of replicates: fewer for very many scenes, which vary little.
 
     Args:
         count: how many scenes there are.
@@ -101,7 +101,7 @@ def replicates_of(count: int) -> int:
 
 
 def resampled(columns: FloatArray, share: float) -> Callable[[NDArray[np.int64]], FloatArray]:
-    """Return what gives the quantile of each column when scenes are drawn so many times.
+    """Make a function of how often each scene is drawn: the quantile of each column then.
 
     Args:
         columns: numbers by scene and column; NaN are left out.
@@ -122,7 +122,7 @@ def resampled(columns: FloatArray, share: float) -> Callable[[NDArray[np.int64]]
 
 
 def draws(count: int) -> Iterator[NDArray[np.int64]]:
-    """Yield how often each scene is drawn, for every replicate of a bootstrap; seeded.
+    """Draw scenes for every replicate of a bootstrap, seeded: yield how often each is drawn.
 
     Args:
         count: how many scenes there are.
@@ -133,7 +133,7 @@ def draws(count: int) -> Iterator[NDArray[np.int64]]:
 
 
 def interval_of(replicates: FloatArray) -> tuple[float, float]:
-    """Return the percentile interval of a bootstrap; NaN unless nearly all replicates have a number.
+    """Bound a statistic by the percentiles of a bootstrap; NaN unless nearly all replicates have a number.
 
     Args:
         replicates: a statistic's value in each, shape ``(n,)``.
@@ -146,5 +146,5 @@ def interval_of(replicates: FloatArray) -> tuple[float, float]:
 
 
 def _rank(count: int, share: float) -> int:
-    """Return the place, from 0, of a quantile among so many sorted numbers."""
+    """Find the place, from 0, of a quantile among sorted numbers."""
     return min(count - 1, max(0, math.ceil(share * count - 1e-9) - 1))

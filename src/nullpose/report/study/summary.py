@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from nullpose.objectives import Quantity
+from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
 from nullpose.report.study.cases import ReportCase
-from nullpose.report.study.points import SweptPoints
 from nullpose.report.study.statistics import (
     FEW_SCENES,
     MEDIAN,
@@ -26,127 +26,135 @@ from nullpose.report.study.statistics import (
     resampled,
     share_interval,
 )
-from nullpose.report.study.values import STATUSES, StudyValues
 from nullpose.study.monte_carlo import StudySpec, StudyTable
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Columns = dict[str, Any]  # numbers by case, or one for all
-Counts = NDArray[np.int64]
+Columns: TypeAlias = dict[str, object]  # numbers by case, or one for all
+Counts: TypeAlias = NDArray[np.int64]
+Values: TypeAlias = dict[str, NDArray[np.generic]]
+
+STATUSES = ("certified", "gap-not-reached", "best-found", "given", "failed")
 
 NULL_GAIN = math.sin(math.radians(1.0)) ** 2
 """Gain of a short dipole towards a point one degree from its axis."""
+
+# The values of rows that are kept; a status is its place in STATUSES.
+_KINDS = {"value": "f8", "bound": "f8", "gap": "f4", "status": "u1", "seconds": "f4", "null_gain": "f4"}
 
 _RESAMPLED = ("shift_worst_tenth", "difference_median", "difference_worst_tenth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """A study's values with what a report says of them.
+    """A study's values and their statistics.
 
     Args:
         spec: the study.
-        values: of all rows that are done.
+        value: maximum of each row, in dB or bits/s/Hz, by scene, combination and case; NaN of a failure.
         quantity: the maximised quantity.
         cases: in the spec's order.
-        points: the combinations of swept values.
-        requirement: the smallest number that will do, in the quantity's unit; None if none is set.
+        requirement: the smallest number that will do, in the quantity's unit; None without one.
         frame: the statistics, a row for each combination and case.
     """
 
     spec: StudySpec
-    values: StudyValues
+    value: FloatArray
     quantity: Quantity
     cases: tuple[ReportCase, ...]
-    points: SweptPoints
     requirement: float | None
     frame: pd.DataFrame
 
     @property
-    def is_complete(self) -> bool:
-        """Whether all scenes are done."""
-        return self.values.scenes == self.spec.n_scenes
+    def scenes(self) -> int:
+        """Number of scenes that are done."""
+        return len(self.value)
 
     @property
-    def has_robust(self) -> bool:
-        """Whether some cases state what is guaranteed."""
-        return any(case.robust for case in self.cases)
+    def is_complete(self) -> bool:
+        """Whether all scenes are done."""
+        return self.scenes == self.spec.n_scenes
 
     @property
     def compared(self) -> list[ReportCase]:
-        """The cases that are measured against another."""
+        """The cases that are compared with another."""
         return [case for case in self.cases if case.reference != case.place]
 
-    @property
-    def paired(self) -> list[ReportCase]:
-        """The robust cases of which there is a nominal one."""
-        return [case for case in self.cases if case.nominal is not None]
-
-    def row(self, point: int, case: ReportCase) -> Any:
-        """Return the statistics of a case at a combination of swept values, by name.
-
-        Args:
-            point: the combination's number.
-            case: one of the cases.
-        """
+    def row(self, point: int, case: ReportCase) -> pd.Series:
+        """Look up the statistics of a case at a combination of swept values."""
         return self.frame.iloc[point * len(self.cases) + case.place]
 
     def table(self) -> pd.DataFrame:
-        """Return the statistics with the unit in the names of columns, for a file."""
+        """Put units into the names of the columns, for a file."""
         unit = "bps_hz" if self.quantity.is_rate else "db"
-        heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "difference_", "cost_")
+        heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "difference_")
         return self.frame.rename(columns=lambda name: f"{name}_{unit}" if name.startswith(heads) else name)
 
 
-def three_of(row: Any, name: str) -> tuple[float, float, float]:
-    """Return a statistic and the ends of its interval; NaN for what is not known.
+def gather(table: StudyTable, on_batch: Callable[[pd.DataFrame], object] = lambda batch: None) -> Values:
+    """Read all rows once, part by part, into arrays by scene, combination and case: 29 bytes for each row.
 
     Args:
-        row: of a summary.
-        name: of the statistic.
+        table: the study's rows.
+        on_batch: called with each part's rows, ratios in dB beside them.
+
+    Raises:
+        UsageError: a part is damaged.
     """
-    return float(row[name]), float(row[f"{name}_low"]), float(row[f"{name}_high"])
+    inner = (len(table.spec.points), len(table.spec.cases))
+    arrays = {name: np.zeros((table.scenes_done, *inner), kind) for name, kind in _KINDS.items()}
+    done = 0
+    for batch in table.batches():
+        end = done + len(batch) // table.spec.rows_per_scene
+        columns = batch.assign(
+            status=batch["status"].map(STATUSES.index),
+            seconds=batch["seconds"].mask(batch["status"] == "failed"),
+        )
+        for name in () if table.quantity.is_rate else ("bound", "value"):
+            columns[name] = to_db(batch[name].to_numpy(float, na_value=np.nan))
+            batch.insert(batch.columns.get_loc("gap"), f"{name}_db", columns[name])
+        for name, kind in _KINDS.items():
+            arrays[name][done:end] = columns[name].to_numpy(kind).reshape(-1, *inner)
+        on_batch(batch)
+        done = end
+    return arrays
 
 
 def summarise(
-    table: StudyTable,
-    values: StudyValues,
-    cases: tuple[ReportCase, ...],
-    requirement: float | None = None,
+    table: StudyTable, values: Values, cases: tuple[ReportCase, ...], requirement: float | None = None
 ) -> Summary:
-    """Return the statistics of a study.
+    """Compute the statistics of a study.
 
     Args:
         table: the study.
         values: its values.
         cases: of the study.
-        requirement: what the smallest SINR, margin or rate has to reach, in its unit.
+        requirement: the smallest number that will do, in the quantity's unit.
     """
     import pandas as pd
 
     frames = []
     for point, swept in enumerate(table.spec.points):
-        at = values.at(point)
-        columns = {"point": point, **swept, "case": [case.name for case in cases]}
-        columns |= _reached(at) | _gained(cases, at) | _bootstrapped(cases, at.value) | _best(cases, at)
-        columns |= {} if requirement is None else _outage(at, requirement)
-        columns |= _cost(cases, at) if any(case.robust for case in cases) else {}
+        at = {name: numbers[:, point] for name, numbers in values.items()}
+        value, bound = np.asarray(at["value"], float), np.asarray(at["bound"], float)
+        columns: Columns = {"point": point, **swept, "case": [case.name for case in cases]}
+        columns |= _reached(at, value) | _gained(cases, value)
+        columns |= {} if requirement is None else _outage(value, bound, requirement)
         frames.append(pd.DataFrame(columns | _proofs(at)))
     return Summary(
         spec=table.spec,
-        values=values,
+        value=np.asarray(values["value"], float),
         quantity=table.quantity,
         cases=cases,
-        points=SweptPoints.of(table.spec),
         requirement=requirement,
         frame=pd.concat(frames, ignore_index=True),
     )
 
 
-def _with_ends(name: str, found: ArrayLike, ends: Iterable[tuple[float, float]]) -> Columns:
+def _with_ends(name: str, numbers: object, ends: Iterable[tuple[float, float]]) -> Columns:
     low, high = zip(*ends, strict=True)
-    return {name: found, f"{name}_low": low, f"{name}_high": high}
+    return {name: numbers, f"{name}_low": low, f"{name}_high": high}
 
 
 def _quantile(numbers: FloatArray, share: float) -> list[float]:
@@ -163,95 +171,69 @@ def _shares(name: str, hits: Counts, counts: Counts) -> Columns:
 
 
 def _divided(part: Counts, whole: Counts) -> FloatArray:
-    """Return shares of what was counted; NaN where nothing was."""
+    """Divide counts; NaN where nothing was counted."""
     return np.asarray(np.divide(part, whole, out=np.full(part.shape, math.nan), where=whole > 0))
 
 
-def _reached(at: StudyValues) -> Columns:
-    """Return how many rows have which status, and the quantiles of what is reached."""
-    counts = {name.replace("-", "_"): np.sum(at.status == code, axis=0) for code, name in enumerate(STATUSES)}
+def _reached(at: Values, value: FloatArray) -> Columns:
+    """Count rows by status, and compute the quantiles of their values."""
+    status, null_gain = at["status"], np.asarray(at["null_gain"], float)
+    counts = {name.replace("-", "_"): np.sum(status == code, axis=0) for code, name in enumerate(STATUSES)}
     return {
-        "scenes": at.scenes,
+        "scenes": len(value),
         **counts,
-        **_quantiles("worst_tenth", at.value, WORST_TENTH),
-        **_quantiles("median", at.value, MEDIAN),
-        "best_tenth": _quantile(at.value, 1.0 - WORST_TENTH),
-        **_shares("null_share", np.sum(at.null_gain <= NULL_GAIN, 0), np.sum(at.null_gain >= 0.0, 0)),
+        **_quantiles("worst_tenth", value, WORST_TENTH),
+        **_quantiles("median", value, MEDIAN),
+        "best_tenth": _quantile(value, 1.0 - WORST_TENTH),
+        **_shares("null_share", np.sum(null_gain <= NULL_GAIN, axis=0), np.sum(null_gain >= 0.0, axis=0)),
     }
 
 
-def _gained(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
-    """Return the statistics of the differences from the reference on the same scenes."""
+def _gained(cases: tuple[ReportCase, ...], value: FloatArray) -> Columns:
+    """Compute the statistics of the differences from the reference on the same scenes.
+
+    A shift is the difference of the 10th percentiles; differences are those of both gains from the
+    omnidirectional vehicle's.
+    """
     references = [case.reference for case in cases]
-    gains = difference(at.value, at.value[:, references])
-    return {
+    wholes = [case.place if case.whole is None else case.whole for case in cases]
+    is_lacking = np.array([case.whole is None for case in cases])
+    gains = difference(value, value[:, references])
+    tenths, medians = resampled(value, WORST_TENTH), resampled(gains, MEDIAN)
+
+    def statistics(times: Counts) -> FloatArray:
+        tenth, median = tenths(times), medians(times)
+        shift = difference(tenth, tenth[references])
+        apart = [difference(gain, gain[wholes]) for gain in (median, shift)]
+        return np.stack([shift, *np.where(is_lacking, math.nan, apart)])
+
+    count = len(value)
+    drawn = draws(count) if count >= FEW_SCENES else ()
+    replicates = np.array([statistics(times) for times in drawn]).reshape(-1, 3, len(cases))
+    columns: Columns = {
         "against": [cases[reference].name for reference in references],
         "pairs": np.sum(~np.isnan(gains), axis=0),
         **_quantiles("gain_worst_tenth", gains, WORST_TENTH),
         **_quantiles("gain_median", gains, MEDIAN),
         "gain_best_tenth": _quantile(gains, 1.0 - WORST_TENTH),
     }
-
-
-def _bootstrapped(cases: Sequence[ReportCase], value: FloatArray) -> Columns:
-    """Return for each case what the worst tenth gains, and both gains less those of the omnidirectional."""
-    references = [case.reference for case in cases]
-    wholes = [case.place if case.whole is None else case.whole for case in cases]
-    lacking = np.array([case.whole is None for case in cases])
-    tenths = resampled(value, WORST_TENTH)
-    medians = resampled(difference(value, value[:, references]), MEDIAN)
-
-    def statistics(times: Counts) -> FloatArray:
-        tenth, median = tenths(times), medians(times)
-        shift = difference(tenth, tenth[references])
-        apart = [difference(gain, gain[wholes]) for gain in (median, shift)]
-        return np.stack([shift, *np.where(lacking, math.nan, apart)])
-
-    count = len(value)
-    found = statistics(np.ones(count, dtype=np.int64))
-    drawn = draws(count) if count >= FEW_SCENES else ()
-    many = np.array([statistics(times) for times in drawn]).reshape(-1, 3, len(cases))
-    columns: Columns = {}
     for kind, name in enumerate(_RESAMPLED):
-        columns |= _with_ends(name, found[kind], map(interval_of, many[:, kind].T))
+        numbers = statistics(np.ones(count, dtype=np.int64))[kind]
+        columns |= _with_ends(name, numbers, map(interval_of, replicates[:, kind].T))
     return columns
 
 
-def _best(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
-    """Return in how many scenes a case is as good as the best, as far as its proof tells."""
-    robust = np.array([case.robust for case in cases])
-    best = np.stack([np.fmax.reduce(at.value[:, robust == own], axis=1) for own in robust], axis=1)
-    reach = np.where(at.status == STATUSES.index("certified"), np.fmax(at.bound, at.value), at.value)
-    hits = np.sum(reach >= best, axis=0)
-    return {"best_in": hits, **_shares("best_share", hits, np.sum(~np.isnan(best), axis=0))}
-
-
-def _outage(at: StudyValues, requirement: float) -> Columns:
-    """Return in what share of scenes a requirement is missed, and is proved to be missed by any pose."""
-    counts = np.sum(~np.isnan(at.value), axis=0)
-    missed, proved = (np.sum(numbers < requirement, axis=0) for numbers in (at.value, at.bound))
+def _outage(value: FloatArray, bound: FloatArray, requirement: float) -> Columns:
+    """Compute the share of scenes that miss a requirement, and that are proved to miss it with any pose."""
+    counts = np.sum(~np.isnan(value), axis=0)
+    missed, proved = (np.sum(numbers < requirement, axis=0) for numbers in (value, bound))
     return {**_shares("outage", missed, counts), "outage_proved": _divided(proved, counts)}
 
 
-def _cost(cases: Sequence[ReportCase], at: StudyValues) -> Columns:
-    """Return what a robust case gives up of what the same vehicle reaches if everything is as stated."""
-    nominal = np.full_like(at.value, math.nan)
-    for case in cases:
-        if case.nominal is not None:
-            nominal[:, case.place] = at.value[:, case.nominal]
-    costs = difference(nominal, at.value)
-    return {
-        "nominal": ["" if case.nominal is None else cases[case.nominal].name for case in cases],
-        **_quantiles("cost_median", costs, MEDIAN),
-        "cost_worst_tenth": _quantile(costs, 1.0 - WORST_TENTH),
-    }
-
-
-def _proofs(at: StudyValues) -> Columns:
-    """Return the gaps that were reached and the seconds that were needed, failures left out."""
-    gap, seconds = at.gap.astype(float), at.seconds.astype(float)
-    columns: Columns = {"proved": np.sum(~np.isnan(gap), axis=0)}
-    for name, numbers in (("gap", gap), ("seconds", seconds)):
+def _proofs(at: Values) -> Columns:
+    """Compute the quantiles of gaps and seconds, failures left out."""
+    columns: Columns = {"proved": np.sum(~np.isnan(np.asarray(at["gap"], float)), axis=0)}
+    for name in ("gap", "seconds"):
         for suffix, share in (("median", 0.5), ("p95", 0.95), ("worst", 1.0)):
-            columns[f"{name}_{suffix}"] = _quantile(numbers, share)
-    return {**columns, "seconds_total": np.nansum(seconds, axis=0)}
+            columns[f"{name}_{suffix}"] = _quantile(np.asarray(at[name], float), share)
+    return {**columns, "seconds_total": np.nansum(np.asarray(at["seconds"], float), axis=0)}

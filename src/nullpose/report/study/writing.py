@@ -1,26 +1,38 @@
-"""A study's report, from its folder to files."""
+"""A study's report, from its folder to files: two sentences, three numbers, a table and two figures."""
 
 from __future__ import annotations
 
+import base64
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
-from nullpose.report.study.answer import answer_of, certainty_of, null_words, outage_words, unfinished_note
-from nullpose.report.study.cases import report_cases
-from nullpose.report.study.html import report_page
-from nullpose.report.study.markdown import report_text, title_of
-from nullpose.report.study.summary import Summary, summarise
-from nullpose.report.study.values import gather
+from nullpose.report.numbers import (
+    count_of,
+    escaped,
+    listed,
+    percent,
+    with_interval,
+    with_unit,
+)
+from nullpose.report.study.cases import ReportCase, point_words, report_cases, shown_points
+from nullpose.report.study.statistics import CONFIDENCE
+from nullpose.report.study.summary import STATUSES, Summary, gather, summarise
 from nullpose.study.monte_carlo import read_study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+_CAPTIONS = {
+    "distribution": "The distribution over scenes",
+    "gain": "The gains of each case, with their confidence intervals",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,10 +40,10 @@ class StudyReport:
     """A report that was written.
 
     Args:
-        answer: the first paragraph.
-        notes: that the study is not finished, if so; outage; what is proved.
+        answer: the first sentence.
+        notes: how far the study is, if it is not finished; what is proved.
         summary: the statistics.
-        files: what was written.
+        files: that were written.
     """
 
     answer: str
@@ -39,14 +51,14 @@ class StudyReport:
     summary: Summary
     files: tuple[Path, ...]
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """Return the report as plain data."""
         frame = self.summary.table()
         rows = frame.astype(object).where(frame.notna(), None).to_dict(orient="records")
         return {
             "study": self.summary.spec.name,
             "complete": self.summary.is_complete,
-            "scenes_done": self.summary.values.scenes,
+            "scenes_done": self.summary.scenes,
             "answer": self.answer,
             "notes": list(self.notes),
             "summary": rows,
@@ -62,14 +74,14 @@ def report_study(
     requirement_bps_hz: float | None = None,
     against: str | None = None,
 ) -> StudyReport:
-    """Write the report of the study in a folder, as far as it is, and return what it says.
+    """Write the report of the study in a folder, finished or not.
 
     Args:
         folder: of the study.
         out: where the report goes; without it the folder ``report`` in the study's.
         requirement_db: smallest SINR or margin that will do [dB]; without it 0 dB of a margin, else none.
         requirement_bps_hz: the same of a secrecy rate.
-        against: name of the case to measure gains against; without it the level vehicle.
+        against: name of the case that gains refer to; without it the level vehicle.
 
     Raises:
         UsageError: no study is there, a part of it is damaged, an extra is missing, there is no case of that
@@ -85,22 +97,28 @@ def report_study(
         values = gather(table, lambda batch: file.write(_csv(batch, header=file.tell() == 0)))
     summary = summarise(table, values, cases, requirement)
     figures = _write_figures(summary, prepare_folder(target / "figures"))
-    text = report_text(summary, list(figures))
-    page = report_page(text, title_of(summary), {name: svg for name, (_, svg) in figures.items()})
-    files = [
-        write_text(target / "report.md", text),
-        write_text(target / "report.html", page),
+    done = f"{summary.scenes:,} of {count_of(table.spec.n_scenes, 'scene')}"
+    unfinished = "" if summary.is_complete else f"This study is not finished: {done} are done."
+    page: dict[str, object] = {
+        "title": table.spec.name or "A study without a name",
+        "unfinished": unfinished,
+        "sentences": [_gain_sentence(summary), _proof_sentence(summary)],
+        "numbers": _three_numbers(summary),
+        "table": _table(summary),
+        "captions": {name: _CAPTIONS[name] for name in figures},
+        "confidence": percent(CONFIDENCE),
+        "seed": table.spec.seed,
+    }
+    images = {name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg) in figures.items()}
+    files = (
+        write_text(target / "report.md", _rendered("report.md.jinja", page)),
+        write_text(target / "report.html", _rendered("report.html.jinja", page | {"images": images})),
         write_text(target / "summary.csv", _csv(summary.table(), header=True)),
         data,
         *(path for pair in figures.values() for path in pair),
-    ]
-    notes = (unfinished_note(summary), outage_words(summary), null_words(summary), certainty_of(summary))
-    return StudyReport(
-        answer=answer_of(summary),
-        notes=tuple(note for note in notes if note),
-        summary=summary,
-        files=tuple(files),
     )
+    notes = tuple(filter(None, (unfinished, _proof_sentence(summary))))
+    return StudyReport(answer=_gain_sentence(summary), notes=notes, summary=summary, files=files)
 
 
 def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | None) -> float | None:
@@ -108,22 +126,115 @@ def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | Non
         raise UsageError("requirement-db: the study's values are rates; give --requirement-bps-hz instead")
     if not quantity.is_rate and in_bps_hz is not None:
         raise UsageError("requirement-bps-hz: the study's values are in dB; give --requirement-db instead")
-    given = in_bps_hz if quantity.is_rate else in_db
-    if given is not None and not abs(given) < 1e6:
-        raise UsageError(f"requirement: given {given!r}; allowed: a finite number, as in 3")
-    return 0.0 if given is None and quantity.noun == "margin" else given
+    requirement = in_bps_hz if quantity.is_rate else in_db
+    if requirement is not None and not abs(requirement) < 1e6:
+        raise UsageError(f"requirement: given {requirement!r}; allowed: a finite number, as in 3")
+    return 0.0 if requirement is None and quantity.noun == "margin" else requirement
+
+
+def _leader(summary: Summary) -> ReportCase | None:
+    """Choose the omnidirectional case, or that with the highest median gain, at the last swept values."""
+    gains = {case: summary.row(-1, case)["gain_median"] for case in summary.compared}
+    gains = {case: gain for case, gain in gains.items() if gain == gain}
+    return max(gains, key=lambda case: (case.place == case.whole, float(gains[case])), default=None)
+
+
+def _gain_sentence(summary: Summary) -> str:
+    if not summary.scenes:
+        return "No scene is solved yet."
+    quantity, words = summary.quantity, point_words(summary.spec, -1)
+    scenes = f"Over {count_of(summary.scenes, 'scene')}{f' at {words}' if words else ''}"
+    leader = _leader(summary)
+    if leader is None:
+        case = summary.cases[0]
+        levels = [with_unit(summary.row(-1, case)[name], quantity) for name in ("median", "worst_tenth")]
+        return (
+            f"{scenes} {case.phrase} reaches a {quantity.smallest} of {levels[0]} in the median and "
+            f"{levels[1]} in the worst tenth."
+        )
+    gains = [f"{_cell(summary, -1, leader, name)} {quantity.unit}" for name in _GAINS]
+    return (
+        f"{scenes} {leader.phrase} gains {gains[0]} in the median and {gains[1]} in the worst tenth over "
+        f"{summary.cases[leader.reference].phrase} ({percent(CONFIDENCE)} confidence in brackets)."
+    )
+
+
+def _proof_sentence(summary: Summary) -> str:
+    """Count rows by status, and say how the others count."""
+    counts = {name: int(summary.frame[name.replace("-", "_")].sum()) for name in STATUSES}
+    rows = sum(counts.values())
+    if not rows:
+        return ""
+    kinds = [f"{count:,} {name.replace('-', ' ')}" for name, count in counts.items() if count]
+    rest = (
+        "; rows that are not certified count with the value of their pose, a lower bound of the optimum, "
+        "failed rows not at all, and study.csv has the reasons"
+    )
+    return f"Of {count_of(rows, 'row')}: {listed(kinds)}{'' if counts['certified'] == rows else rest}."
+
+
+_GAINS = {"gain_median": "median gain", "shift_worst_tenth": "gain in the worst tenth"}
+
+
+def _three_numbers(summary: Summary) -> dict[str, str]:
+    """Write the median of the reference and the two gains of the leading case, at the last combination."""
+    leader = _leader(summary)
+    reference = summary.cases[0 if leader is None else leader.reference]
+    level = with_unit(summary.row(-1, reference)["median"], summary.quantity)
+    numbers = {f"median {summary.quantity.smallest}, {reference.name}": level}
+    if leader is not None:
+        for name, words in _GAINS.items():
+            numbers[f"{words}, {leader.name}"] = with_unit(summary.row(-1, leader)[name], summary.quantity)
+    return numbers
+
+
+def _table(summary: Summary) -> list[dict[str, str]]:
+    """Write the statistics of each case at the combinations that are shown."""
+    unit, rows = summary.quantity.unit, []
+    names = {"median": "median", "worst_tenth": "worst tenth", **_GAINS}
+    for point in shown_points(summary.spec):
+        for case in summary.cases:
+            row, cells = summary.row(point, case), {"case": case.name}
+            if summary.spec.swept:
+                cells["at"] = point_words(summary.spec, point)
+            cells |= {f"{words}, {unit}": _cell(summary, point, case, name) for name, words in names.items()}
+            if summary.requirement is not None:
+                cells[f"below {summary.requirement:g} {unit}"] = percent(row["outage"], 1)
+            cells |= {"on a null": percent(row["null_share"], 1)}
+            rows.append(cells | {name: f"{row[name]:,}" for name in ("certified", "failed")})
+    return rows
+
+
+def _cell(summary: Summary, point: int, case: ReportCase, name: str) -> str:
+    row = summary.row(point, case)
+    return with_interval(row[name], row[f"{name}_low"], row[f"{name}_high"], summary.quantity)
+
+
+def _rendered(template: str, page: Mapping[str, object]) -> str:
+    """Fill a template; a text of the study is never markup."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    is_html = template.endswith(".html.jinja")
+    environment = Environment(
+        loader=PackageLoader("nullpose.report.study"),
+        autoescape=is_html,
+        finalize=None if is_html else lambda value: escaped(str(value)),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template(template).render(page)
 
 
 def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]]:
-    """Write what there is to draw; take away what an earlier report drew and this one does not."""
-    from nullpose.report.study.figures import FIGURES, figures_of
+    """Write the figures; remove those of an earlier report."""
+    from nullpose.report.study.figures import figures_of
 
-    written = {name: write_figure(figure, folder, name) for name, figure in figures_of(summary)}
-    for name in FIGURES:
-        if name not in written:
-            for suffix in (".png", ".svg"):
-                (folder / f"{name}{suffix}").unlink(missing_ok=True)
-    return written
+    for name in (*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"):
+        for suffix in (".png", ".svg"):
+            (folder / f"{name}{suffix}").unlink(missing_ok=True)
+    return {name: write_figure(figure, folder, name) for name, figure in figures_of(summary).items()}
 
 
 def _csv(rows: pd.DataFrame, *, header: bool) -> str:

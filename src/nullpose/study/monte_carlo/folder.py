@@ -24,7 +24,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 FORMAT = 3  # version of the folder's layout
 MANIFEST, PARTS, LOCK = "manifest.json", "parts", "lock"
 
-_PACKAGES = ("pyarrow", "pandas", "xarray")  # that studies need beside those of nullpose
+_PACKAGES = ("pyarrow", "pandas", "xarray", "jinja2")  # that studies need beside those of nullpose
 _MOST_BYTES = 64_000_000  # of a manifest, which holds the scenario files of the study
 _LONGEST_OWNER = 300  # characters of a lock that are read
 _NAME = re.compile(r"part-(\d{9})-(\d{9})\.parquet", re.ASCII)

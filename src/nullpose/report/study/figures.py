@@ -1,0 +1,171 @@
+"""The figures of a study's report: distribution functions, and gains with their intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import cycle
+from typing import TypeAlias
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+
+from nullpose.physics.types import FloatArray
+from nullpose.report.figures.style import GREY, INK, VEHICLES, Curve, draw_curve, house_style, line_style
+from nullpose.report.numbers import percent
+from nullpose.report.study.cases import ReportCase, point_words, shown_points
+from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
+from nullpose.report.study.summary import Summary
+
+Line: TypeAlias = str | tuple[int, tuple[float, ...]]
+
+_SHARES = ([0.0, 0.1, 0.25, 0.5, 0.75, 1.0], ["0", "10 %", "25 %", "50 %", "75 %", "100 %"])
+_WIDTH = 7.0  # inches: the text of a page
+_DEEPEST = 40.0  # dB below the median of the lowest curve: deeper values leave the picture
+_STEPS = 1000  # of a curve; more are not seen, and make a heavy file
+_COLOURS = ("#d55e00", "#000000", "#8c564b", "#7f7f00", "#6a3d9a", "#8c8c8c")
+_LINES: tuple[Line, ...] = ("-", (0, (5, 1.6)), (0, (3, 1.2, 1, 1.2)), (0, (1.2, 1.2)))
+_MARKERS = ("X", "P", "h", "<", ">", "d")
+
+
+def figures_of(summary: Summary) -> dict[str, Figure]:
+    """Draw the figures that there are values for, by name."""
+    points = [point for point in shown_points(summary.spec) if not np.all(np.isnan(summary.value[:, point]))]
+    if not points:
+        return {}
+    figures = {"distribution": _distributions(summary, points)}
+    return figures | ({"gain": _gains(summary, points)} if summary.compared else {})
+
+
+def step_curve(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Make the corners of an empirical distribution function, thinned if there are very many.
+
+    Args:
+        numbers: shape ``(n,)``, at least one, none NaN.
+    """
+    ordered = np.sort(numbers)
+    ranks = np.unique(np.linspace(0, len(ordered) - 1, min(len(ordered), _STEPS)).round().astype(int))
+    heights = (ranks + 1.0) / len(ordered)
+    return np.concatenate([ordered[:1], ordered[ranks]]), np.concatenate([[0.0], heights])
+
+
+def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
+    ends = _range(summary, points)
+
+    def draw(axes: Axes, point: int) -> None:
+        for case, look in zip(summary.cases, _looks(summary.cases), strict=True):
+            column = summary.value[:, point, case.place]
+            column = column[~np.isnan(column)]
+            if len(column):
+                across, heights = step_curve(np.clip(column, *ends))
+                half = band_half_width(len(column))
+                band = np.clip(heights - half, 0.0, 1.0), np.clip(heights + half, 0.0, 1.0)
+                every = max(1, len(across) // 7)
+                start = 1 + every * case.place // len(summary.cases)  # markers of two curves stand apart
+                draw_curve(axes, look, across, heights, band, steps=True, every=(start, every))
+        axes.set_xlim(*ends)
+        axes.set_ylim(0.0, 1.0)
+        axes.axhline(WORST_TENTH, color=INK, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
+        axes.set_yticks(*_SHARES)
+
+    note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
+    across = f"{summary.quantity.smallest} over the nodes  ({summary.quantity.unit})"
+    handles = [Line2D([], [], **line_style(look)) for look in _looks(summary.cases)]
+    return _panels(summary, points, draw, handles, across=across, up="CDF over scenes", note=note, height=2.2)
+
+
+def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
+    """Choose the ends of the horizontal axis: deep values, down to no signal, are outside."""
+    numbers = summary.value[:, list(points)]
+    finite = numbers[np.isfinite(numbers)]
+    if not len(finite):
+        return -1.0, 1.0
+    low, high = float(np.min(finite)), float(np.max(finite))
+    medians = summary.frame.loc[summary.frame["point"].isin(points), "median"]
+    medians = medians[np.isfinite(medians)]
+    if not summary.quantity.is_rate and len(medians):
+        low = max(low, float(medians.min()) - _DEEPEST)
+    margin = 0.03 * (high - low) or 0.5
+    return low - margin, high + margin
+
+
+def _gains(summary: Summary, points: Sequence[int]) -> Figure:
+    compared = summary.compared
+    looks = _looks(summary.cases)
+
+    def draw(axes: Axes, point: int) -> None:
+        for place, case in enumerate(compared):
+            row, colour = summary.row(point, case), looks[case.place].colour
+            ends = row["gain_worst_tenth"], row["gain_best_tenth"]
+            if all(map(math.isfinite, ends)):
+                axes.plot(ends, [place - 0.14] * 2, color=colour, zorder=2.0, linewidth=5.0, alpha=0.3)
+            for name, marker, below in (("gain_median", "o", -0.14), ("shift_worst_tenth", "D", 0.2)):
+                interval = row[f"{name}_low"], row[f"{name}_high"]
+                if all(map(math.isfinite, interval)):
+                    axes.plot(interval, [place + below] * 2, color=INK, linewidth=1.1, zorder=2.6)
+                if math.isfinite(row[name]):
+                    axes.plot([row[name]], [place + below], marker, color=colour, markersize=4.5, zorder=3.0)
+        axes.axvline(0.0, color=INK, linewidth=0.8, zorder=1.4)
+        axes.set_yticks(range(len(compared)), [case.name for case in compared], parse_math=False)
+        axes.set_ylim(len(compared) - 0.4, -0.6)
+        axes.grid(visible=False, axis="y")
+
+    names = " or ".join(sorted({summary.cases[case.reference].name for case in compared}))
+    across = f"gain in the {summary.quantity.smallest} over {names}  ({summary.quantity.unit})"
+    note = (
+        f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
+        "Bar: 10th to 90th percentile."
+    )
+    return _panels(summary, points, draw, [], across=across, note=note, height=0.6 + 0.27 * len(compared))
+
+
+def _looks(cases: Sequence[ReportCase]) -> list[Curve]:
+    """Choose the looks of cases: usual vehicles as everywhere, guaranteed values dotted."""
+    looks: list[Curve] = []
+    others = zip(cycle(_COLOURS), cycle(_LINES), cycle(_MARKERS), strict=False)
+    taken: set[tuple[str, bool]] = set()
+    for case in cases:
+        if case.role in VEHICLES and (case.role, case.robust) not in taken:
+            taken.add((case.role, case.robust))
+            look = VEHICLES[case.role]
+            look = replace(look, line=(0, (1.0, 1.2)), width=look.width + 0.3) if case.robust else look
+        else:
+            look = Curve("", *next(others), width=1.6, order=3.5)
+        looks.append(replace(look, label=case.name))
+    return looks
+
+
+def _panels(
+    summary: Summary,
+    points: Sequence[int],
+    draw: Callable[[Axes, int], None],
+    handles: Sequence[Line2D],
+    *,
+    across: str,
+    note: str,
+    height: float,
+    up: str = "",
+) -> Figure:
+    """Set a panel for each combination of swept values, two in a row, with a legend above them."""
+    columns = min(2, len(points))
+    down = -(-len(points) // columns)
+    with house_style():
+        figure = Figure(figsize=(_WIDTH, 1.3 + height * down), layout="constrained")
+        panels = list(figure.subplots(down, columns, sharex=True, sharey=True, squeeze=False).flat)
+        for axes, point in zip(panels, points, strict=False):
+            axes.set_title(point_words(summary.spec, point), loc="left", fontsize=9.0)
+            draw(axes, point)
+        for axes in panels[len(points) :]:
+            axes.remove()
+        if handles:
+            figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
+        figure.supylabel(up, fontsize=9.5)
+        figure.supxlabel(f"{across}\n", fontsize=9.5)
+        for text in figure.findobj(Text):
+            text.set_parse_math(False)  # names are shown as they are
+        figure.text(0.012, 0.008, note, fontsize=7.5, color=GREY, va="bottom", ha="left")
+    return figure
