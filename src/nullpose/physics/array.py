@@ -24,7 +24,7 @@ _VERTICAL = np.array([0.0, 0.0, 1.0])
 def element_positions(
     elements: int, layout: str, spacing_wavelengths: float, yaw_rad: ArrayLike = 0.0
 ) -> FloatArray:
-    """Return where the elements are, seen from the array's centre, in wavelengths and world axes.
+    """Place the elements, seen from the array's centre, in wavelengths and world axes.
 
     ``d_n = R_z(yaw) b_n``, in the body's horizontal plane. Linear: ``b_n = (n - (K - 1) / 2) s e_x`` along
     the body's x axis. Circular: ``b_n = rho (cos(2 pi n / K), sin(2 pi n / K), 0)`` with
@@ -66,7 +66,7 @@ def element_positions(
 def steering_vectors(
     position_m: ArrayLike, elements_wavelengths: ArrayLike, points_m: ArrayLike
 ) -> ComplexArray:
-    """Return the phases with which a plane wave from each point arrives at the elements.
+    """Evaluate the phases with which a plane wave from each point arrives at the elements.
 
     ``a_n = exp(j 2 pi <d_n, e>)`` with ``e = (q - p) / |q - p|``: an element nearer to the point receives the
     wave earlier.
@@ -97,7 +97,7 @@ def array_channels(
     ground: GroundAntennas | None = None,
     axis: FloatArray = _VERTICAL,
 ) -> ComplexArray:
-    """Return the channel of every ground transmitter to the elements.
+    """Evaluate the channel of every ground transmitter to the elements.
 
     ``h_i = sqrt(g0 P_i sin^2(gamma_i)) / |r_i| a_i``, ``gamma_i`` being the angle between the dipoles and
     the direction to the transmitter: the amplitude is that of the numerator of eq. 2.1, the phases are those
@@ -129,7 +129,7 @@ def digital_sinr(
     elements_wavelengths: ArrayLike,
     case: ErrorCase | None = None,
 ) -> FloatArray:
-    """Return every node's SINR with its own best combining of the elements.
+    """Evaluate every node's SINR with its own best combining of the elements.
 
     ``Gamma_k = h_k^H R^-1 h_k`` with ``R = sigma^2 I + sum_j h_j h_j^H`` over the jammers: the largest
     eigenvalue of ``(h_k h_k^H, R)``. The nodes have channels of their own in frequency and do not disturb
@@ -159,7 +159,7 @@ def digital_sinr(
 def digital_weights(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike
 ) -> ComplexArray:
-    """Return every node's best combining weights ``w_k``, of unit length, which turn ``w_k^H x`` into SINR.
+    """Find every node's best combining weights ``w_k``, of unit length, which turn ``w_k^H x`` into SINR.
 
     ``w_k`` is ``R^-1 h_k`` scaled to length 1; where a node is not heard at all, its weights are zero.
 
@@ -183,7 +183,7 @@ def digital_weights(
 def beam_sinr(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, weights: ArrayLike
 ) -> FloatArray:
-    """Return every node's SINR with given weights.
+    """Evaluate every node's SINR with given weights.
 
     ``Gamma_k = |w_k^H h_k|^2 / (sigma^2 |w_k|^2 + sum_j |w_k^H h_j|^2)``
 
@@ -209,7 +209,7 @@ def beam_sinr(
 def _both_channels(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the channels of the nodes and of the jammers."""
+    """Evaluate the channels of the nodes and of the jammers."""
     case = ErrorCase.none(scenario) if case is None else case
     elements = np.asarray(elements_wavelengths, dtype=float) @ np.swapaxes(case.rotation_world, -1, -2)
     channels = array_channels(
@@ -228,7 +228,7 @@ def _both_channels(
 def _principal(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
 ) -> tuple[ComplexArray, ComplexArray, FloatArray, ComplexArray]:
-    """Return the nodes' channels, the principal directions of the jamming, its power and their parts there.
+    """Evaluate the nodes' channels, the principal directions of the jamming, its power and their parts there.
 
     Shapes ``(..., n_nodes, K)``; ``(..., K, d)``, one direction a column; ``(..., d)``, watts;
     ``(..., n_nodes, d)``.

@@ -58,7 +58,7 @@ class Geodetic:
     Args:
         lat_deg: latitude [degrees], north positive.
         lon_deg: longitude [degrees], east positive.
-        alt_m: altitude over the ellipsoid [m]; None if the scenario's origin does not tell it.
+        alt_m: altitude over the ellipsoid [m]; None if the scenario's origin does not state it.
         alt_msl_m: altitude over the sea [m]; None likewise.
     """
 
@@ -68,13 +68,13 @@ class Geodetic:
     alt_msl_m: float | None = None
 
     def to_dict(self) -> dict[str, object]:
-        """Return the place as plain data, without an altitude that is not told."""
+        """Return the place as plain data, without an altitude that is not known."""
         return {key: value for key, value in asdict(self).items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)
 class PoseFrames:
-    """One pose in every frame that it can be told in.
+    """One pose in every frame.
 
     Args:
         enu: world east, north, up; body forward, left, up: nullpose's own frames, and those of ROS.
@@ -93,7 +93,7 @@ class PoseFrames:
 
 
 def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
-    """Return a pose in east-north-up, in north-east-down and, if the scenario has an origin, on the Earth.
+    """Convert a pose to east-north-up, to north-east-down and, if the scenario has an origin, on the Earth.
 
     With ``P`` the exchange of ENU and NED and ``F = diag(1, -1, -1)`` that of the bodies,
     ``P R(roll, pitch, yaw) F = Rz(pi/2 - yaw) Ry(-pitch) Rx(roll)``, because ``P = Rz(pi/2) F`` and F turns
@@ -121,7 +121,7 @@ def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
 
 
 def frd_from_flu(vector: ArrayLike) -> FloatArray:
-    """Return body vectors in forward, right, down: the last two components negated.
+    """Convert body vectors to forward, right, down: the last two components are negated.
 
     Args:
         vector: components forward, left and up, in any unit, shape ``(..., 3)``.
@@ -132,16 +132,8 @@ def frd_from_flu(vector: ArrayLike) -> FloatArray:
     return np.asarray(vector, dtype=float) * [1.0, -1.0, -1.0] + 0.0  # no negative zeros
 
 
-def flu_from_frd(vector: ArrayLike) -> FloatArray:
-    """Return body vectors in forward, left, up; the same exchange as ``frd_from_flu``, which undoes itself.
-
-    Args:
-        vector: components forward, right and down, in any unit, shape ``(..., 3)``.
-
-    Returns:
-        Array of shape ``(..., 3)``.
-    """
-    return frd_from_flu(vector)
+flu_from_frd = frd_from_flu
+"""The same exchange undoes itself."""
 
 
 def _frame_pose(position_m: FloatArray, roll_rad: float, pitch_rad: float, yaw_rad: float) -> FramePose:
@@ -156,12 +148,12 @@ def _frame_pose(position_m: FloatArray, roll_rad: float, pitch_rad: float, yaw_r
 
 
 def _wrapped(angle_rad: float) -> float:
-    """Return the same angle in (-pi, pi], untouched if it is there already."""
+    """Wrap an angle to (-pi, pi], untouched if it is in there."""
     return angle_rad if -math.pi < angle_rad <= math.pi else math.pi - (math.pi - angle_rad) % math.tau
 
 
 def _quaternion_wxyz(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
-    """Return the product ``qz(yaw) qy(pitch) qx(roll)`` of half-angle quaternions, its sign settled."""
+    """Multiply ``qz(yaw) qy(pitch) qx(roll)`` of half-angle quaternions, its sign settled."""
     cr, sr = math.cos(roll_rad / 2.0), math.sin(roll_rad / 2.0)
     cp, sp = math.cos(pitch_rad / 2.0), math.sin(pitch_rad / 2.0)
     cy, sy = math.cos(yaw_rad / 2.0), math.sin(yaw_rad / 2.0)

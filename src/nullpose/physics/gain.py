@@ -17,7 +17,7 @@ def _unit(vectors: FloatArray) -> FloatArray:
 
 
 def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) -> FloatArray:
-    """Return cos(gamma), gamma being the angle between the dipole and the direction to each point.
+    """Evaluate cos(gamma), gamma being the angle between the dipole and the direction to each point.
 
     ``cos gamma_i = <(p_i - p) / |p_i - p|, u>``
 
@@ -38,7 +38,7 @@ def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike
 def antenna_gain(
     position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: Antenna = SHORT_DIPOLE
 ) -> FloatArray:
-    """Return the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
+    """Evaluate the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
 
     A short dipole has ``G(gamma_i) = sin^2(gamma_i) = 1 - <(p_i - p) / |p_i - p|, u>^2``, evaluated as the
     squared norm of the cross product ``(p_i - p) x u`` over ``|p_i - p|^2``: the same number, which keeps its
@@ -57,10 +57,9 @@ def antenna_gain(
     Returns:
         Array of shape ``(..., m)``: between 0 and 1 for a dipole.
     """
-    if not antenna.is_quadratic:
-        ways = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-        return antenna.gain(np.matmul(_unit(ways), np.asarray(axis, dtype=float)))
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
+    if not antenna.is_quadratic:
+        return antenna.gain(np.matmul(_unit(to_points), np.asarray(axis, dtype=float)))
     u = np.asarray(axis, dtype=float)
     x, y, z = to_points[..., 0], to_points[..., 1], to_points[..., 2]
     ux, uy, uz = u[..., 0, None], u[..., 1, None], u[..., 2, None]
@@ -75,7 +74,7 @@ def dipole_gain(
     ground_axes: ArrayLike,
     antenna: QuadraticAntenna = SHORT_DIPOLE,
 ) -> FloatArray:
-    """Return the power gain between the drone's antenna and a short dipole at each point.
+    """Evaluate the power gain between the drone's antenna and a short dipole at each point.
 
     With unit vectors u of the drone's axis, v of the ground dipole's and d of the way between them, ``P = I -
     d d^T`` and the drone's leak e along its axis, it is ``(1 - e) (u^T P v)^2 + e |P v|^2``: both patterns
@@ -109,7 +108,7 @@ def link_gain(
     antenna: Antenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
 ) -> FloatArray:
-    """Return the power gain between the drone's antenna and that at each point, polarisation included.
+    """Evaluate the power gain between the drone's antenna and that at each point, polarisation included.
 
     The drone's gain alone for an isotropic antenna (paper eq. 2.1), half of it for a circular one, and
     :func:`dipole_gain` for a dipole, or where f leaks through its null the weighted mean ``(1 - f)
@@ -136,7 +135,7 @@ def link_gain(
 
 
 def interferer_gains(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Return the gain of the link with each jammer, or eavesdropper, over the largest gains of both antennas.
+    """Evaluate the gain of the link with each jammer, or eavesdropper, over the largest of both antennas.
 
     Args:
         scenario: its objective says whether jammers or eavesdroppers interfere.
@@ -153,7 +152,7 @@ def interferer_gains(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
 
 
 def worst_polarised(scenario: Scenario) -> Scenario:
-    """Return a scenario without dipoles on the ground whose null has a depth, itself if nothing is changed.
+    """Make a scenario without dipoles on the ground whose null has a depth, itself if nothing is changed.
 
     An isotropic antenna is the worst that a jammer or an eavesdropper could have: no dipole lets more
     through, at any pose. Nodes keep their dipoles, but nothing of what leaks through a null.

@@ -29,7 +29,7 @@ def zero_interference_axis(position_m: ArrayLike, jammer_position_m: ArrayLike) 
 
 
 def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
-    """Return every node's SINR with the null on the scenario's only jammer.
+    """Evaluate every node's SINR with the null on the scenario's only jammer.
 
     ``Gamma_i = (1 - <d_i, d_M>^2) P_i / (|p_i - p|^2 sigma^2)``, with ``d`` the unit directions: the jammer's
     power is gone from it. An antenna whose null is not perfect lets some of it in, and the nodes more;
@@ -58,7 +58,7 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
 
 
 def direction_product(scenario: Scenario, position_m: FloatArray) -> FloatArray:
-    """Return the cross product of the unit directions to both nodes, as eq. 3.4 is printed.
+    """Evaluate the cross product of the unit directions to both nodes, as eq. 3.4 is printed.
 
     Args:
         scenario: a scenario with exactly two nodes.
@@ -97,7 +97,7 @@ def maximum_gain_axis(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
 
 
 def maximum_gain_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
-    """Return both nodes' SINR with the dipole broadside to both: eq. 2.1 with the axis of eq. 3.4.
+    """Evaluate both nodes' SINR with the dipole broadside to both: eq. 2.1 with the axis of eq. 3.4.
 
     Source: paper eq. 3.5, with the axis normalised.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,10 +22,7 @@ from nullpose.scenario import Scenario
 
 
 def as_position(position_m: ArrayLike) -> FloatArray:
-    """Return one position as an array of its own, shape ``(3,)``, metres.
-
-    Args:
-        position_m: shape ``(3,)``, metres.
+    """Check one position, shape ``(3,)``, metres, and copy it.
 
     Raises:
         UsageError: it has another shape, or a number is not finite.
@@ -127,13 +123,11 @@ class Pose:
         return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
 
     def orientation(self, antenna: Antenna) -> FloatArray:
-        """Return what an antenna's gain depends on: its axis, or its attitude if it has a pattern.
-
-        Args:
-            antenna: that of the drone.
+        """Orient an antenna, as its gain needs it.
 
         Returns:
-            Unit axis, shape ``(3,)``, or the rotation to the world from the antenna's axes, ``(3, 3)``.
+            Unit axis, shape ``(3,)``; for an antenna with a pattern the rotation to the world from its axes,
+            ``(3, 3)``.
         """
         if antenna.is_quadratic:
             return self.antenna_axis
@@ -149,7 +143,7 @@ class Pose:
         across = np.hypot(np.sin(self.roll_rad), forward)
         return float(np.arctan2(across, np.cos(self.roll_rad) * np.cos(self.pitch_rad)))
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """Return the pose as plain data for JSON, angles in radians."""
         angles = ("roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad")
         return {

@@ -49,13 +49,13 @@ class Poses:
         position_m = np.asarray(self.position_m, dtype=float)
         names = ("roll_rad", "pitch_rad", "yaw_rad")
         angles = [np.asarray(getattr(self, name), dtype=float) for name in names]
-        given = {"position_m": position_m.shape} | dict(zip(names, (a.shape for a in angles), strict=True))
+        shapes = {"position_m": position_m.shape} | dict(zip(names, (a.shape for a in angles), strict=True))
         counts = {shape[0] for shape in (position_m.shape[:-1], *(a.shape for a in angles)) if shape} or {1}
         if position_m.shape[-1:] != (3,) or position_m.ndim > 2 or max(a.ndim for a in angles) > 1:
             counts = set()
         if len(counts) != 1:
             raise UsageError(
-                f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in given.items())}; "
+                f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
                 "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number"
             )
         if not all(np.all(np.isfinite(each)) for each in (position_m, *angles, np.asarray(self.mount_rad))):
@@ -91,10 +91,7 @@ class Poses:
         return Pose(self.position_m[index], roll, pitch, yaw, self.mount_rad)
 
     def orientation(self, antenna: Antenna) -> FloatArray:
-        """Return what an antenna's gain depends on, as :meth:`Pose.orientation` does for each.
-
-        Args:
-            antenna: that of the drone.
+        """Orient an antenna at every pose, as :meth:`Pose.orientation` does.
 
         Returns:
             Unit axes, shape ``(n, 3)``, or rotations to the world from the antenna's axes, ``(n, 3, 3)``.
@@ -110,5 +107,5 @@ class Poses:
         """Yield the poses in order, some thousands at a time; one empty block if there are none."""
         names = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
         for start in range(0, max(1, len(self)), _BLOCK):
-            some = slice(start, start + _BLOCK)
-            yield replace(self, **{name: getattr(self, name)[some] for name in names})
+            block = slice(start, start + _BLOCK)
+            yield replace(self, **{name: getattr(self, name)[block] for name in names})

@@ -11,7 +11,7 @@ from nullpose.physics.types import FloatArray
 
 
 def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike) -> FloatArray:
-    """Return the rotation that takes body coordinates to the world's.
+    """Build the rotation that takes body coordinates to the world's.
 
     ``R = Rz(yaw) Ry(pitch) Rx(roll)``; its third column is the antenna axis of eq. 1.1.
 
@@ -43,7 +43,7 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
 
 
 def rotation_about(vector_rad: ArrayLike) -> FloatArray:
-    """Return the rotation about a vector by its length (Rodrigues' formula).
+    """Build the rotation about a vector by its length (Rodrigues' formula).
 
     Args:
         vector_rad: shape ``(..., 3)``, radians.
@@ -59,7 +59,7 @@ def rotation_about(vector_rad: ArrayLike) -> FloatArray:
 
 
 def attitude_of(rotation: ArrayLike, tilt_max_rad: float = math.pi) -> tuple[float, float, float]:
-    """Return the roll, pitch and yaw of a rotation, radians, the pitch in [-pi/2, pi/2].
+    """Find the roll, pitch and yaw of a rotation, radians, the pitch in [-pi/2, pi/2].
 
     The inverse of :func:`rotation_world_from_body`. What tilts beyond a limit by rounding is turned back to
     it; roll and pitch are exactly zero if it is zero.
@@ -81,7 +81,7 @@ def attitude_of(rotation: ArrayLike, tilt_max_rad: float = math.pi) -> tuple[flo
 def antenna_axis(
     roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad: ArrayLike = 0.0, mount_rad: float = 0.0
 ) -> FloatArray:
-    """Return the unit vector along the dipole, in world (ENU) coordinates.
+    """Evaluate the unit vector along the dipole, in world (ENU) coordinates.
 
     ``u = R (sin a, 0, cos a)`` for a dipole mounted at an angle a from the body's vertical, towards its x
     axis. For ``a = 0``, as in the paper, ``u = (cos roll sin pitch cos yaw + sin roll sin yaw,
@@ -107,7 +107,7 @@ def antenna_axis(
 def attitude_within_tilt(
     axis: ArrayLike, tilt_max_rad: float, mount_rad: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the roll, pitch and yaw of least tilt that put a dipole mounted at an angle along an axis.
+    """Find the roll, pitch and yaw of least tilt that put a dipole mounted at an angle along an axis.
 
     The yaw turns the dipole's side of the body to the axis's azimuth; the pitch, kept within the tilt, does
     the rest: an axis at an angle t from the vertical takes a pitch of ``t - mount``. The inverse of
@@ -130,7 +130,7 @@ def attitude_within_tilt(
 
 
 def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:
-    """Return the roll and pitch, each in [-pi/2, pi/2], that put the dipole along an axis.
+    """Find the roll and pitch, each in [-pi/2, pi/2], that put the dipole along an axis.
 
     The inverse of eq. 1.1 at a given yaw. Of ``u`` and ``-u`` the one that points up is taken; for a level
     axis, the one with the positive component along the yawed x axis.
