@@ -42,7 +42,7 @@ package: .venv/.made ## a wheel and a source archive, tried outside the clone in
 	.ci/package $(BIN)/python out/package
 
 bench: .venv/.with-bench ## the benchmark and its report, docs/benchmarks.md
-	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks --page
 
 judges: .venv/.with-core ## other engines on the same links, and what they say, docs/judges.md
 	@command -v nec2c > /dev/null || { test "$$(id -u)" = 0 && apt-get update -qq && apt-get install -y -qq nec2c libllvm19 > /dev/null; } || echo "nec2c and libllvm19 are not installed: their judges are skipped"

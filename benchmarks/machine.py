@@ -1,78 +1,60 @@
-"""What a run ran on, as plain data for the report."""
+"""The machine of a run, its threads and its progress bar."""
 
 from __future__ import annotations
 
 import os
 import platform
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
-from benchmarks.environment import ROOT
+ROOT = Path(__file__).parents[1]
+Progress = Callable[[Iterable[Any]], Iterable[Any]]
+"""Wraps an iterable in a progress bar."""
 
-__all__ = ["describe_machine", "load_average"]
+_PACKAGES = ("numpy", "scipy", "numba", "cma", "pyscipopt", "maingopy")
+_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
-PACKAGES = ("nullpose", "numpy", "scipy", "numba", "llvmlite", "cma", "pyscipopt", "maingopy")
+
+def pin_threads() -> None:
+    """Pin every library to one thread, before NumPy and Numba are imported."""
+    os.environ.update(dict.fromkeys(_ONE_THREAD, "1") | {"MPLBACKEND": "Agg"})
 
 
 def describe_machine() -> dict[str, str]:
-    """Return the machine, the system and the versions, as pairs of name and text."""
+    """Describe date, commit, processor, system and versions."""
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
     return {
         "date (UTC)": datetime.now(UTC).date().isoformat(),
-        "source": _revision(),
-        "processor": _processor(),
-        "cores": f"{os.cpu_count()}; one thread, but for proofs of more than 20,000 boxes",
-        "memory": _memory(),
-        "system": f"{platform.system()}, {platform.machine()}",
-        "Python": f"{platform.python_implementation()} {platform.python_version()}",
-        **dict(_versions(PACKAGES)),
+        "commit": _commit(),
+        "processor": f"{_processor()}, {os.cpu_count()} cores",
+        "system": f"{platform.system()}, Python {platform.python_version()}",
+        "packages": ", ".join(_version(name) for name in _PACKAGES),
+        "processes at work before": f"{load:.1f}",
     }
 
 
-def load_average() -> float:
-    """Return how many processes wanted a core over the last minute, NaN where the system does not say."""
-    return os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
-
-
-def _versions(packages: Iterable[str]) -> Iterable[tuple[str, str]]:
-    for package in packages:
-        try:
-            yield package, version(package)
-        except PackageNotFoundError:
-            yield package, "not installed"
+def _version(package: str) -> str:
+    try:
+        return f"{package} {version(package)}"
+    except PackageNotFoundError:
+        return f"{package} not installed"
 
 
 def _processor() -> str:
     information = Path("/proc/cpuinfo")
     lines = information.read_text(encoding="utf-8").splitlines() if information.is_file() else []
-    facts = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
-    if "model name" not in facts:
-        return platform.processor() or "unknown"
-    clock = f", {float(facts['cpu MHz']) / 1000:.2f} GHz" if "cpu MHz" in facts else ""
-    return f"{facts['model name']}{clock}"
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor() or "unknown"
 
 
-def _memory() -> str:
-    try:
-        size = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
-        return "unknown"
-    return f"{size / 2**30:.0f} GiB"
+def _commit() -> str:
+    def git(*arguments: str) -> str:
+        done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+        return done.stdout.strip()
 
-
-def _revision() -> str:
-    """Return the commit, and whether the source or the benchmark differs from it."""
-    paths = ("src", "benchmarks/*.py", "benchmarks/**/*.py")
-    try:
-        commit = _git("rev-parse", "--short=10", "HEAD")
-        changed = _git("status", "--porcelain", "--", *paths)
-    except (OSError, subprocess.CalledProcessError):
-        return "not a git clone"
-    return f"commit {commit}, with changes since" if changed else f"commit {commit}"
-
-
-def _git(*arguments: str) -> str:
-    done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
-    return done.stdout.strip()
+    changed = git("status", "--porcelain", "--", "src", "benchmarks")
+    return (git("rev-parse", "--short=10", "HEAD") or "unknown") + (" and changes" if changed else "")

@@ -53,11 +53,7 @@ def kinds(rng: np.random.Generator) -> dict[str, tuple[dict[str, Any] | None, An
 
 
 def asked(seed: int = 1) -> Iterator[tuple[str, Scenario, list[Pose]]]:
-    """Yield what is compared, a scene and poses in it: random ones, and certified optima.
-
-    Args:
-        seed: of scenes and poses.
-    """
+    """Yield what is compared, a scene and poses in it: random ones, and certified optima."""
     rng = np.random.default_rng(seed)
     for name, (antenna, node, jammer) in kinds(rng).items():
         for scene in range(_SCENES):

@@ -62,10 +62,6 @@ class Verdict:
 
 
 def page(verdicts: Sequence[Verdict]) -> str:
-    """Return the page that tells what every judge found.
-
-    Args:
-        verdicts: in order.
-    """
+    """Return the page that tells what every judge found."""
     head = ["| judge | what | values | largest deviation | allowed | verdict |", "|---|---|---|---|---|---|"]
     return _HEAD + "\n".join([*head, *(verdict.row() for verdict in verdicts)]) + "\n"

@@ -64,11 +64,6 @@ def run(text: str, keep: Path) -> Path:
 def current(output: str, tag: int, segment: int) -> float:
     """Return the magnitude of the current in a wire's segment, counted from 1.
 
-    Args:
-        output: what nec2c printed.
-        tag: of the wire.
-        segment: of it.
-
     Raises:
         ValueError: the output has no such segment.
     """

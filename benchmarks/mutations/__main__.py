@@ -16,17 +16,11 @@ from rich.progress import track
 from benchmarks.mutations.bases import KINDS
 from benchmarks.mutations.run import OUTCOMES, Tally, tally_of
 
-__all__ = ["main", "table"]
-
 _CHUNK = 100
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Change certificates, print what became of them by kind; return 1 if a false one was accepted.
-
-    Args:
-        arguments: of the command line.
-    """
+    """Change certificates, print what became of them by kind; return 1 if a false one was accepted."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=10_000, help="mutations of each kind")
     parser.add_argument("--first", type=int, default=0, help="number of the first")
@@ -63,11 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def by_change(tallies: dict[str, Tally]) -> dict[str, Tally]:
-    """Return tallies by the class of the change instead of by kind.
-
-    Args:
-        tallies: by kind.
-    """
+    """Return tallies by the class of the change instead of by kind."""
     found: dict[str, Tally] = {}
     for tally in tallies.values():
         for (change, outcome), count in tally.counts.items():
@@ -76,11 +66,7 @@ def by_change(tallies: dict[str, Tally]) -> dict[str, Tally]:
 
 
 def table(tallies: dict[str, Tally]) -> str:
-    """Return what became of mutations as a Markdown table.
-
-    Args:
-        tallies: by what the rows are to be about.
-    """
+    """Return what became of mutations as a Markdown table."""
     lines = ["| | mutations | " + " | ".join(OUTCOMES) + " |", "|:--|--:" + "|--:" * len(OUTCOMES) + "|"]
     everything = Tally()
     for tally in tallies.values():

@@ -11,8 +11,6 @@ from nullpose.scenario import Scenario
 from nullpose.solver import solve
 from nullpose.solver.certificate_from_proof import certificate_of
 
-__all__ = ["KINDS", "bases_of", "optima_of"]
-
 _TIME_S = 600.0  # the kernels may have to be compiled first
 _SQUARE = {"x_m": [-20.0, 30.0], "y_m": [5.0, 60.0]}
 
@@ -126,20 +124,12 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
 
 
 def bases_of(kind: str) -> list[Data]:
-    """Return the certificates of a kind as data.
-
-    Args:
-        kind: one of ``KINDS``.
-    """
+    """Return the certificates of a kind as data."""
     return [_data(scheme, gap, tables) for scheme, gap, tables in KINDS[kind]]
 
 
 def optima_of(kind: str) -> list[Data]:
-    """Return certificates of the same claims whose poses are best to 1e-6, 1e-5 of zones, 0.1 of profiles.
-
-    Args:
-        kind: one of ``KINDS``.
-    """
+    """Return certificates of the same claims whose poses are best to 1e-6, 1e-5 of zones, 0.1 of profiles."""
     gap = {"profiles": 0.1, "zones and fence": 1e-5}.get(kind, 1e-6)
     return [_data(scheme, gap, tables) for scheme, _, tables in KINDS[kind]]
 

@@ -13,8 +13,6 @@ from nullpose.certificate.file import scenario_digest
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 
-__all__ = ["CLASSES", "MORE", "changed", "forged", "mutated", "spoiled"]
-
 
 def _copy(sound: Data) -> Data:
     data: Data = json.loads(json.dumps(sound))
@@ -209,13 +207,7 @@ _AFTER_EACH_OTHER = MORE[:-3]
 
 
 def mutated(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
-    """Return a certificate's data after a change of any class, or None if that changes nothing.
-
-    Args:
-        sound: the data before.
-        kind: one of ``CLASSES`` or ``MORE``.
-        rng: what is changed, and how much.
-    """
+    """Return a certificate's data after a change of any class, or None if that changes nothing."""
     data = _copy(sound)
     if kind == "several":
         for one in rng.choice([*CLASSES, *_AFTER_EACH_OTHER], size=int(rng.integers(2, 6))):

@@ -15,8 +15,6 @@ from benchmarks.mutations.truth import Data, Truth
 from nullpose.certificate import parse_certificate, verify
 from nullpose.errors import CertificateError, ScenarioError
 
-__all__ = ["FALSE", "OUTCOMES", "REFUSED", "REJECTED", "TRUE", "Mutations", "Tally", "tally_of"]
-
 REFUSED, REJECTED, TRUE, FALSE = OUTCOMES = (
     "refused on reading",
     "rejected",
@@ -40,11 +38,7 @@ class Tally:
     falsehoods: list[str] = field(default_factory=list)
 
     def add(self, other: Tally) -> None:
-        """Add what became of others.
-
-        Args:
-            other: their tally.
-        """
+        """Add what became of others."""
         self.counts += other.counts
         self.falsehoods += other.falsehoods
 
@@ -62,12 +56,7 @@ class Mutations:
         self.kind, self.bases, self.optima, self.truth = kind, bases, optima, Truth(optima)
 
     def tally(self, first: int, count: int) -> Tally:
-        """Return what became of mutations, each made from its number alone.
-
-        Args:
-            first: number of the first.
-            count: how many.
-        """
+        """Return what became of mutations, each made from its number alone."""
         tally = Tally()
         for number in range(first, first + count):
             change, data = self.mutation(number)
@@ -78,11 +67,7 @@ class Mutations:
         return tally
 
     def mutation(self, number: int) -> tuple[str, Data]:
-        """Return the class of a change and the data after it.
-
-        Args:
-            number: of the mutation; the classes take turns.
-        """
+        """Return the class of a change and the data after it."""
         rng = np.random.default_rng([20263, list(KINDS).index(self.kind), number])
         change = _EVERY[number % len(_EVERY)]
         while True:
@@ -93,11 +78,7 @@ class Mutations:
             change = _EVERY[int(rng.integers(len(_EVERY)))]  # there is no such place
 
     def judged(self, data: Data) -> tuple[str, str]:
-        """Return the outcome of a certificate, and what is false in it if it is accepted all the same.
-
-        Args:
-            data: of the certificate.
-        """
+        """Return the outcome of a certificate, and what is false in it if it is accepted all the same."""
         try:
             certificate = parse_certificate(json.dumps(data))
             accepted = verify(certificate).proved
@@ -115,10 +96,6 @@ def _mutations(kind: str) -> Mutations:
 
 
 def tally_of(part: tuple[str, int, int]) -> Tally:
-    """Return what became of some mutations, in a process that keeps the certificates they are made from.
-
-    Args:
-        part: kind, number of the first and how many.
-    """
+    """Return what became of some mutations, in a process that keeps the certificates they are made from."""
     kind, first, count = part
     return _mutations(kind).tally(first, count)

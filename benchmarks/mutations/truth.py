@@ -20,8 +20,6 @@ from nullpose.physics import (
 from nullpose.scenario import Scenario
 from nullpose.scenario.polygon import depth_m
 
-__all__ = ["Data", "Problem", "Truth", "allowed_axes", "claim_fault", "pose_of"]
-
 Data = dict[str, Any]
 
 _STARTS = 200  # random walks of a search
@@ -147,12 +145,7 @@ def claim_fault(data: Data, scenario: Scenario) -> str:
 
 
 def pose_of(data: Data, scenario: Scenario) -> Pose:
-    """Return the pose that a certificate's data state.
-
-    Args:
-        data: of the certificate.
-        scenario: the one inside, for the dipole's mount.
-    """
+    """Return the pose that a certificate's data state."""
     airframe = scenario.airframe
     names = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
     stated = {name: data["pose"][name] for name in names}
@@ -171,11 +164,7 @@ class Truth:
         self._best: dict[str, float] = {}
 
     def falsehood(self, data: Data) -> str:
-        """Return what is false in a certificate's claim, or nothing if nothing was found.
-
-        Args:
-            data: of a certificate that can be read.
-        """
+        """Return what is false in a certificate's claim, or nothing if nothing was found."""
         scenario = Scenario.from_dict(data["scenario"])
         fault = claim_fault(data, scenario)
         if fault:
@@ -186,12 +175,7 @@ class Truth:
         return ""
 
     def best(self, data: Data, scenario: Scenario) -> float:
-        """Return the largest smallest ratio that is known of a scenario under a scheme.
-
-        Args:
-            data: of a certificate, whose pose the search begins at unless a better one is known.
-            scenario: the same as an object.
-        """
+        """Return the largest smallest ratio that is known of a scenario under a scheme."""
         key = self._key(data)
         if key not in self._best:
             pose = pose_of(self._optima.get(key, data), scenario)

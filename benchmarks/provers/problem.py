@@ -1,16 +1,14 @@
-"""The problem as plain numbers, and the same scaled to units in which every number is about one."""
+"""Provers: the problem that they get, what they claim, and units in which every number is about one."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["Problem", "Scaled"]
 
 FloatArray = NDArray[np.float64]
 Triple = tuple[float, float, float]
@@ -51,6 +49,52 @@ class Problem:
     def to_dict(self) -> dict[str, Any]:
         """Return the problem as plain data."""
         return asdict(self)
+
+
+FINISHED = "finished"
+NOT_CLOSED = "not closed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """The pose, value and bound that a prover claims, none of them checked.
+
+    Args:
+        status: ``"finished"`` if the prover says that the gap is reached, ``"not closed"`` if its time ran
+            out, or else what went wrong.
+        value: smallest SINR that it claims for its pose; NaN if it has none.
+        bound: the bound that it claims; NaN if it has none.
+        position_m: (3,) its pose's position, metres; empty if it has none.
+        axis: (3,) along its pose's dipole, of any length; empty if it has none.
+        nodes: of its branch and bound.
+        seconds: wall-clock time from building the model to the answer, imports left out.
+    """
+
+    status: str
+    value: float = float("nan")
+    bound: float = float("nan")
+    position_m: tuple[float, ...] = ()
+    axis: tuple[float, ...] = ()
+    nodes: int = 0
+    seconds: float = 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the claim as plain data."""
+        return asdict(self)
+
+
+class Prover(Protocol):
+    """A global solver with a formulation: its name, its label in tables, its package."""
+
+    name: str
+    label: str
+    package: str
+
+    def load(self) -> None:
+        """Import what it needs, outside the clock."""
+
+    def prove(self, problem: Problem) -> Claim:
+        """Solve the problem; the caller fills the time in."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""SCIP, from the package pyscipopt, with two formulations."""
+"""SCIP, from the package pyscipopt."""
 
 from __future__ import annotations
 
@@ -8,29 +8,24 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.provers.claim import FINISHED, NOT_CLOSED, Claim
-from benchmarks.provers.problem import Problem, Scaled
+from benchmarks.provers.problem import FINISHED, NOT_CLOSED, Claim, Problem, Scaled
 from benchmarks.provers.scip_model import Draft, cross, dot
-
-__all__ = ["Scip", "ScipPlain"]
 
 _CLOSED = ("gaplimit", "optimal")
 _TIME_UP = "timelimit"
 
 
 class Scip:
-    """The interference as the square of a short vector of its own, grown with the jamming."""
+    """The interference as the square of ``sqrt(J) (u x b) / r^2``, b being the jammer as the drone sees it.
+
+    Strong jamming then leaves every variable of order one. The axis is a unit vector of the upper half space,
+    a node's signal ``1/d^2 - (u.a)^2 / d^4``. Heuristics, separators and obbt are off and the best bound
+    comes first, which is faster than SCIP's own choice.
+    """
 
     name = "scip"
     label = "SCIP"
     package = "pyscipopt"
-    settings = (
-        "the axis a unit vector of the upper half space; a node's signal as $1/d^2 - (u \\cdot a)^2 / d^4$; "
-        "the interference as the square of $\\sqrt{J} (u \\times b) / r^2$, with b from the drone to the "
-        "jammer and r its length, so that strong jamming leaves every variable of order one; the start as a "
-        "whole solution; heuristics, separators and `obbt` off and the best bound first, which was "
-        "faster than SCIP's own choice; other options as they come"
-    )
 
     def load(self) -> None:
         """Import SCIP."""
@@ -72,38 +67,6 @@ class Scip:
         model.setSeparating(off)
         model.setParam("propagating/obbt/freq", -1)
         model.setParam("nodeselection/bfs/stdpriority", 1_000_000)
-
-
-class ScipPlain(Scip):
-    """The interference as it is usually written, ``J (1/|b|^2 - (u.b)^2/|b|^4)``, with SCIP's own options."""
-
-    name = "scip-plain"
-    label = "SCIP, plain form"
-    settings = (
-        "as SCIP, but the interference as $J (1/r^2 - (u \\cdot b)^2 / r^4)$, and every option as it comes: "
-        "near the null that is a small difference of large numbers, and SCIP's tolerance of 1e-6 is "
-        "multiplied by the jamming"
-    )
-
-    def _interference(self, draft: Draft) -> None:
-        scaled, distance2 = draft.scaled, draft.jammer_distance2
-        near, far = scaled.squared_distances(scaled.jammer)
-        inverse = draft.variable(1.0 / far, 1.0 / near, 1.0 / distance2.at)
-        draft.model.addCons(inverse.term * distance2.term == 1.0)
-        along = draft.axis.at @ draft.to_jammer.at / distance2.at
-        cosine = draft.variable(-1.0 / math.sqrt(near), 1.0 / math.sqrt(near), float(along))
-        draft.model.addCons(cosine.term * distance2.term == dot(draft.axis.terms, draft.to_jammer.terms))
-        total = scaled.noise + scaled.jamming * (inverse.at - cosine.at**2)
-        draft.disturbance = draft.variable(scaled.noise, scaled.noise + scaled.jamming / near, total)
-        left = scaled.jamming * (inverse.term - cosine.term * cosine.term)
-        draft.model.addCons(draft.disturbance.term - scaled.noise == left)
-
-    def _signals(self, draft: Draft) -> None:
-        for signal in draft.signals():
-            draft.model.addCons(signal >= draft.level.term * draft.disturbance.term)
-
-    def _options(self, model: Any) -> None:
-        """Leave every option as it comes."""
 
 
 def _claim(draft: Draft, problem: Problem) -> Claim:

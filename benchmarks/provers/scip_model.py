@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from benchmarks.provers.problem import Scaled
 
-__all__ = ["Draft", "Quantity", "Vector", "cross", "dot"]
-
 FloatArray = NDArray[np.float64]
 
 

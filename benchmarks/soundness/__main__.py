@@ -19,15 +19,9 @@ from benchmarks.soundness.check import Outcome, check_scene
 from benchmarks.soundness.features import FEATURES, make_feature_scene
 from benchmarks.soundness.scenes import Scene, make_scene
 
-__all__ = ["main"]
-
 
 def main(arguments: list[str] | None = None) -> int:
-    """Check scenes, print a table by kind; return 1 if one of them is unsound.
-
-    Args:
-        arguments: of the command line.
-    """
+    """Check scenes, print a table by kind; return 1 if one of them is unsound."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=1000, help="how many")
     parser.add_argument("--first", type=int, default=0, help="number of the first")
@@ -52,12 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def scenes_of(feature: str | None, numbers: Iterable[int]) -> list[Scene]:
-    """Return the scenes of some numbers: awkward ones, or those of a feature, or of every feature.
-
-    Args:
-        feature: which, ``"all"``, or None.
-        numbers: of the scenes, of each kind.
-    """
+    """Return the scenes of some numbers: awkward ones, or those of a feature, or of every feature."""
     if feature is None:
         return [make_scene(number) for number in numbers]
     some = FEATURES if feature == "all" else (feature,)
@@ -65,11 +54,7 @@ def scenes_of(feature: str | None, numbers: Iterable[int]) -> list[Scene]:
 
 
 def table(outcomes: list[Outcome]) -> str:
-    """Return the outcomes by kind as a Markdown table.
-
-    Args:
-        outcomes: of all scenes.
-    """
+    """Return the outcomes by kind as a Markdown table."""
     lines = [
         "| kind | scenes | certified | gap not reached | search within 1e-3 of the value "
         "| below `--fast` | promised | of these verified | faults |",

@@ -14,8 +14,6 @@ from nullpose.physics import objective_value
 from nullpose.solver import Rigour, solve
 from nullpose.solver.certificate_from_proof import certificate_of
 
-__all__ = ["Outcome", "check_scene"]
-
 _ROUNDING = 1e-12
 _BELOW = 1e-6  # relative: where two searches end
 _MOST_LEAVES = 30_000  # that are verified: with more it takes a minute
@@ -54,11 +52,6 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     """Return whether a scene's value and bound withstand a search, a re-evaluation and the verifier.
 
     The search and the verifier are independent of the solver; the verifier sees what was certified.
-
-    Args:
-        scene: what to solve.
-        starts: random walks of the search.
-        time_limit_s: of the proof.
     """
     began = time.perf_counter()
     limits = {} if scene.cells is None else {"node_limit": scene.cells}

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["GAPS", "MOUNTS_DEG", "make_gap", "put_antennas", "put_level_airframe"]
-
 Table = dict[str, Any]
 
 GAPS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)
@@ -55,12 +53,7 @@ _ON_THE_DRONE: tuple[Callable[[np.random.Generator], Table], ...] = (
 
 
 def put_antennas(rng: np.random.Generator, table: Table) -> Table:
-    """Return a scene with some antenna on the drone, and antennas on the ground that go with it.
-
-    Args:
-        rng: draws them.
-        table: the scene.
-    """
+    """Return a scene with some antenna on the drone, and antennas on the ground that go with it."""
     choice = int(rng.integers(len(_ON_THE_DRONE)))
     kinds = ["isotropic", "circular", "dipole"][: 3 if choice < 2 else 2]  # whips need a dipole on the drone
     if rng.uniform() < 0.6:
@@ -76,19 +69,10 @@ def put_antennas(rng: np.random.Generator, table: Table) -> Table:
 
 
 def put_level_airframe(rng: np.random.Generator, table: Table) -> Table:
-    """Return a scene with a vehicle that does not tilt, its antenna mounted at some angle.
-
-    Args:
-        rng: draws the mount.
-        table: the scene.
-    """
+    """Return a scene with a vehicle that does not tilt, its antenna mounted at some angle."""
     return table | {"airframe": {"tilt_max_deg": 0.0, "mount_deg": float(rng.choice(MOUNTS_DEG))}}
 
 
 def make_gap(number: int) -> float:
-    """Return the gap that the scene of a number is proved to.
-
-    Args:
-        number: of the scene; the gaps take turns.
-    """
+    """Return the gap that the scene of a number is proved to."""
     return GAPS[number % len(GAPS)]

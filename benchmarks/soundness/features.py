@@ -13,8 +13,6 @@ from benchmarks.soundness.every_antenna import make_gap, put_antennas, put_level
 from benchmarks.soundness.scenes import Scene
 from nullpose.scenario import Scenario
 
-__all__ = ["FEATURES", "make_feature_scene"]
-
 FloatArray = NDArray[np.float64]
 Table = dict[str, Any]
 
@@ -289,12 +287,7 @@ _CELLS = 15_000  # of the proofs at given gaps: what is left then is promised to
 
 
 def make_feature_scene(feature: str, number: int) -> Scene:
-    """Return the scene of a number with something that scenarios can ask for.
-
-    Args:
-        feature: one of ``FEATURES``.
-        number: seeds everything about it.
-    """
+    """Return the scene of a number with something that scenarios can ask for."""
     rng = np.random.default_rng([20261, list(FEATURES).index(feature), number])
     return Scene(
         number=number,

@@ -20,8 +20,6 @@ from benchmarks.soundness.search import feasible, nearest_in_band
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
 
-__all__ = ["Errors", "Verdict", "check_robust", "main", "make_robust_scene", "worst"]
-
 FloatArray = NDArray[np.float64]
 
 _KEPT = 400  # errors that every pose of the search is judged by
@@ -79,14 +77,7 @@ def _unit(x: FloatArray) -> FloatArray:
 
 
 def worst(scenario: Scenario, position_m: FloatArray, axis: FloatArray, errors: Errors) -> FloatArray:
-    """Return the smallest SINR of a pose under each error, (n,): paper eq. 2.1, written down once more.
-
-    Args:
-        scenario: nodes, jammers and their sets.
-        position_m: (3,) commanded position, metres.
-        axis: (3,) commanded axis, of unit length.
-        errors: n of them.
-    """
+    """Return the smallest SINR of a pose under each error, (n,): paper eq. 2.1, written down once more."""
     angle = scenario.receiver.attitude_error_rad * errors.turn
     across = _unit(np.cross(axis, errors.across))
     axes = np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * across
@@ -106,11 +97,7 @@ def worst(scenario: Scenario, position_m: FloatArray, axis: FloatArray, errors: 
 
 
 def make_robust_scene(number: int) -> Scenario:
-    """Return a random scene with errors.
-
-    Args:
-        number: seeds everything about it.
-    """
+    """Return a random scene with errors."""
     rng = np.random.default_rng([20262, number])
     nodes = rng.uniform(0.0, [60.0, 60.0, 3.0], size=(int(rng.integers(1, 5)), 3))
     jammers = rng.uniform(0.0, [60.0, 60.0, 3.0], size=(int(rng.integers(1, 3)), 3))
@@ -148,13 +135,7 @@ def make_robust_scene(number: int) -> Scenario:
 
 
 def check_robust(number: int, *, gap: float = 0.02, time_limit_s: float = 10.0) -> Verdict:
-    """Return whether guarantee and bound of a scene withstand a random search.
-
-    Args:
-        number: of the scene.
-        gap: asked for.
-        time_limit_s: of the solve.
-    """
+    """Return whether guarantee and bound of a scene withstand a random search."""
     scenario = make_robust_scene(number)
     rng = np.random.default_rng([20263, number])
     began = time.perf_counter()
@@ -215,11 +196,7 @@ def _best_pose(scenario: Scenario, rng: np.random.Generator, near: tuple[FloatAr
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Check scenes, print how they ended; return 1 if one of them is unsound.
-
-    Args:
-        arguments: of the command line.
-    """
+    """Check scenes, print how they ended; return 1 if one of them is unsound."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=200, help="how many")
     parser.add_argument("--first", type=int, default=0, help="number of the first")

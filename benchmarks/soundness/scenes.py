@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from nullpose.scenario import Scenario
 
-__all__ = ["KINDS", "Scene", "make_scene"]
-
 FloatArray = NDArray[np.float64]
 
 _NOISE_W = 1e-3
@@ -109,11 +107,7 @@ KINDS = {
 
 
 def make_scene(number: int) -> Scene:
-    """Return the scene of a number; the kinds take turns.
-
-    Args:
-        number: seeds everything about it.
-    """
+    """Return the scene of a number; the kinds take turns."""
     rng = np.random.default_rng([20241, number])
     kind = list(KINDS)[number % len(KINDS)]
     nodes, jammers, ratio, airspace = KINDS[kind](rng)

@@ -11,8 +11,6 @@ from scipy.spatial.transform import Rotation
 from nullpose.physics import objective_value
 from nullpose.scenario import Scenario
 
-__all__ = ["best_value", "feasible"]
-
 FloatArray = NDArray[np.float64]
 
 _STEPS = 400
@@ -85,15 +83,6 @@ def best_value(
 
     Half of the walks begin anywhere, half near a given pose: a bound that is too low by little would be
     exceeded there first. Each walk tries a random change and keeps it if it is better; changes shrink.
-
-    Args:
-        scenario: what to search.
-        scheme: which axes are allowed.
-        starts: how many walks.
-        seed: of the walks.
-        near: position, metres, and axis to begin half of them around; for an antenna with a pattern the
-            quaternion of its attitude.
-        null_jammer: with zero interference, the one jammer that is to be nulled.
     """
     rng = np.random.default_rng(seed)
     ground = ground_of(scenario)

@@ -1,1 +1,0 @@
-"""How quickly the studio's page follows a hand, and whether it lasts."""
