@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from chromium import opened
+from benchmarks.chromium import opened
 from PIL import Image, ImageDraw
 from studio_screens import ROOT, at_rest  # which makes the benchmarks known too: hence the order
 

@@ -19,7 +19,7 @@ from PIL import Image
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports below this line
 
-from chromium import opened  # noqa: E402
+from benchmarks.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
 from nullpose.physics import rotation_world_from_body  # noqa: E402

@@ -10,7 +10,7 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports below this line
 
-from chromium import opened  # noqa: E402
+from benchmarks.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
 from nullpose.studio.case import case_named  # noqa: E402

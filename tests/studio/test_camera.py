@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from benchmarks.studio.chromium import pixels
+from benchmarks.chromium import pixels
 
 from nullpose import load, solve
 from nullpose.scenario import Scenario

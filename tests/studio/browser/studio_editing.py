@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.studio.chromium import pixels
+from benchmarks.chromium import pixels
 from playwright.sync_api import Locator, Page
 
 from nullpose import load, solve

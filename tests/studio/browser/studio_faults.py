@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.studio.chromium import pixels
+from benchmarks.chromium import pixels
 from matplotlib.image import imread
 from numpy.typing import NDArray
 from playwright.sync_api import Page

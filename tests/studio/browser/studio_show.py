@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.studio.chromium import pixels
+from benchmarks.chromium import pixels
 from matplotlib.image import imread
 from playwright.sync_api import Browser
 
