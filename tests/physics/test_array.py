@@ -187,28 +187,6 @@ def test_without_jammers_the_elements_add_up(
     assert np.all(digital_sinr(scene, position, places) <= most * (1.0 + 1e-12))
 
 
-@given(seed=SEEDS, elements=st.integers(2, 9), layout=LAYOUTS)
-def test_one_jammer_takes_the_share_that_points_at_it(
-    seed: int, elements: int, layout: str, random_scene: Callable
-) -> None:
-    """With one jammer ``Gamma = |h|^2 / sigma^2 (1 - rho^2 x / (1 + x))``, x its strength over the noise."""
-    rng = np.random.default_rng(seed)
-    scene, position = random_scene(rng, 3, 1), _place(rng)
-    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
-    heard, (jammer,) = _channels(scene, position, places)
-    noise_w = scene.receiver.noise_power_w
-    alone = np.linalg.norm(heard, axis=1) ** 2 / noise_w
-    overlap = np.abs(heard.conj() @ jammer) ** 2 / (
-        np.linalg.norm(heard, axis=1) ** 2 * np.linalg.norm(jammer) ** 2
-    )
-    strength = np.linalg.norm(jammer) ** 2 / noise_w
-    np.testing.assert_allclose(
-        digital_sinr(scene, position, places),
-        alone * (1.0 - overlap * strength / (1.0 + strength)),
-        rtol=1e-9,
-    )
-
-
 @given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=st.integers(2, 9), layout=LAYOUTS)
 def test_an_element_less_or_a_jammer_more_never_helps(
     seed: int, nodes: int, jammers: int, elements: int, layout: str, random_scene: Callable
@@ -222,28 +200,6 @@ def test_an_element_less_or_a_jammer_more_never_helps(
     values = digital_sinr(calmer, position, places)
     assert np.all(digital_sinr(calmer, position, places[:-1]) <= values * (1.0 + 1e-9))
     assert np.all(digital_sinr(jammed, position, places) <= values * (1.0 + 1e-9))
-
-
-@given(seed=SEEDS, layout=LAYOUTS)
-def test_turning_the_scene_and_the_vehicle_changes_nothing(
-    seed: int, layout: str, scene: Callable, random_scene: Callable
-) -> None:
-    """Turning nodes, jammers and position about the vertical, with the yaw, leaves every SINR unchanged."""
-    rng = np.random.default_rng(seed)
-    before, position, yaw, turn = random_scene(rng, 3, 2), _place(rng), *rng.uniform(0.0, 6.0, 2)
-    cosine, sine = math.cos(turn), math.sin(turn)
-    rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    after = scene(
-        before.node_positions_m @ rotation.T,
-        before.node_powers_w,
-        before.jammer_positions_m @ rotation.T,
-        before.jammer_powers_w,
-    )
-    old = element_positions(4, layout, 0.5, yaw)
-    new = element_positions(4, layout, 0.5, yaw + turn)
-    np.testing.assert_allclose(
-        digital_sinr(after, rotation @ position, new), digital_sinr(before, position, old), rtol=1e-9
-    )
 
 
 @given(seed=SEEDS, jammers=JAMMERS)

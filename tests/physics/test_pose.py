@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.physics import Pose, antenna_axis
+from nullpose.physics import Pose
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -21,13 +21,6 @@ def test_a_pose_from_an_axis_has_that_axis(seed: int, yaw: float, length: float)
     assert pose.yaw_rad == yaw
     assert abs(pose.roll_rad) <= math.pi / 2
     assert abs(pose.pitch_rad) <= math.pi / 2
-
-
-def test_axis_is_that_of_the_angles() -> None:
-    """The pose's axis is eq. 1.1 of its own roll, pitch and yaw; yaw is 0 if left out."""
-    pose = Pose([0.0, 0.0, 10.0], 0.3, -0.7, 1.1)
-    np.testing.assert_array_equal(pose.antenna_axis, antenna_axis(0.3, -0.7, 1.1))
-    assert Pose([0.0, 0.0, 10.0], 0.3, -0.7).yaw_rad == 0.0
 
 
 def test_a_pose_is_frozen() -> None:

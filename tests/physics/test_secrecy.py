@@ -69,25 +69,6 @@ def test_rate_is_the_difference_of_two_capacities(seed: int, random_poses: Calla
     np.testing.assert_allclose(rate, expected, atol=1e-13)
 
 
-@given(seed=SEEDS)
-def test_rate_is_the_logarithm_of_a_ratio_of_quadratic_forms(seed: int, random_poses: Callable) -> None:
-    """As in eq-family-secrecy: 2 to the rate is the least ratio of u'(I + a T)u over the eavesdroppers."""
-    rng = np.random.default_rng(seed)
-    scene, (position, axis) = random_secret(rng), random_poses(rng)
-    gain = scene.receiver.reference_gain * scene.transmitter.transmit_power_w
-
-    def forms(points: np.ndarray, noise: np.ndarray) -> np.ndarray:
-        r = points - position
-        squared = np.sum(r**2, axis=1)[:, None, None]
-        link = (squared * np.eye(3) - r[:, :, None] * r[:, None, :]) / squared**2
-        return np.einsum("i,kij,j->k", axis, np.eye(3) + gain / noise[:, None, None] * link, axis)
-
-    wanted = forms(scene.node_positions_m, scene.node_noise_w)
-    overheard = forms(scene.eavesdropper_positions_m, scene.eavesdropper_noise_w)
-    expected = np.maximum(1.0, wanted / overheard.max())
-    np.testing.assert_allclose(2.0 ** secrecy_rate(scene, position, axis), expected, rtol=1e-12)
-
-
 def test_a_node_beside_a_better_eavesdropper_has_no_rate(random_poses: Callable) -> None:
     """Where an eavesdropper hears better than the node the rate is 0, exactly, and not below."""
     rng = np.random.default_rng(4)

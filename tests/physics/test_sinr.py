@@ -90,25 +90,6 @@ def test_path_gain_weighs_against_the_noise_only(
     np.testing.assert_allclose(sinr(gained, position, axis), sinr(quieter, position, axis), rtol=1e-12)
 
 
-@given(seed=SEEDS, length=st.floats(0.01, 100.0))
-def test_only_power_over_squared_distance_counts(
-    seed: int, length: float, scene: Callable, random_scene: Callable, random_poses: Callable
-) -> None:
-    """Stretching the scene about the origin and raising the powers with its square changes nothing."""
-    rng = np.random.default_rng(seed)
-    one = random_scene(rng, 3, 2)
-    stretched = scene(
-        length * one.node_positions_m,
-        length**2 * one.node_powers_w,
-        length * one.jammer_positions_m,
-        length**2 * one.jammer_powers_w,
-    )
-    position, axis = random_poses(rng)
-    np.testing.assert_allclose(
-        sinr(stretched, length * position, axis), sinr(one, position, axis), rtol=1e-11
-    )
-
-
 def test_shapes_follow_the_poses(random_scene: Callable, random_poses: Callable) -> None:
     """Leading shapes of positions and axes broadcast, nodes come last, and each entry is the scalar call."""
     rng = np.random.default_rng(12)
