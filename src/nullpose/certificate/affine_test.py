@@ -7,7 +7,7 @@ arithmetic; the maximum of the quadratic is bounded by its dual (see "The certif
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,10 +35,24 @@ _SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
 _UNIT = Interval(np.eye(3)[:, :, None])
 _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 
-Jet: TypeAlias = tuple[Interval, Interval, Interval, Interval]
+
+class LinkJet(NamedTuple):
+    """A link over boxes: value and gradient at the centres, Hessian and value all over them.
+
+    Args:
+        value: (b,).
+        slopes: (3, b).
+        bends: (6, b).
+        ranged: (b,).
+    """
+
+    value: Interval
+    slopes: Interval
+    bends: Interval
+    ranged: Interval
 
 
-def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> Jet:
+def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> LinkJet:
     """Expand a link: value and gradient at the centres, Hessian and value over the boxes.
 
     Args:
@@ -55,14 +69,14 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, ax
     if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
         alone = _isotropic_jet(axes, boxes, points, 0.0)
         share = 1.0 - Interval(leak)
-        jets = tuple(jet * share + other * leak for jet, other in zip(jets, alone, strict=True))
+        jets = LinkJet(*(jet * share + other * leak for jet, other in zip(jets, alone, strict=True)))
     if not np.all(has):
         others = _isotropic_jet(field, boxes, points, leak)
-        jets = tuple(where(has, jet, other) for jet, other in zip(jets, others, strict=True))
-    return jets[0], jets[1], jets[2], jets[3]
+        jets = LinkJet(*(where(has, jet, other) for jet, other in zip(jets, others, strict=True)))
+    return jets
 
 
-def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> tuple[Interval, ...]:
+def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> LinkJet:
     """Expand links as :func:`link_jet` where points have dipoles, without what leaks.
 
     Their link is ``B^2 / (|u|^2 |r|^6)``, ``B = (u.v) |r|^2 - (u.r) (v.r)``.
@@ -90,10 +104,10 @@ def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatA
     product, gradient = product + Interval(-reach, reach), gradient + Interval(-swing, swing)
     over, _, hessian = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most)
+    return LinkJet(value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most))
 
 
-def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
+def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> LinkJet:
     """Expand links as :func:`link_jet` where points have no dipoles; the axis may be given, (b, 3)."""
     matrix = Interval(field.matrix[:, :, None] if isinstance(field, AxisField) else np.zeros((3, 3, 1)))
     half = Interval(boxes.half.T)
@@ -117,7 +131,7 @@ def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArr
     over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
     # the gain is at most 1, and never below zero
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most)
+    return LinkJet(value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most))
 
 
 def _cross(x: Interval, y: Interval) -> Interval:
