@@ -137,7 +137,7 @@ def test_two_cuts_of_an_antenna_that_is_the_same_all_round(
     assert any("dBi" in note if "dBi" in gain else "dBd" in note for note in table.notes)
     assert "horizontal cut's ripple of 0.0 dB, and 0.0 dB between the halves" in table.notes[1]
     assert table.notes[2] == "Its FREQUENCY, 2400, is read in MHz."
-    assert table.doubt == ""
+    assert table.caveat == ""
 
 
 def test_the_profile_of_an_omni_is_the_mean_of_its_halves(msi: Callable[..., str], tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_an_estimate_from_two_cuts_has_both_of_them(msi: Callable[..., str], tmp
     assert np.unravel_index(np.argmax(table.gain), table.gain.shape) == (90, 0)
     assert np.min(loss) == pytest.approx(0.0, abs=1e-9)
     assert solid_angles(table)[loss < 3.0].sum() < 0.1
-    assert "estimate by the sum of losses: its horizontal cut changes by 16.0 dB" in table.doubt
+    assert "estimate by the sum of losses: its horizontal cut changes by 16.0 dB" in table.caveat
     at_half = loss[45, 90]  # theta 45, phi 90: half of each half of the vertical cut
     assert at_half == pytest.approx(
         across_db[270] + 0.5 * (down_db[315] + max(0.0, down_db[225] - 16.0)), abs=1e-3

@@ -204,8 +204,8 @@ def test_two_cuts_are_no_pattern(msi: Callable[..., str], tmp_path: Path) -> Non
     with pytest.raises(ScenarioError, match=r'horizontal cut changes by 12\.0 dB.* write two_cuts = "sum-of'):
         read_pattern(path)
     table = read_pattern(path, estimate=True)
-    assert "estimate by the sum of losses" in table.doubt
-    assert f"Estimate: {table.doubt}." in table.notes
+    assert "estimate by the sum of losses" in table.caveat
+    assert f"Estimate: {table.caveat}." in table.notes
 
 
 @pytest.mark.parametrize(

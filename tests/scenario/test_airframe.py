@@ -65,26 +65,6 @@ def test_known_bands(airframe: Airframe, band: tuple[float, float]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("preset", "tilt"), [("omnidirectional", 180.0), ("level", 0.0), ("fixed-tilt-hexarotor", 30.0)]
-)
-def test_presets_are_names_for_tilts(preset: str, tilt: float) -> None:
-    """A preset reaches what its tilt does, whatever the mount."""
-    for mount in (0.0, 20.0, 90.0):
-        named, stated = Airframe(preset=preset, mount_deg=mount), Airframe(tilt_max_deg=tilt, mount_deg=mount)
-        assert named.axis_band == stated.axis_band
-        assert named.tilt_max_rad == stated.tilt_max_rad == math.radians(tilt)
-        assert named.mount_rad == math.radians(mount)
-
-
-@given(tilt=tilts, mount=mounts)
-def test_round_trip(tilt: float, mount: float) -> None:
-    """What was stated comes back, and a mount of 0 is left out."""
-    airframe = Airframe(tilt_max_deg=tilt, mount_deg=mount)
-    assert Airframe.from_dict(airframe.to_dict()) == airframe
-    assert airframe.to_dict().keys() == ({"tilt_max_deg", "mount_deg"} if mount else {"tilt_max_deg"})
-
-
-@pytest.mark.parametrize(
     ("values", "words"),
     [
         ({}, "neither preset nor tilt_max_deg"),

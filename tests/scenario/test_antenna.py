@@ -186,12 +186,3 @@ def test_a_gain_that_a_file_has_is_not_counted_twice() -> None:
     half_wave = apply_overrides(PAPER, ["antenna.kind=half-wave", "antenna.gain_dbi=2.15"])
     assert half_wave.reference_gain == pytest.approx(10.0**0.215, rel=1e-15)
     assert Scenario.from_dict(half_wave.to_dict()) == half_wave
-
-
-def test_a_gain_is_changed_without_reading_the_file_again() -> None:
-    """What was read of a file stays right."""
-    data = load("examples/paper.toml").to_dict()
-    data["antenna"] = {"kind": "profile", "harmonics": ROWS, "normalise": "peak"}
-    changed = apply_overrides(Scenario.from_dict(data), ["antenna.gain_dbi=3"])
-    assert changed.antenna is not None
-    assert len(changed.antenna.harmonics or ()) == len(ROWS)

@@ -1,6 +1,5 @@
 """A scenario from arrays is that of the file; shapes that do not fit are told as shapes."""
 
-import pickle
 from pathlib import Path
 
 import numpy as np
@@ -73,19 +72,6 @@ def test_a_path_is_no_scenario(verb: object) -> None:
     assert isinstance(caught.value, NullposeError)
     with pytest.raises(TypeError, match=r"got a table; must be a Scenario; try Scenario\.from_dict"):
         verb({})  # type: ignore[operator]
-
-
-def test_a_pose_needs_a_scenario_too() -> None:
-    """So is a path given to what evaluates poses."""
-    for verb in (nullpose.evaluate, nullpose.min_sinr):
-        with pytest.raises(TypeError, match=r"try Scenario\.from_file"):
-            verb("paper.toml", nullpose.Pose([3.0, 24.0, 9.0], 0.2, -1.1))  # type: ignore[call-overload]
-
-
-def test_the_error_survives_pickling() -> None:
-    """Workers of other processes can hand it on."""
-    error = nullpose.WrongTypeError("scenario: got nothing")
-    assert str(pickle.loads(pickle.dumps(error))) == str(error)
 
 
 def test_a_carrier_takes_the_place_of_the_papers_path_gain() -> None:

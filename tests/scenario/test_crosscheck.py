@@ -28,32 +28,13 @@ def faults_of(data: dict[str, Any]) -> dict[str, str]:
     return {fault.path: fault.message for fault in caught.value.faults}
 
 
-def test_both_are_scenarios() -> None:
-    """What the cases start from has no fault; to state the default objective changes nothing."""
-    assert Scenario.from_dict(SINR).objective == "min-sinr"
-    assert Scenario.from_dict(SINR | {"objective": "min-sinr"}) == Scenario.from_dict(SINR)
-    assert Scenario.from_dict(SECRECY).objective == "secrecy-rate"
-    assert "objective" not in Scenario.from_dict(SINR).to_dict()
-
-
 @pytest.mark.parametrize(
     ("changes", "faults"),
     [
-        ({"eavesdroppers": []}, {"eavesdroppers": "needs an eavesdropper"}),
         ({"eavesdroppers": None}, {"eavesdroppers": "headed [[eavesdroppers]]; add it"}),
-        ({"transmitter": None}, {"transmitter": "a table headed [transmitter]; add it"}),
         (
             {"transmitter": None, "eavesdroppers": None},
             {"transmitter": "missing", "eavesdroppers": "missing"},
-        ),
-        ({"transmitter": {}}, {"transmitter": "neither power_w nor power_dbm"}),
-        ({"transmitter": {"power_w": 0}}, {"transmitter.power_w": "got 0"}),
-        ({"transmitter": 3}, {"transmitter": "must be a table headed [transmitter]"}),
-        ({"eavesdroppers": 3}, {"eavesdroppers": "must be a list of tables, each headed [[eavesdroppers]]"}),
-        ({"eavesdroppers": [3]}, {"eavesdroppers[0]": "must be an eavesdropper"}),
-        (
-            {"transmitter": None, "transmiter": {"power_w": 1}},
-            {"transmiter": 'did you mean "transmitter"?'},
         ),
         (
             {"eavesdroppers": None, "eavesdropers": [{"position_m": [1, 2, 3]}]},
@@ -78,7 +59,6 @@ def test_both_are_scenarios() -> None:
             {"eavesdroppers": [{"position_m": [1, 2, 3], "noise_w": 1, "noise_dbm": 1}]},
             {"eavesdroppers[0]": "both noise_w and noise_dbm are given, at most one"},
         ),
-        ({"eavesdroppers": [{}]}, {"eavesdroppers[0].position_m": "missing"}),
         (
             {"eavesdroppers": [{"position_m": [0, 0, 0]}]},
             {"eavesdroppers[0].position_m": "nodes and eavesdroppers must be at different places"},
@@ -88,7 +68,6 @@ def test_both_are_scenarios() -> None:
             {"eavesdroppers[0].name": "the name of nodes[0] already"},
         ),
         ({"objective": "secrecy"}, {"objective": 'did you mean "secrecy-rate"?'}),
-        ({"objective": 3}, {"objective": 'must be an objective: "min-sinr" or "secrecy-rate"'}),
         ({"objective": ["secrecy-rate"]}, {"objective": "a list of one value"}),
     ],
 )
@@ -124,17 +103,11 @@ def test_secrecy(changes: dict[str, Any], faults: dict[str, str]) -> None:
             {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "weight": 1, "min_sinr_db": 1}]},
             {"nodes[0]": "both weight and min_sinr_db are given, at most one is allowed"},
         ),
-        ({"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "weight": 0}]}, {"nodes[0].weight": "got 0"}),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "weight": float("inf")}]},
-            {"nodes[0].weight": "got infinity, must be a weight from 1e-30"},
-        ),
         (
             {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "min_sinr_db": float("nan")}]},
             {"nodes[0].min_sinr_db": "got NaN, must be a ratio in dB"},
         ),
         ({"nodes": [{"position_m": [0, 0, 0]}]}, {"nodes[0]": "needs power_w or power_dbm; add it"}),
-        ({"nodes": [{"position_m": [0, 0, 0], "powr_w": 1}]}, {"nodes[0].powr_w": 'did you mean "power_w"?'}),
     ],
 )
 def test_sinr(changes: dict[str, Any], faults: dict[str, str]) -> None:

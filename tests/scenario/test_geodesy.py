@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pymap3d
 import pytest
 from hypothesis import given, strategies as st
 
@@ -54,52 +53,6 @@ def test_positions_are_those_of_earth_centred_coordinates(
     np.testing.assert_allclose(east_north_up(origin) @ offset_m, position_m, rtol=0, atol=1e-6)
 
 
-@given(origins, positions)
-def test_pymap3d_agrees_by_its_other_functions(
-    origin: tuple[float, float, float], position_m: tuple[float, float, float]
-) -> None:
-    """Its conversions to NED and to range and bearing, which are not called here, say the same."""
-    lat_deg, lon_deg, alt_m = geodetic_from_enu(position_m, origin)
-    ned_m = pymap3d.geodetic2ned(lat_deg, lon_deg, alt_m, *origin)
-    np.testing.assert_allclose(ned_m, ned_from_enu(position_m), rtol=0, atol=1e-6)
-    bearing, elevation, distance_m = pymap3d.geodetic2aer(lat_deg, lon_deg, alt_m, *origin)
-    level_m = distance_m * math.cos(math.radians(elevation))
-    east, north = level_m * math.sin(math.radians(bearing)), level_m * math.cos(math.radians(bearing))
-    up = distance_m * math.sin(math.radians(elevation))
-    # it takes less than a millimetre for nothing
-    np.testing.assert_allclose([east, north, up], position_m, rtol=0, atol=2e-3)
-
-
-@given(origins, positions, positions)
-def test_the_frame_is_rigid(
-    origin: tuple[float, float, float], one_m: tuple[float, float, float], other_m: tuple[float, float, float]
-) -> None:
-    """The distance of two positions is the straight one through the Earth-centred frame."""
-    one, other = (ecef_m(tuple(geodetic_from_enu(each, origin))) for each in (one_m, other_m))
-    assert math.dist(one, other) == pytest.approx(math.dist(one_m, other_m), abs=1e-6)
-
-
-@given(origins)
-def test_the_origin_is_zero(origin: tuple[float, float, float]) -> None:
-    """The origin itself is at zero, and straight up from it only the altitude changes."""
-    np.testing.assert_allclose(enu_from_geodetic(origin, origin), 0.0, rtol=0, atol=1e-8)
-    lat_deg, _, alt_m = geodetic_from_enu((0.0, 0.0, 120.0), origin)
-    assert lat_deg == pytest.approx(origin[0], abs=1e-12)
-    assert alt_m == pytest.approx(origin[2] + 120.0, abs=1e-6)
-
-
-@pytest.mark.parametrize("origin", [(50.0, 14.5, 0.0), (-33.0, 151.0, 600.0)])
-def test_short_ways_are_arcs_of_the_curvature(origin: tuple[float, float, float]) -> None:
-    """Ten metres north or east are ten metres over the radii of curvature, M and N cos(latitude)."""
-    lat = math.radians(origin[0])
-    bent = 1.0 - ECCENTRICITY_SQUARED * math.sin(lat) ** 2
-    meridian_m = SEMI_MAJOR_M * (1.0 - ECCENTRICITY_SQUARED) / bent**1.5 + origin[2]
-    parallel_m = (SEMI_MAJOR_M / math.sqrt(bent) + origin[2]) * math.cos(lat)
-    north, east = geodetic_from_enu([[0.0, 10.0, 0.0], [10.0, 0.0, 0.0]], origin)
-    assert north[0] - origin[0] == pytest.approx(math.degrees(10.0 / meridian_m), rel=1e-5)
-    assert east[1] - origin[1] == pytest.approx(math.degrees(10.0 / parallel_m), rel=1e-5)
-
-
 def test_the_ground_falls_away() -> None:
     """A place at the origin's altitude lies d^2 / 2R below the frame's level, 0.8 m at 3.2 km."""
     place = (50.0, 14.5 + 3200.0 / 71696.0, 230.0)
@@ -107,18 +60,6 @@ def test_the_ground_falls_away() -> None:
     assert east == pytest.approx(3200.0, rel=1e-3)
     assert up == pytest.approx(-(east**2) / (2.0 * 6.39e6), rel=1e-2)
     assert up == pytest.approx(-0.8, abs=0.01)
-
-
-def test_arrays_are_converted_row_by_row() -> None:
-    """Any leading shape goes through, each row as if it were alone."""
-    origin = (12.0, 34.0, 56.0)
-    many = np.arange(24.0).reshape(2, 4, 3)
-    geodetic = geodetic_from_enu(many, origin)
-    assert geodetic.shape == (2, 4, 3)
-    np.testing.assert_array_equal(geodetic[1, 2], geodetic_from_enu(many[1, 2], origin))
-    np.testing.assert_array_equal(
-        enu_from_geodetic(geodetic, origin)[0, 3], enu_from_geodetic(geodetic[0, 3], origin)
-    )
 
 
 def test_north_east_down() -> None:

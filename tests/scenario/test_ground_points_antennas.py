@@ -78,14 +78,6 @@ def test_the_depth_of_a_null_is_told(paper: Callable) -> None:
     assert whip.nodes[0].isotropic == paper().nodes[0]
 
 
-def test_an_array_hears_isotropic_antennas_only(paper: Callable) -> None:
-    """Several elements with dipoles on the ground are refused, by the place of the first."""
-    data = paper().to_dict() | {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5}}
-    data["jammers"][0]["antenna"] = "dipole"
-    with pytest.raises(ScenarioError, match=r"jammers\[0\]\.antenna"):
-        Scenario.from_dict(data)
-
-
 def test_a_gain_is_told_of_every_antenna(paper: Callable) -> None:
     """In dBi over an isotropic antenna, half of it for a circular one; 0 is not told."""
     gained = stated(paper, gain_dbi=3.0, antenna="circular")

@@ -37,23 +37,6 @@ def test_paper_example_is_the_papers_scenario() -> None:
     assert scenario.receiver.reference_gain == 1.0
 
 
-def test_field_example_is_a_ten_node_scene() -> None:
-    """The field's file has ten nodes and two jammers, in dBm and Hz, in a bounded airspace."""
-    text = (EXAMPLES / "field.toml").read_text(encoding="utf-8")
-    scenario = load(EXAMPLES / "field.toml")
-    assert (len(scenario.nodes), len(scenario.jammers)) == (10, 2)
-    assert scenario.airspace.x_m is not None
-    assert scenario.airspace.y_m is not None
-    assert scenario.receiver.frequency_hz == 2.4e9
-    assert "power_w =" not in text
-
-
-def test_path_may_be_text(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A path given as text, relative to the working folder, is as good as a Path."""
-    monkeypatch.chdir(EXAMPLES)
-    assert load("paper.toml") == load(EXAMPLES / "paper.toml")
-
-
 def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
     """A file that an editor saved as UTF-8 with a mark loads like any other."""
     path = tmp_path / "mark.toml"
@@ -71,24 +54,11 @@ def test_missing_file(tmp_path: Path) -> None:
     )
 
 
-def test_missing_folder(tmp_path: Path) -> None:
-    """A file in a missing folder is missing with its folder."""
-    message = fault_of(tmp_path / "nowhere" / "paper.toml").message
-    assert message.startswith(f"there is no such file, nor a folder {tmp_path / 'nowhere'}")
-
-
 def test_folder_given(tmp_path: Path) -> None:
     """A folder is called a folder, and a scenario file in it is suggested."""
     assert fault_of(tmp_path).message == "this is a folder, must be a scenario file; check the path"
     (tmp_path / "paper.toml").touch()
     assert f"did you mean {tmp_path / 'paper.toml'}?" in fault_of(tmp_path).message
-
-
-def test_file_as_folder(tmp_path: Path) -> None:
-    """A path that leads through a file is refused with the system's reason."""
-    (tmp_path / "paper.toml").touch()
-    message = fault_of(tmp_path / "paper.toml" / "x").message
-    assert "cannot be read (not a directory)" in message
 
 
 def test_unreadable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,13 +85,6 @@ def test_not_utf8(tmp_path: Path) -> None:
     fault = fault_of(path)
     assert fault.path == "line 2"
     assert fault.message == "byte 0xe9 is not UTF-8 text; save the file as UTF-8"
-
-
-def test_utf16_is_recognised(tmp_path: Path) -> None:
-    """A file saved as UTF-16 is called so."""
-    path = tmp_path / "wide.toml"
-    path.write_bytes('name = "a"'.encode("utf-16"))
-    assert "is not UTF-8 text; save the file as UTF-8" in fault_of(path).message
 
 
 @pytest.mark.parametrize(

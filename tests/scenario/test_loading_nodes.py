@@ -288,21 +288,6 @@ def test_files_that_are_none(file: str, content: str | None, path: str, words: s
     assert words in fault.message
 
 
-def test_a_file_of_a_like_name_is_suggested_as_it_would_be_written(tmp_path: Path) -> None:
-    """The suggestion is the name as seen from the scenario's folder."""
-    (tmp_path / "nodes.csv").write_text(LOCAL, encoding="utf-8")
-    (fault,) = faults_of(tmp_path, "node.csv", None)
-    assert fault.message == "there is no such file; did you mean nodes.csv?"
-
-
-def test_other_encodings(tmp_path: Path) -> None:
-    """A file that is no UTF-8 is told with the line in it."""
-    (tmp_path / "n.csv").write_bytes(LOCAL.encode() + b"caf\xe9,1,2,3,4\n")
-    (fault,) = faults_of(tmp_path, "n.csv", None)
-    assert fault.path == "n.csv: line 2"
-    assert "byte 0xe9 is not UTF-8 text" in fault.message
-
-
 @pytest.mark.parametrize("value", ["3", "[]", "true", '{a = "b"}'])
 def test_the_name_is_a_text(value: str, tmp_path: Path) -> None:
     """Anything but a text is refused by what it is."""
@@ -332,30 +317,6 @@ def test_all_faults_of_both_files_at_once(tmp_path: Path) -> None:
         "airspace.altitude_m",
         "origin.alt_m",
     ]
-
-
-def test_a_missing_origin_names_the_line(tmp_path: Path) -> None:
-    """Nodes by latitude in a scenario without an origin: one fault, which says who needs it."""
-    (fault,) = faults_of(tmp_path, "n.csv", GEODETIC + "a,50,14.5,230,20\nb,50.1,14.5,230,20\n", SCENARIO)
-    assert fault.path == "origin"
-    assert "n.csv: line 2 is stated by lat_deg" in fault.message
-
-
-def test_jammers_in_another_way_than_the_file(tmp_path: Path) -> None:
-    """A jammer in metres beside nodes by latitude is refused, with the line of the first node."""
-    jammer = "[[jammers]]\nposition_m = [1, 2, 3]\npower_w = 1.0\n"
-    (fault,) = faults_of(tmp_path, "n.csv", GEODETIC + "a,50,14.5,230,20\n", SCENARIO + ORIGIN + jammer)
-    assert fault.path == "jammers[0]"
-    assert "stated by position_m, but n.csv: line 2 by lat_deg" in fault.message
-
-
-def test_a_dictionary_names_no_file() -> None:
-    """In Python the nodes are given; the name of a file is refused."""
-    data = {"airspace": {"altitude_m": [8, 9]}, "receiver": {"noise_w": 1.0, "frequency_hz": 1e9}}
-    with pytest.raises(ScenarioError) as caught:
-        Scenario.from_dict(data | {"nodes_from": "nodes.csv"})
-    messages = {fault.path: fault.message for fault in caught.value.faults}
-    assert "only a scenario file on this machine may name" in messages["nodes_from"]
 
 
 def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:
@@ -397,9 +358,3 @@ def test_too_many_nodes(tmp_path: Path) -> None:
     for file, content in (("n.csv", LOCAL + "a,1,2,3,4\n" * 20_000), ("n.json", text)):
         fault = faults_of(tmp_path, file, content)[-1]
         assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"
-
-
-def test_a_geometry_that_is_a_text(tmp_path: Path) -> None:
-    """A text in place of a geometry is refused like any other value, whatever it says."""
-    (fault,) = faults_of(tmp_path, "n.geojson", collection(feature() | {"geometry": "Point"}))
-    assert fault.path == "n.geojson: features[0].geometry"

@@ -89,14 +89,6 @@ def test_scalars_lists_and_places_in_lists() -> None:
     assert changed.receiver == PAPER.receiver
 
 
-def test_whole_tables_and_lists() -> None:
-    """A table or a list of tables can be replaced as a whole."""
-    assert apply_overrides(PAPER, ["jammers=[]"]).jammers == ()
-    moved = apply_overrides(PAPER, ["jammers.M={name = 'J', position_m = [1, 2, 3], power_dbm = 3}"])
-    assert moved.jammer_names == ("J",)
-    assert apply_overrides(PAPER, ["receiver={noise_dbm = 0, frequency_hz = 1e9}"]).receiver.noise_w is None
-
-
 @pytest.mark.parametrize(
     ("override", "kept", "dropped"),
     [
@@ -113,13 +105,6 @@ def test_setting_one_of_a_pair_drops_the_other(override: str, kept: str, dropped
     assert getattr(receiver, dropped) is None
 
 
-def test_power_in_the_other_unit() -> None:
-    """A power may be overridden in dBm where the file states W."""
-    jammer = apply_overrides(PAPER, ["jammers.M.power_dbm=40"]).jammers[0]
-    assert (jammer.power_w, jammer.power_dbm) == (None, 40.0)
-    assert jammer.transmit_power_w == pytest.approx(10.0, rel=1e-15)
-
-
 def test_keys_of_tables_that_are_not_there_yet() -> None:
     """Setting a key begins its table; one that could not be set leaves no trace."""
     assert apply_overrides(PAPER, ["airframe.tilt_max_deg=10"]).airframe == Airframe(tilt_max_deg=10.0)
@@ -134,33 +119,6 @@ def test_keys_of_tables_that_are_not_there_yet() -> None:
     )
     assert secret.eavesdroppers[0].noise_dbm == -90.0
     assert list(faults_of("airframe.tilt_deg=10")) == ["airframe.tilt_deg"]
-
-
-def test_presets_and_limits_of_tilt_take_each_others_place() -> None:
-    """Setting a tilt drops the preset, and the other way round; the mount stays."""
-    level = apply_overrides(PAPER, ["airframe={preset = 'level', mount_deg = 90}"])
-    tilted = apply_overrides(level, ["airframe.tilt_max_deg=10"])
-    assert tilted.airframe == Airframe(tilt_max_deg=10.0, mount_deg=90.0)
-    assert apply_overrides(tilted, ["airframe.preset=level"]) == level
-
-
-def test_alternatives_take_each_others_place() -> None:
-    """Setting a weight drops a requirement, and the other way round."""
-    required = apply_overrides(PAPER, ["nodes.S1.min_sinr_db=3"])
-    assert required.nodes[0].min_sinr_db == 3.0
-    weighted = apply_overrides(required, ["nodes.S1.weight=2"])
-    assert (weighted.nodes[0].min_sinr_db, weighted.nodes[0].weight) == (None, 2.0)
-    assert apply_overrides(weighted, ["nodes.S1.min_sinr_db=3"]) == required
-
-
-def test_uncertainty() -> None:
-    """A radius is one value, and of three semi-axes each can be set by its place."""
-    ball = apply_overrides(PAPER, ["jammers.M.uncertainty_m=3", "receiver.attitude_error_deg=2"])
-    assert (ball.jammers[0].uncertainty_m, ball.receiver.attitude_error_deg) == (3.0, 2.0)
-    long = apply_overrides(ball, ["jammers.M.uncertainty_m=[3, 2, 1]", "jammers.M.uncertainty_m[0]=3.5"])
-    assert long.jammers[0].uncertainty_m == (3.5, 2.0, 1.0)
-    message = faults_of("jammers.M.uncertainty_m[0]=1", scenario=ball)["jammers.M.uncertainty_m[0]"]
-    assert "it has no members, so set it whole" in message
 
 
 def test_zones_and_fences() -> None:
@@ -189,14 +147,6 @@ def test_later_overrides_win_and_see_earlier_ones() -> None:
     assert apply_overrides(PAPER, ["nodes.S1.name=gate", "nodes.gate.power_w=7"]).nodes[0].power_w == 7.0
     risen = apply_overrides(PAPER, ["airspace.altitude_m[0]=40", "airspace.altitude_m[1]=50"])
     assert risen.airspace.altitude_m == (40.0, 50.0)
-
-
-def test_no_override_changes_nothing() -> None:
-    """Without overrides the scenario is the same, and with one the given scenario is left alone."""
-    assert apply_overrides(PAPER, []) == PAPER
-    before = PAPER.to_dict()
-    apply_overrides(PAPER, ["jammers.M.power_w=10"])
-    assert PAPER.to_dict() == before
 
 
 def test_override_values_from_python() -> None:
@@ -257,13 +207,6 @@ def test_paths_that_lead_nowhere(path: str, words: str) -> None:
     assert words in message
 
 
-def test_without_jammers() -> None:
-    """The path of a jammer that is not there says that there are none."""
-    calm = apply_overrides(PAPER, ["jammers=[]"])
-    message = faults_of("jammers.M.power_w=1", scenario=calm)["jammers.M.power_w"]
-    assert "it has no members" in message
-
-
 def test_every_fault_of_every_override_at_once() -> None:
     """Missing paths, broken values and faulty results are reported together."""
     faults = faults_of("jammers.N.power_w=1", "name=[", "noise", "jammers.M.power_w=-1", "nodes.S1.name=M")
@@ -286,9 +229,3 @@ def test_every_fault_of_every_override_at_once() -> None:
 def test_results_that_are_no_scenario(overrides: list[str], path: str) -> None:
     """A value that a file could not hold is refused like one in a file."""
     assert path in faults_of(*overrides)
-
-
-def test_error_names_the_overrides() -> None:
-    """The error's source says which overrides were tried."""
-    with pytest.raises(ScenarioError, match=r"^override jammers\.M\.power_w=-1: 1 fault\n"):
-        apply_overrides(PAPER, ["jammers.M.power_w=-1"])

@@ -47,14 +47,6 @@ def test_the_points_stay_on_the_earth_when_the_origin_moves(override: str) -> No
     assert changed.nodes[0].lat_deg == 50.001
 
 
-def test_points_in_metres_move_with_the_origin() -> None:
-    """Points that were stated in metres keep them, and so move on the Earth."""
-    points = [{"position_m": list(node.position_m), "power_w": 1.0} for node in EARTHLY.nodes]
-    local = EARTHLY.model_copy(update={"nodes": points})
-    changed = apply_overrides(local, ["origin.lat_deg=10"])
-    np.testing.assert_array_equal(changed.node_positions_m, local.node_positions_m)
-
-
 @pytest.mark.parametrize(
     ("override", "path", "words"),
     [
@@ -70,12 +62,3 @@ def test_what_cannot_be(override: str, path: str, words: str) -> None:
         apply_overrides(EARTHLY, [override])
     assert caught.value.faults[0].path == path
     assert words in caught.value.faults[0].message
-
-
-def test_a_scenario_without_an_origin() -> None:
-    """One key of a table that is not there is refused; the whole table can be given."""
-    bare = EARTHLY.model_copy(update={"origin": None, "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}]})
-    with pytest.raises(ScenarioError, match="origin"):
-        apply_overrides(bare, ["origin.lat_deg=50"])
-    changed = apply_overrides(bare, ["origin={lat_deg = 50.0, lon_deg = 14.5, alt_m = 230.0}"])
-    assert changed.origin == EARTHLY.origin

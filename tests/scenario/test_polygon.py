@@ -64,28 +64,6 @@ def test_depth_agrees_with_another_test_and_with_a_walk_along_the_border(seed: i
     assert (np.abs(depths) <= nearest + 1e-12).all()
 
 
-@given(SEEDS)
-def test_depth_changes_by_no_more_than_the_step(seed: int) -> None:
-    """Between two points the depth changes by no more than their distance."""
-    rng = np.random.default_rng(seed)
-    vertices, points = star(rng, 7), rng.uniform(-40.0, 40.0, (2, 100, 2))
-    change = np.abs(np.subtract(*depth_m(points, vertices)))
-    assert (change <= np.linalg.norm(points[0] - points[1], axis=-1) + 1e-9).all()
-
-
-def test_depth_in_an_l() -> None:
-    """In and around an L the depths are those read off a drawing."""
-    points = np.array([[0.5, 0.5], [2.0, 2.0], [4.0, 1.0], [0.5, 3.8], [-3.0, -4.0]])
-    np.testing.assert_allclose(depth_m(points, np.array(L_SHAPE)), [0.5, -1.0, 0.0, 0.2, -5.0], atol=1e-15)
-
-
-def test_an_edge_that_rises_by_next_to_nothing() -> None:
-    """An edge whose ends differ by the least number there is overflows nothing."""
-    vertices = np.array([[0.0, 0.0], [4.0, 5e-324], [4.0, 4.0], [0.0, 4.0]])
-    points = np.array([[1.0, 1.0], [9.0, 0.0], [-9.0, 5e-324], [1.0, 1e7]])
-    np.testing.assert_allclose(depth_m(points, vertices), [1.0, -5.0, -9.0, -(1e7 - 4.0)])
-
-
 @pytest.mark.parametrize(("vertices", "area"), [(SQUARE, 16.0), (L_SHAPE, 7.0), (SQUARE[::-1], -16.0)])
 def test_area(vertices: list[list[float]], area: float) -> None:
     """The area is signed, and keeps its digits far from the origin."""
@@ -149,12 +127,3 @@ def test_as_many_corners_as_are_allowed_take_little() -> None:
     assert time.process_time() - began < 6.0
     assert tracemalloc.get_traced_memory()[1] < 150e6
     tracemalloc.stop()
-
-
-def test_more_corners_are_refused() -> None:
-    """A polygon of more corners is refused with how many it has and how many it may have."""
-    angles = np.arange(MOST_CORNERS + 1) * 2.0 * np.pi / (MOST_CORNERS + 1)
-    with pytest.raises(
-        ScenarioError, match="got a list of 5001 values, must be a list of at least three and at most 5000"
-    ):
-        accepted(np.stack([np.cos(angles), np.sin(angles)], axis=1).tolist())

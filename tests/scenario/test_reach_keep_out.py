@@ -27,26 +27,6 @@ def box(*ranges: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
 UNIT = box((0, 1), (0, 1), (0, 1))
 
 
-def test_box_without_balls_has_room() -> None:
-    """Nothing is taken from a box by no balls, were it a point."""
-    assert has_room(*UNIT, np.zeros((0, 3)), 1.0)
-    assert has_room(*box((1, 1), (1, 1), (1, 1)), np.zeros((0, 3)), 1.0)
-
-
-@pytest.mark.parametrize("unbounded", [0, 1])
-def test_unbounded_box_has_room(unbounded: int) -> None:
-    """Balls cannot fill a box that is unbounded to one side, be it flat."""
-    low, high = box((0, 1), (0, 1), (0, 0))
-    low[unbounded], high[unbounded] = -np.inf, np.inf
-    assert has_room(low, high, np.zeros((1, 3)), 1e7)
-
-
-@pytest.mark.parametrize(("radius", "expected"), [(0.85, True), (0.87, False)])
-def test_one_ball_around_the_centre(radius: float, expected: bool) -> None:
-    """A ball around a cube's centre leaves the corners until it holds them, at half the diagonal."""
-    assert has_room(*UNIT, np.full((1, 3), 0.5), radius) is expected
-
-
 def test_surface_of_a_ball_is_outside() -> None:
     """A distance of exactly the keep-out radius is enough."""
     assert has_room(*box((3, 3), (0, 0), (4, 4)), np.zeros((1, 3)), 5.0)
@@ -68,18 +48,6 @@ def test_room_left_inside_a_face_only(radius: float, expected: bool) -> None:
     centres = lattice[np.abs(lattice[:, :2]).max(axis=1) < 2.5]
     # A box around the hole between (0, 0), (1, 0) and (1/2, sqrt(3)/2).
     assert has_room(*box((0.4, 0.6), (0.2, 0.4), (0, 0)), centres, radius) is expected
-
-
-@pytest.mark.parametrize(("radius", "expected"), [(0.86, True), (0.87, False)])
-def test_room_left_in_the_middle_only(radius: float, expected: bool) -> None:
-    """Balls around a cube's corners and beside it leave its centre until they hold it, where spheres meet."""
-    corners = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T.astype(float)
-    assert has_room(*box((0.3, 0.7), (0.3, 0.7), (0.3, 0.7)), corners, radius) is expected
-
-
-def test_far_balls_take_nothing() -> None:
-    """Balls that do not reach the box do not count."""
-    assert has_room(*UNIT, np.array([[5.0, 0.0, 0.0], [0.5, 0.5, 3.0]]), 1.9)
 
 
 def test_many_balls_in_few_seconds() -> None:
@@ -112,16 +80,6 @@ def test_agrees_with_sampling(
         assert room
     elif clearance < -spacing:
         assert not room
-
-
-@given(st.integers(0, 2**32 - 1), st.floats(1.0, 1e6))
-def test_does_not_depend_on_the_unit(seed: int, scale: float) -> None:
-    """Scaling the scene changes nothing."""
-    centres = np.random.default_rng(seed).uniform(0.0, 1.0, size=(4, 3))
-    low, high = UNIT
-    assert has_room(low, high, centres, 0.75) == has_room(
-        low * scale, high * scale, centres * scale, 0.75 * scale
-    )
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -1,12 +1,11 @@
 """What a scenario makes of requirements, eavesdroppers and noise of their own."""
 
-import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 
-from nullpose.scenario import Airframe, Eavesdropper, Jammer, Node, Scenario, Transmitter
+from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario, Transmitter
 
 
 def scene(**tables: Any) -> Scenario:
@@ -57,15 +56,6 @@ def test_eavesdroppers() -> None:
     np.testing.assert_array_equal(secret.eavesdropper_uncertainty_m, [np.zeros((3, 3)), 2.0 * np.eye(3)])
 
 
-def test_without_eavesdroppers_the_arrays_are_empty() -> None:
-    """Without eavesdroppers the arrays keep their dimensions."""
-    assert scene().eavesdropper_positions_m.shape == (0, 3)
-    assert scene().eavesdropper_noise_w.shape == (0,)
-    assert scene().eavesdropper_uncertainty_m.shape == (0, 3, 3)
-    assert scene().jammer_uncertainty_m.shape == (0, 3, 3)
-    assert scene().eavesdropper_names == ()
-
-
 def test_noise_of_the_nodes() -> None:
     """Their own or the receiver's, raised by the jamming: as stated, or the sum over the jammers."""
     nodes = [
@@ -105,39 +95,3 @@ def test_nodes_need_not_transmit_where_the_drone_does() -> None:
 def test_whether_anything_is_uncertain(tables: dict[str, Any], uncertain: bool) -> None:
     """Any set larger than a point, or any error of the vehicle, makes a scene uncertain."""
     assert scene(**tables).is_uncertain is uncertain
-
-
-def test_axis_band() -> None:
-    """Without an airframe every axis is reached."""
-    assert scene().axis_band == (0.0, 1.0)
-    assert scene(airframe=Airframe(preset="level")).axis_band == (1.0, 1.0)
-
-
-def test_errors_of_the_vehicle() -> None:
-    """Errors are none unless stated, and then left out of what is written."""
-    receiver = scene().receiver
-    assert (receiver.attitude_error_rad, receiver.position_error_m) == (0.0, 0.0)
-    assert receiver.to_dict() == {"noise_dbm": 0.0, "reference_gain_db": 10.0}
-    shaky = receiver.model_copy(update={"attitude_error_deg": 2.0, "position_error_m": 0.5})
-    assert shaky.attitude_error_rad == np.radians(2.0)
-    assert shaky.to_dict() == receiver.to_dict() | {"attitude_error_deg": 2.0, "position_error_m": 0.5}
-
-
-@pytest.mark.parametrize(
-    "array",
-    [
-        "eavesdropper_positions_m",
-        "eavesdropper_noise_w",
-        "eavesdropper_uncertainty_m",
-        "jammer_uncertainty_m",
-        "node_noise_w",
-        "node_required_sinr",
-    ],
-)
-def test_arrays_are_cached_and_read_only(array: str) -> None:
-    """An array is the same object on every access and refuses to be written to, after unpickling too."""
-    secret = scene(**SECRET, jammers=[Jammer(position_m=(9, 9, 1), power_w=1)])
-    assert getattr(secret, array) is getattr(secret, array)
-    for one in (secret, pickle.loads(pickle.dumps(secret))):
-        with pytest.raises(ValueError, match="read-only"):
-            getattr(one, array)[...] = 0.0

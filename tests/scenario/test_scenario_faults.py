@@ -71,24 +71,16 @@ INTERVAL = "a list of two numbers in m, the lowest first"
 FIELD_CASES = [
     # powers
     case(POWER, "power_w = 0.0", "jammers[0].power_w", "got 0.0", WATTS, "never zero or negative", "_dbm"),
-    case(POWER, "power_w = 0", "jammers[0].power_w", "got 0,", WATTS),
     case(POWER, "power_w = -2.5", "jammers[0].power_w", "got -2.5", WATTS),
-    case(POWER, "power_w = nan", "jammers[0].power_w", "got NaN", WATTS),
     case(POWER, "power_w = inf", "jammers[0].power_w", "got infinity", WATTS),
-    case(POWER, "power_w = -inf", "jammers[0].power_w", "got minus infinity", WATTS),
     case(POWER, "power_w = 1e31", "jammers[0].power_w", "got 1e+31", WATTS),
     case(POWER, f"power_w = {'9' * 400}", "jammers[0].power_w", "got an integer beyond 1e+15", WATTS),
-    case(POWER, "power_w = 1e-31", "jammers[0].power_w", "got 1e-31", WATTS),
     case(POWER, "power_w = true", "jammers[0].power_w", "the truth value true", "must be a number"),
     case(POWER, 'power_w = "3"', "jammers[0].power_w", 'the text "3"', "write it without quotes"),
     case(POWER, 'power_w = "3 W"', "jammers[0].power_w", 'the text "3 W"', "must be a number", WATTS),
     case(POWER, 'power_w = ""', "jammers[0].power_w", "an empty text", "must be a number"),
-    case(POWER, "power_w = [3.0]", "jammers[0].power_w", "a list of one value", "must be a number"),
     case(POWER, "power_w = []", "jammers[0].power_w", "an empty list", "must be a number"),
-    case(POWER, "power_w = {}", "jammers[0].power_w", "a table", "must be a number"),
     case(POWER, "power_w = 2024-05-01", "jammers[0].power_w", "a date or time", "must be a number"),
-    case(POWER, "power_w = 07:30:00", "jammers[0].power_w", "a date or time", "must be a number"),
-    case(POWER, "power_dbm = 1e4", "jammers[0].power_dbm", "got 10000.0", "a power in dBm from -270 to 330"),
     case(POWER, "power_dbm = -271", "jammers[0].power_dbm", "got -271", "-270 to 330", "in W", "_w"),
     case(POWER, "power_dbm = nan", "jammers[0].power_dbm", "got NaN", "dBm"),
     # either-or pairs
@@ -100,7 +92,6 @@ FIELD_CASES = [
     case(GAIN, f"{GAIN}\nfrequency_hz = 1e9", "receiver", "both reference_gain_db and frequency_hz"),
     # the receiver
     case(NOISE, "noise_w = -1e-3", "receiver.noise_w", "got -0.001", WATTS),
-    case(NOISE, "noise_dbm = inf", "receiver.noise_dbm", "got infinity", "dBm"),
     case(GAIN, "reference_gain_db = 1e3", "receiver.reference_gain_db", "a gain in dB from -300 to 300"),
     case(
         GAIN,
@@ -110,7 +101,6 @@ FIELD_CASES = [
         "from 1000 to",
         "2.4 GHz is written 2.4e9",
     ),
-    case(GAIN, "frequency_hz = -1e9", "receiver.frequency_hz", "a frequency in Hz"),
     # the airspace
     case(
         ALTITUDE,
@@ -120,32 +110,21 @@ FIELD_CASES = [
         "reversed",
         "try [8.0, 30.0]",
     ),
-    case(ALTITUDE, "altitude_m = []", "airspace.altitude_m", "an empty list", INTERVAL),
-    case(ALTITUDE, "altitude_m = [8]", "airspace.altitude_m", "a list of one value", INTERVAL),
     case(ALTITUDE, "altitude_m = [8, 9, 10]", "airspace.altitude_m", "a list of 3 values", INTERVAL),
     case(ALTITUDE, "altitude_m = 8", "airspace.altitude_m", "got 8", INTERVAL, "equal ends fix the value"),
     case(ALTITUDE, "altitude_m = [8, nan]", "airspace.altitude_m[1]", "got NaN", "a length in m"),
-    case(ALTITUDE, "altitude_m = [-inf, 8]", "airspace.altitude_m[0]", "got minus infinity"),
     case(
         ALTITUDE, "altitude_m = [8, 2e7]", "airspace.altitude_m[1]", "got 20000000.0", "from -1e+07 to 1e+07"
     ),
     case(ALTITUDE, "", "airspace.altitude_m", "missing", "must be given", "in metres: [low, high]"),
     case(KEEP_OUT, "x_m = [5, -5]", "airspace.x_m", "reversed", "try [-5.0, 5.0]"),
-    case(KEEP_OUT, "y_m = [1, 2, 3]", "airspace.y_m", "a list of 3 values", INTERVAL),
     case(
         KEEP_OUT, "keep_out_m = 0", "airspace.keep_out_m", "got 0", "from 0.001", "no limit at a ground point"
     ),
-    case(KEEP_OUT, "keep_out_m = -1", "airspace.keep_out_m", "got -1", "a radius in m"),
-    case(KEEP_OUT, "keep_out_m = nan", "airspace.keep_out_m", "got NaN"),
     # positions
     case(POSITION, "position_m = [17.0, 15.0]", "jammers[0].position_m", "a list of 2 values", POINT),
-    case(POSITION, "position_m = []", "jammers[0].position_m", "an empty list", POINT),
     case(POSITION, 'position_m = "here"', "jammers[0].position_m", 'the text "here"', POINT),
-    case(POSITION, "position_m = {x = 1}", "jammers[0].position_m", "a table", POINT),
     case(POSITION, 'position_m = [1, "2", 3]', "jammers[0].position_m[1]", 'the text "2"', "without quotes"),
-    case(POSITION, "position_m = [1, true, 3]", "jammers[0].position_m[1]", "the truth value true"),
-    case(POSITION, "position_m = [[1], 2, 3]", "jammers[0].position_m[0]", "a list of one value"),
-    case(POSITION, "position_m = [1, 2, inf]", "jammers[0].position_m[2]", "got infinity"),
     case(
         POSITION, "position_m = [4.5e8, 2, 3]", "jammers[0].position_m[0]", "1e+07", "metres", "local origin"
     ),
@@ -153,21 +132,15 @@ FIELD_CASES = [
     # names
     case(NAME, "name = 7", "jammers[0].name", "got 7", "must be text in quotes"),
     case(NAME, 'name = ""', "jammers[0].name", "an empty text", "at least one visible character"),
-    case(NAME, 'name = "  "', "jammers[0].name", "at least one visible character"),
     case(NAME, 'name = "M "', "jammers[0].name", 'the text "M "', "without blanks at its ends"),
     case(NAME, 'name = "M\\n2"', "jammers[0].name", 'the text "M\\n2"', "text on one line"),
-    case('name = "test"', "name = 3.5", "name", "got 3.5", "must be text in quotes"),
     # unknown keys
     case(KEEP_OUT, "keepout = 1.5", "airspace.keepout", "unknown key", 'did you mean "keep_out_m"?'),
     case(ALTITUDE, "altitude = [8, 30]", "airspace.altitude", 'did you mean "altitude_m"?', "x_m, y_m"),
     case(POWER, "power = 3.0", "jammers[0].power", 'did you mean "power_w"?', "power_dbm"),
-    case(POWER, "Power_W = 3.0", "jammers[0].Power_W", 'did you mean "power_w"?'),
-    case(POSITION, "positon_m = [1, 2, 3]", "jammers[0].positon_m", 'did you mean "position_m"?'),
-    case("[[jammers]]", "[[jamers]]", "jamers", "unknown key", 'did you mean "jammers"?'),
     case("[receiver]", "[reciever]", "reciever", "unknown key", 'did you mean "receiver"?'),
     case(POWER, f"{POWER}\nqqqq = 1", "jammers[0].qqqq", "unknown key; the keys here are name, position_m"),
     case(POWER, f'{POWER}\n"a.b" = 1', 'jammers[0]."a.b"', "unknown key"),
-    case(POWER, f"{POWER}\npower_w2 = 1", "jammers[0].power_w2", "unknown key"),
     # tables and lists
     case("[[jammers]]", "[jammers]", "jammers", "got a table", "must be a list", "[[jammers]]"),
     case("[airspace]", "[[airspace]]", "airspace", "a list of one value", "a table headed [airspace]"),
@@ -175,7 +148,6 @@ FIELD_CASES = [
 CROSS_CASES = [
     case(NAME, 'name = "S1"', "jammers[0].name", 'got "S1"', "the name of nodes[0] already", "once"),
     case('name = "S2"', 'name = "S1"', "nodes[1].name", 'got "S1"', "the name of nodes[0] already"),
-    case('name = "S1"\n', 'name = "S2"\n', "nodes[1].name", 'got "S2"', "nodes[0] already"),
     case(
         POSITION, "position_m = [0, 50, 0]", "jammers[0].position_m", "[0.0, 50.0, 0.0]", "nodes[1] already"
     ),
@@ -217,12 +189,6 @@ def edited(*cases: Case) -> str:
     return text
 
 
-def test_good_file_has_no_fault(tmp_path: Path) -> None:
-    """The file that the cases start from is a scenario."""
-    (tmp_path / "good.toml").write_text(GOOD, encoding="utf-8")
-    assert load(tmp_path / "good.toml").node_names == ("S1", "S2")
-
-
 @pytest.mark.parametrize("one", CASES, ids=str)
 def test_one_fault_is_one_message(one: Case, tmp_path: Path) -> None:
     """Every fault is reported once, at its path, and says what was given and what is allowed."""
@@ -261,24 +227,6 @@ def test_missing_parts(text: str, path: str, words: str, tmp_path: Path) -> None
     """A part that is missing, empty or of another kind is named, with what is expected in its place."""
     faults = {fault.path: fault.message for fault in faults_of(tmp_path / "bad.toml", text)}
     assert words in faults[path]
-
-
-def test_empty_file_lacks_every_part(tmp_path: Path) -> None:
-    """An empty file is told all that a scenario needs."""
-    faults = faults_of(tmp_path / "empty.toml", "")
-    assert [fault.path for fault in faults] == ["airspace", "receiver", "nodes"]
-    assert all("missing; it must be given" in fault.message for fault in faults)
-
-
-def test_default_name_taken_by_another(tmp_path: Path) -> None:
-    """A name given by place collides like any other, wherever it comes from."""
-    text = GOOD.replace('name = "S1"\n', "").replace('name = "S2"', 'name = "S1"')
-    (fault,) = faults_of(tmp_path / "bad.toml", text)
-    assert fault.path == "nodes[1].name"
-    assert 'got "S1", the name of nodes[0] already' in fault.message
-    text = GOOD.replace('name = "S2"\n', "").replace('name = "S1"', 'name = "S2"')
-    (fault,) = faults_of(tmp_path / "bad.toml", text)
-    assert 'got "S2", the name of nodes[0] already' in fault.message
 
 
 def test_faults_come_in_the_order_of_the_file(tmp_path: Path) -> None:
@@ -332,15 +280,3 @@ def test_broken_parts_hide_no_cross_fault(
     text = edited(cross, other).replace("power_w = 2.0", "power_w = 'much'")
     faults = faults_of(tmp_path_factory.mktemp("bad") / "bad.toml", text)
     assert {cross.path, other.path, "nodes[1].power_w"} == {fault.path for fault in faults}
-
-
-def test_report_counts_and_lists(tmp_path: Path) -> None:
-    """The error's text names the file, counts the faults and gives each a line."""
-    path = tmp_path / "bad.toml"
-    path.write_text(GOOD.replace("3.0", "-3.0").replace("2.0", "0.0"), encoding="utf-8")
-    with pytest.raises(ScenarioError) as caught:
-        load(path)
-    heading, first, second = str(caught.value).splitlines()
-    assert heading == f"{path}: 2 faults"
-    assert first.startswith("  nodes[1].power_w: got 0.0")
-    assert second.startswith("  jammers[0].power_w: got -3.0")

@@ -6,7 +6,7 @@ from hypothesis import given, strategies as st
 
 from nullpose.errors import ScenarioError
 from nullpose.physics import rotation_world_from_body
-from nullpose.scenario import Eavesdropper, Jammer, Node
+from nullpose.scenario import Eavesdropper, Jammer
 
 KINDS = [
     lambda **values: Jammer(name="M", position_m=(1.0, 2.0, 3.0), power_w=1.0, **values),
@@ -47,12 +47,6 @@ def test_an_ellipsoid_turns_as_a_body_does(
     assert jammer.uncertainty_reach_m == pytest.approx(reach, rel=1e-12, abs=1e-12)
 
 
-def test_a_long_ellipsoid_turned_to_the_north() -> None:
-    """With yaw 90 degrees the first semi-axis points north."""
-    jammer = KINDS[0](uncertainty_m=[10.0, 2.0, 1.0], uncertainty_attitude_deg=[0.0, 0.0, 90.0])
-    np.testing.assert_allclose(jammer.uncertainty_matrix_m[:, 0], [0.0, 10.0, 0.0], atol=1e-14)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(
     ("values", "path", "words"),
@@ -91,17 +85,3 @@ def test_faults(kind: object, values: dict[str, object], path: str, words: str) 
     (fault,) = caught.value.faults
     assert fault.path == path
     assert words in fault.message
-
-
-def test_nodes_have_none() -> None:
-    """Where the nodes are is known: they take no uncertainty."""
-    with pytest.raises(ScenarioError, match="unknown key"):
-        Node(position_m=(1.0, 2.0, 3.0), power_w=1.0, uncertainty_m=1.0)
-
-
-@given(st.one_of(axes, st.lists(axes, min_size=3, max_size=3)))
-def test_round_trip(extent: object) -> None:
-    """What was stated, a number or three, comes back as it was."""
-    jammer = KINDS[0](uncertainty_m=extent)
-    assert Jammer.from_dict(jammer.to_dict()) == jammer
-    assert jammer.to_dict()["uncertainty_m"] == extent

@@ -64,7 +64,7 @@ def _read_pattern(path: Path, table: Mapping[str, Any]) -> dict[str, Any]:
 
     is_estimate = table.get("two_cuts") is not None
     pattern = read_pattern(path, table.get("format"), table.get("frequency_hz"), estimate=is_estimate)
-    if is_estimate and not pattern.doubt:
+    if is_estimate and not pattern.caveat:
         refuse("two_cuts has no meaning: the file tells the whole pattern; remove the key")
     if is_estimate:
         require_fit(pattern)

@@ -35,7 +35,7 @@ class GroundAntennas(NamedTuple):
 
 
 def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
-    """Return a dipole's axis at unit length, not a hair longer; the vertical one if none is given.
+    """Return a dipole's axis at unit length, not a rounding error longer; the vertical one if none is given.
 
     What bounds a link by its distance holds for it to the last bit then.
 
@@ -44,8 +44,8 @@ def unit_axis(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
     """
     if axis is None:
         return np.array([0.0, 0.0, 1.0])
-    given = np.array(axis) / np.max(np.abs(axis))  # or squares may overflow
-    unit = given / np.linalg.norm(given)
+    scaled = np.array(axis) / np.max(np.abs(axis))  # or squares may overflow
+    unit = scaled / np.linalg.norm(scaled)
     while sum(Fraction(x) ** 2 for x in unit.tolist()) > 1:
         unit = np.nextafter(unit, 0.0)
     return np.asarray(unit)

@@ -67,13 +67,13 @@ class PatternSummary:
     def to_dict(self) -> dict[str, Any]:
         """Return the summary as plain data, angles in radians, without the table's numbers."""
         names = ("source", "quantity", "frequency_hz", "notes")
-        told = {name: getattr(self.table, name) for name in names}
+        data = {name: getattr(self.table, name) for name in names}
         for name in PatternSummary.__dataclass_fields__:
             if name.endswith("_deg"):
-                told[name.replace("_deg", "_rad")] = np.radians(getattr(self, name)).tolist()
+                data[name.replace("_deg", "_rad")] = np.radians(getattr(self, name)).tolist()
             elif name != "table":
-                told[name] = getattr(self, name)
-        return told
+                data[name] = getattr(self, name)
+        return data
 
 
 def summary_of(table: PatternTable) -> PatternSummary:

@@ -22,7 +22,7 @@ class PatternTable:
         quantity: what the file tells: "gain", "realised gain" or "directivity".
         source: the file and the format, for messages.
         notes: what a user should know of how it was read, a sentence each.
-        doubt: why it is an estimate and not a pattern; empty if it is one.
+        caveat: why it is an estimate and not a pattern; empty if it is one.
         lines: (t, p) where in the file; None where rows have no line of their own.
     """
 
@@ -34,7 +34,7 @@ class PatternTable:
     quantity: str = "gain"
     source: str = ""
     notes: tuple[str, ...] = ()
-    doubt: str = ""
+    caveat: str = ""
     lines: NDArray[np.int64] | None = None
 
 

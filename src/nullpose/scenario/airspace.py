@@ -172,7 +172,7 @@ class Airspace(Section):
         return self.model_construct(**raw | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
     def reached(self, zone: NoFlyZone) -> bool:
-        """Return whether a zone may forbid anything that the ranges and the fence allow.
+        """Check if a zone may forbid anything that the ranges and the fence allow.
 
         Args:
             zone: one of the airspace's.
@@ -184,7 +184,7 @@ class Airspace(Section):
         return bool(is_reached)
 
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
-        """Return whether the vehicle may be at each position, the keep-out balls not being looked at.
+        """Check positions of the vehicle against ranges, fence and zones, without the keep-out balls.
 
         Borders belong to what is allowed, and a position within 1e-9 m of a border counts as on it.
 
@@ -197,7 +197,7 @@ class Airspace(Section):
         return np.asarray(self.clearance_m(position_m) >= -BORDER_M)
 
     def clearance_m(self, position_m: ArrayLike) -> NDArray[np.float64]:
-        """Return how far each position is from what is forbidden [m], without regard to the keep-out balls.
+        """Measure distances from what is forbidden [m], without regard to the keep-out balls.
 
         Below 0 where it is forbidden, 0 on a border; it changes by no more than the distance between two
         positions.

@@ -244,7 +244,7 @@ def _corners(features: Sequence[Feature]) -> int:
 
 
 def _placemarks(content: bytes) -> tuple[int, int]:
-    """Return how many placemarks and coordinates a KML document has; refuse what else may hold areas."""
+    """Count placemarks and coordinates of a KML document; refuse what else may hold areas."""
     root = _root(content, "kml")
     kinds, corners = Counter(map(_kind, root.iter())), 0
     for kind, words in (("NetworkLink", "a link to another file"), ("GroundOverlay", "a picture on a map")):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def enu_from_geodetic(geodetic: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
-    """Return where places on the Earth are in the local frame of an origin: east, north and up [m].
+    """Convert places on the Earth to the local frame of an origin: east, north and up [m].
 
     ``(east, north, up) = S(lat0, lon0) (X - X0)``, with X Earth-centred Cartesian coordinates and the rows of
     S the directions east, north and up at the origin. The frame is straight: up is the origin's vertical
@@ -32,7 +32,7 @@ def enu_from_geodetic(geodetic: ArrayLike, origin: ArrayLike) -> NDArray[np.floa
 
 
 def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
-    """Return latitude, longitude [degrees] and altitude over the ellipsoid [m] of local positions.
+    """Convert local positions to latitude, longitude [degrees] and altitude over the ellipsoid [m].
 
     The inverse of ``enu_from_geodetic``. Longitudes lie in [-180, 180].
 
@@ -50,7 +50,7 @@ def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.fl
 
 
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
-    """Return vectors in north, east, down: the first two components swapped, the third negated.
+    """Convert vectors to north, east, down: the first two components swapped, the third negated.
 
     Done twice, it gives the vectors back: so it leads from north, east, down to east, north, up too.
 

@@ -62,7 +62,7 @@ class _TomlSchema(GenerateJsonSchema):
 
 
 def _rules(kind: type[Section]) -> list[dict[str, Any]]:
-    """Return what a table says of keys together, and of nodes what an objective needs of them."""
+    """Write the rules of a table's keys together, and of what an objective needs of the nodes."""
     needed = {key for key, field in kind.model_fields.items() if field.is_required()}
     rules = [ways.schema() for ways in kind.ways if ways.most == 1 or needed.intersection(ways.groups[0])]
     silent = [name for name, record in RECORDS.items() if "nodes.power" not in record.needs]

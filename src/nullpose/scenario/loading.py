@@ -95,7 +95,7 @@ def _overridden_tables(
 
 
 def _named_files(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a scenario file states for the files of its nodes, fence and zones, by key."""
+    """Pick the names of the files of nodes, fence and zones, by key."""
     airspace = tables.get("airspace")
     airspace = airspace if isinstance(airspace, Mapping) else {}
     return {_NODES_KEY: tables.get(_NODES_KEY)} | {
@@ -135,7 +135,7 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
 
 
 def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Path:
-    """Return where a file is that another one names.
+    """Locate a file that another one names.
 
     Args:
         folder: of the file that names it.

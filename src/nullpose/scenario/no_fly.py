@@ -207,7 +207,7 @@ class NoFlyZone(Section):
     def depth_m(
         self, position_m: ArrayLike, altitude_m: tuple[float, float] = (-math.inf, math.inf)
     ) -> NDArray[np.float64]:
-        """Return how far each position is inside the zone [m]; 0 on its border, below 0 outside.
+        """Measure how deep positions are inside the zone [m]; 0 on its border, below 0 outside.
 
         Inside it is the distance to the nearest wall, floor or ceiling.
 

@@ -86,7 +86,7 @@ class Origin(Section):
         return read_only([self.lat_deg, self.lon_deg, height_m or 0.0], (3,))
 
     def place(self, position_m: ArrayLike) -> dict[str, float]:
-        """Return where on the Earth a position is.
+        """Convert a position to a place on the Earth.
 
         Args:
             position_m: east, north and up from the origin [m], (3,).
@@ -101,13 +101,13 @@ class Origin(Section):
             {'lat_deg': 50.0, 'lon_deg': 14.5, 'alt_m': 250.0, 'alt_msl_m': 205.0}
         """
         lat_deg, lon_deg, height_m = geodetic_from_enu(position_m, self.geodetic).tolist()
-        own = {"alt_m": self.alt_m, "alt_msl_m": self.alt_msl_m}
-        base_m = float(self.geodetic[2])
-        altitudes = {key: height_m + (here_m - base_m) for key, here_m in own.items() if here_m is not None}
+        bases_m = {"alt_m": self.alt_m, "alt_msl_m": self.alt_msl_m}
+        zero_m = float(self.geodetic[2])
+        altitudes = {key: height_m + (base - zero_m) for key, base in bases_m.items() if base is not None}
         return {"lat_deg": lat_deg, "lon_deg": lon_deg} | altitudes
 
     def position_m(self, place: Mapping[str, float]) -> Floats:
-        """Return where a place on the Earth is: east, north and up from the origin [m], (3,).
+        """Convert a place on the Earth to east, north and up from the origin [m], (3,).
 
         Args:
             place: ``lat_deg``, ``lon_deg`` [degrees], and ``alt_m`` over the ellipsoid, ``alt_msl_m`` over
@@ -166,11 +166,11 @@ def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
     """Return a raw table with the metres that follow from what it states on the Earth."""
     if not isinstance(raw, Mapping):
         return raw
-    stated = {key: raw[key] for key in EARTHLY_KEYS if raw.get(key) is not None}
-    wanted = [key for key in map(metric_key, stated) if raw.get(key) is None]
+    earthly = {key: raw[key] for key in EARTHLY_KEYS if raw.get(key) is not None}
+    wanted = [key for key in map(metric_key, earthly) if raw.get(key) is None]
     if not wanted:
         return raw
-    found = {} if origin is None else in_metres(kind._sound_part(stated), origin)
+    found = {} if origin is None else in_metres(kind._sound_part(earthly), origin)
     near = {
         key: value.tolist()
         for key, value in found.items()
@@ -213,10 +213,10 @@ def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Fl
     for key, metric in EARTHLY_CORNERS.items():
         if (corners := getattr(table, key, None)) is not None:
             found[metric] = enu_m(corners, base_m)[..., :2]
-    for key, own in EARTHLY_RANGES.items():
-        ends_m, own_m = getattr(table, key, None), getattr(origin, own)
-        if ends_m is not None and own_m is not None:
-            found["altitude_m"] = np.subtract(ends_m, own_m)
+    for key, of_origin in EARTHLY_RANGES.items():
+        ends_m, zero_m = getattr(table, key, None), getattr(origin, of_origin)
+        if ends_m is not None and zero_m is not None:
+            found["altitude_m"] = np.subtract(ends_m, zero_m)
     return found
 
 

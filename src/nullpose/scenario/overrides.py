@@ -210,7 +210,7 @@ def _members(kind: type[Section] | None, holder: object) -> dict[str | int, str 
 
 
 def _instead(step: str | int, members: Collection[str | int], path: str) -> str:
-    """Return what to say of a step that leads nowhere."""
+    """Word the fault of a step that leads nowhere."""
     names = [member for member in members if isinstance(member, str)]
     guess = nearest(str(step), names) or (names[0] if len(names) == 1 else "")
     meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""

@@ -77,7 +77,7 @@ def close_to_degrees(origin: Origin | None, positions_m: Sequence[Any], remedy: 
 
 
 def doubts(scenario: Scenario) -> tuple[Fault, ...]:
-    """Return what a sound scenario states that looks like a mistake, each with its place.
+    """Find what looks like a mistake in a sound scenario, each with its place.
 
     Powers in W that would be likely in dBm, where the file states other transmit powers in dBm; points in
     metres that are close to the origin's latitude and longitude; points that all lie as far off the origin's

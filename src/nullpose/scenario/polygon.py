@@ -17,7 +17,7 @@ from nullpose.scenario.units import LatLon, PlanePoint
 
 MOST_CORNERS = 5000
 """Vertices of a polygon, and of all that an airspace has: more take too long to cut."""
-_SAME = 1e-9  # metres or degrees: vertices closer than this are one
+_SAME_VERTEX = 1e-9  # metres or degrees: vertices closer than this are one
 
 
 def area_m2(vertices_m: Floats) -> float:
@@ -40,7 +40,7 @@ def counter_clockwise_m(polygon: Sequence[tuple[float, float]] | None) -> Floats
 
 
 def depth_m(points_m: Floats, vertices_m: Floats) -> Floats:
-    """Return how deep each point lies in the polygon [m]: its distance from the border, negative outside.
+    """Measure how deep points lie in a polygon [m]: their distance from the border, negative outside.
 
     Args:
         points_m: points [m], (..., 2).
@@ -71,11 +71,11 @@ def _prepared(vertices_m: bytes) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
 def _judged(corners: tuple[tuple[float, float], ...]) -> tuple[str, tuple[tuple[float, float], ...]]:
-    """Return what keeps corners from bounding one area, in shapely's words, or those not doubled."""
+    """Find the fault of corners that bound no area, in shapely's words, and drop doubled ones."""
     import shapely
 
     try:
-        polygon = shapely.remove_repeated_points(shapely.Polygon(corners), _SAME)
+        polygon = shapely.remove_repeated_points(shapely.Polygon(corners), _SAME_VERTEX)
     except shapely.GEOSException:
         return "all vertices are one", ()
     if polygon.is_valid and polygon.area:

@@ -17,7 +17,7 @@ _HALVINGS = 100  # of the multiplier's range, which is bounded relative to the a
 
 
 def distance_m(points_m: Floats, centre_m: Floats, matrix_m: Floats) -> Floats:
-    """Return how far points are from the set ``{centre + A x : |x| <= 1}`` [m]; 0 inside it.
+    """Measure the distance of points from the set ``{centre + A x : |x| <= 1}`` [m]; 0 inside it.
 
     With y the offset from the centre along the principal axes, of lengths a, the nearest point of the set is
     ``a^2 y / (a^2 + t)``; the multiplier t is 0 inside and else the positive root of
@@ -56,7 +56,7 @@ _BATCH = 256
 def find_position(
     lower_m: Floats, upper_m: Floats, clearance_m: Callable[[Floats], Floats], most_parts: int = 60_000
 ) -> tuple[Floats | None, bool]:
-    """Return a position [m] in a box at which a clearance is not negative, or None; and whether it is sure.
+    """Find a position [m] in a box at which a clearance is not negative, or None; and whether that is sure.
 
     A clearance may change by no more than the distance gone (distances from sets do, and the least of
     several). So a part of the box whose middle has a clearance below minus its half diagonal holds no such
@@ -133,7 +133,7 @@ def airspace_faults(
 
 
 def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
-    """Return whether there is a position that the airspace allows outside the keep-out balls.
+    """Check for a position that the airspace allows outside the keep-out balls.
 
     True to a billionth of the airspace's size, unless it is so intricate that it takes too long to tell,
     which counts as if there were one.

@@ -119,7 +119,7 @@ class Scenario(Section):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
-        """Return the scenario that a TOML file describes; the same as ``nullpose.load``.
+        """Read the scenario that a TOML file describes; the same as ``nullpose.load``.
 
         Args:
             path: the file, of 10 MB at most.
@@ -145,7 +145,7 @@ class Scenario(Section):
         reference_gain_db: float | None = None,
         **more: object,
     ) -> Scenario:
-        """Return the scenario of nodes and jammers that are given as arrays.
+        """Make the scenario of nodes and jammers that are given as arrays.
 
         The paper's:
         ``Scenario.from_arrays([[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30))``
@@ -190,7 +190,7 @@ class Scenario(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Return the raw scenario with the positions of points that are stated by latitude and longitude.
+        """Fill in the positions of points that are stated by latitude and longitude.
 
         The name, which every output has, says of an antenna that is an estimate that it is one.
         """
@@ -391,7 +391,7 @@ class Scenario(Section):
 
 
 def require_scenario(value: object) -> None:
-    """Raise an error with advice if a value is no scenario, such as the path of its file.
+    """Refuse what is no scenario, such as the path of its file, with advice.
 
     Args:
         value: what was given for a scenario.

@@ -79,7 +79,7 @@ class Section(BaseModel):
 
     @classmethod
     def heading(cls) -> str:
-        """Return what the table is called and how it is headed in a file."""
+        """Name the table and its heading in a file."""
         return cls.header or f"a table headed [{cls.__name__.lower()}]"
 
     @classmethod
@@ -98,7 +98,7 @@ class Section(BaseModel):
     @model_validator(mode="wrap")
     @classmethod
     def _judged(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Return the table, or raises all that is wrong with it: keys, values, keys and values together."""
+        """Judge keys, values, and keys and values together; raise all that is wrong."""
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
@@ -187,7 +187,7 @@ class Section(BaseModel):
 
 @cache
 def _faults_of_ways(ways: tuple[Ways, ...], present: frozenset[str]) -> tuple[str, ...]:
-    """Return what is wrong with the keys that are given, together."""
+    """Collect the faults of the keys that are given, together."""
     return tuple(message for each in ways for message in each.faults(present))
 
 
@@ -211,5 +211,5 @@ def table_of(kind: type[Section], key: str) -> type[Section] | None:
 
 @cache
 def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
-    """Return what reads the value of one key of a table."""
+    """Make the reader of one key of a table."""
     return TypeAdapter(kind.model_fields[key].rebuild_annotation())

@@ -113,7 +113,7 @@ def file_text(path: Path, kind: FileKind = SCENARIO_FILE, base: Path = Path(), p
 def file_content(
     path: Path, kind: FileKind, base: Path = Path(), place: str = "", most: int = MOST_BYTES
 ) -> bytes:
-    """Return what a file holds.
+    """Read a file.
 
     Args:
         path: the file.
@@ -156,7 +156,7 @@ def decoded(content: bytes) -> str:
 
 
 def _other_file(path: Path, kind: FileKind, base: Path) -> str:
-    """Return what to try instead of a file that is not there."""
+    """Suggest another file in place of one that is not there."""
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix in kind.endings)
     except OSError:

@@ -19,7 +19,7 @@ def plain(value: object) -> object:
 
 
 def described(value: object) -> str:
-    """Return a given value in words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
+    """Put a given value into words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
     match plain(value):
         case None:
             return "nothing"
@@ -71,7 +71,7 @@ def nearest(word: str, words: Collection[str]) -> str:
 
 
 def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str] = ()) -> str:
-    """Return what to say of a word that is not among the known ones, with the one that may be meant.
+    """Word the fault of an unknown word, with the one that may be meant.
 
     Args:
         noun: what the word is, such as a key.

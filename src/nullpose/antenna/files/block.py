@@ -23,7 +23,7 @@ DBD = 2.15
 """Decibels of a half-wave dipole over an isotropic antenna."""
 SAME_FIELD = 0.015
 """How far a gain and the square of its field may be apart, of the gain: .065 dB."""
-_SAME, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
+_TWICE, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Lines: TypeAlias = Sequence[tuple[int, str]]
@@ -43,7 +43,7 @@ class Block:
         frequency_hz: None where the file does not say.
         quantity: "gain", "realised gain", "directivity", or "field" where the file does not say its power.
         notes: what a user should know, a sentence each.
-        doubt: why it is an estimate and not a pattern; empty if it is one.
+        caveat: why it is an estimate and not a pattern; empty if it is one.
     """
 
     theta_deg: FloatArray
@@ -54,7 +54,7 @@ class Block:
     frequency_hz: float | None = None
     quantity: str = "gain"
     notes: tuple[str, ...] = ()
-    doubt: str = ""
+    caveat: str = ""
 
 
 def refuse(message: str, line: int = 0) -> NoReturn:
@@ -162,15 +162,16 @@ def gridded(block: Block, source: str) -> PatternTable:
     if field is not None:
         _refuse_row(block, np.any(np.abs(field) > _LARGEST, axis=1), "has a field beyond all measure")
         field = field * np.where(back, -1.0, 1.0)[:, None]
-        given, gain = gain, np.sum(np.abs(field) ** 2, axis=1)
-        if given is not None:
-            apart = np.abs(gain - given) > SAME_FIELD * given + 0.1 * _WEAK * np.max(given)
+        stated_gain, gain = gain, np.sum(np.abs(field) ** 2, axis=1)
+        if stated_gain is not None:
+            least_apart = SAME_FIELD * stated_gain + 0.1 * _WEAK * np.max(stated_gain)
+            apart = np.abs(gain - stated_gain) > least_apart
             _refuse_row(block, apart, "has a gain and fields that contradict each other")
     assert gain is not None  # a block has the one or the other
     _refuse_row(block, gain < 0.0, "has a gain below 0; is a column in decibels read as linear?")
     pole = (rows == 0) | (rows == len(thetas) - 1)
     other = gain[first[rows, np.where(pole, 0, columns)]]
-    apart = np.maximum(gain, other) > _SAME * np.minimum(gain, other)
+    apart = np.maximum(gain, other) > _TWICE * np.minimum(gain, other)
     apart &= np.abs(gain - other) > _WEAK * np.max(gain)
     _refuse_row(
         block, apart, "is given twice, with other numbers; keep one (at a pole azimuths are one direction)"
@@ -183,8 +184,8 @@ def gridded(block: Block, source: str) -> PatternTable:
         frequency_hz=block.frequency_hz or None,  # some write 0
         quantity=block.quantity,
         source=source,
-        notes=(*block.notes, *([f"Estimate: {block.doubt}."] if block.doubt else [])),
-        doubt=block.doubt,
+        notes=(*block.notes, *([f"Estimate: {block.caveat}."] if block.caveat else [])),
+        caveat=block.caveat,
         lines=np.asarray(block.lines)[first] if len(block.lines) else None,
     )
 
@@ -194,9 +195,9 @@ def _fill_poles(first: NDArray[np.intp], phi_deg: FloatArray) -> FloatArray:
     turn_rad = np.zeros(first.shape)
     for pole, sense in ((0, 1.0), (-1, -1.0)):  # the south pole's azimuths turn the other way
         gap = first[pole] < 0
-        given = int(np.argmin(gap))
-        turn_rad[pole, gap] = sense * np.radians(phi_deg[gap] - phi_deg[given])
-        first[pole, gap] = first[pole, given]
+        present = int(np.argmin(gap))
+        turn_rad[pole, gap] = sense * np.radians(phi_deg[gap] - phi_deg[present])
+        first[pole, gap] = first[pole, present]
     return turn_rad
 
 

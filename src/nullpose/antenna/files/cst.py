@@ -56,9 +56,9 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
         for at in found[word]:
             axis = rows_of(lines, at, 1, 3, f"the {word} of the source")[0]
             if np.max(np.abs(axis - straight)) > _UNALIGNED:
-                given, allowed = (" ".join(f"{x:g}" for x in each) for each in (axis, straight))
+                got, allowed = (" ".join(f"{x:g}" for x in each) for each in (axis, straight))
                 refuse(
-                    f"its {word} is {given}, must be {allowed}: the source is turned; export it unturned",
+                    f"its {word} is {got}, must be {allowed}: the source is turned; export it unturned",
                     lines[at][0],
                 )
     what = "radiated, accepted and stimulated power in W, the frequency in Hz, of each pattern a line each"

@@ -17,7 +17,7 @@ _WEAK_DB = 20.0  # below the peak; what is weaker may differ
 _WIDEST_DEG = 10.0  # between two rows of a cut
 _NEGATIVE_DB = 0.05
 _CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
-_DOUBT = (
+_CAVEAT = (
     "it is an estimate by the sum of losses: its horizontal cut changes by {:.1f} dB, and two cuts do not "
     "tell what is between them"
 )
@@ -59,11 +59,11 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     at, text = keys.get("GAIN", (0, ""))
     amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
     gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
-    stated, more_db = ("dBi", 0.0) if "dbi" in text.lower() else ("dBd", DBD)
-    notes = [f"Its gain is read as {stated}."]
+    unit, more_db = ("dBi", 0.0) if "dbi" in text.lower() else ("dBd", DBD)
+    notes = [f"Its gain is read as {unit}."]
     theta, phi = np.meshgrid(np.arange(181), np.arange(360), indexing="ij")
     front_db, back_db = down[(theta - 90) % 360], down[(270 - theta) % 360]
-    ripple_db, doubt = float(np.ptp(across)), ""
+    ripple_db, caveat = float(np.ptp(across)), ""
     if ripple_db <= _OMNI_DB:
         gain = 0.5 * (from_db(-front_db) + from_db(-back_db))
         strong = np.minimum(front_db, back_db) < _WEAK_DB
@@ -77,7 +77,7 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         behind_db = np.maximum(0.0, back_db - down[180])
         gain = from_db(-(across[-phi % 360] + ahead * front_db + (1.0 - ahead) * behind_db))
         gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
-        doubt = _DOUBT.format(ripple_db)
+        caveat = _CAVEAT.format(ripple_db)
         notes.append(_CLOCKWISE)
     yield Block(
         theta_deg=theta.ravel().astype(float),
@@ -85,7 +85,7 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         gain=(gain * from_db(gain_dbi + more_db)).ravel(),
         frequency_hz=_frequency_hz(keys.get("FREQUENCY", (0, ""))[1], notes),
         notes=tuple(notes),
-        doubt=doubt,
+        caveat=caveat,
     )
 
 

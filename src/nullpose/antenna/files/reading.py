@@ -64,11 +64,11 @@ def read_pattern(
         lines = _lines(Path(source))
         name = _format_of("\n".join(text for _, text in lines), file_format)
         table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(source).name} ({name})")
-        if not table.doubt:
+        if not table.caveat:
             require_antenna(table := _scaled(table))
             require_rows(table, require_fit(table))
         elif not estimate:
-            refuse(f"{table.doubt}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+            refuse(f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
         return table
     except ScenarioError as error:
         raise ScenarioError(error.faults, source) from None
@@ -116,20 +116,21 @@ def _lines(path: Path) -> Lines:
     return lines
 
 
-def _format_of(text: str, stated: str | None) -> str:
-    known = ", ".join(FORMATS)
-    if stated is not None and stated not in FORMATS:
-        refuse(f"got the format {stated!r}, must be one of {known}")
+def _format_of(text: str, asserted: str | None) -> str:
+    formats = ", ".join(FORMATS)
+    if asserted is not None and asserted not in FORMATS:
+        refuse(f"got the format {asserted!r}, must be one of {formats}")
     looks = [
         name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
     ]
-    if stated is None and not looks:
+    if asserted is None and not looks:
         refuse(
-            f"it has the marks of no known format; must be one of {known}. Export the pattern in one of them"
+            f"it has the marks of no known format; must be one of {formats}. Export the pattern in one of "
+            "them"
         )
-    if stated is not None and stated not in looks:
-        refuse(f"it is stated to be {stated}, and looks like {looks[0] if looks else f'none of {known}'}")
-    return stated or looks[0]
+    if asserted is not None and asserted not in looks:
+        refuse(f"it is stated to be {asserted}, and looks like {looks[0] if looks else f'none of {formats}'}")
+    return asserted or looks[0]
 
 
 def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> PatternTable:
@@ -139,9 +140,13 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
     if frequency_hz is not None and not 0.0 < frequency_hz < np.inf:
         refuse(f"got the frequency {frequency_hz:g} Hz, must be more than 0 and finite")
     each_hz = [block.frequency_hz or frequency_hz or 0.0 for block in blocks]
-    known = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
-    more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
-    listed = f"{', '.join(known[:_MOST_NAMED])} Hz{more}" if known else "frequencies that it does not say"
+    frequencies = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
+    more = f" and {len(frequencies) - _MOST_NAMED} more" if len(frequencies) > _MOST_NAMED else ""
+    listed = (
+        f"{', '.join(frequencies[:_MOST_NAMED])} Hz{more}"
+        if frequencies
+        else "frequencies that it does not say"
+    )
     if frequency_hz is None and len(set(each_hz)) > 1:
         refuse(
             f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"

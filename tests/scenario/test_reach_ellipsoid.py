@@ -16,29 +16,6 @@ def random_matrix(rng: np.random.Generator) -> np.ndarray:
     return Rotation.random(random_state=rng).as_matrix() @ np.diag(10.0 ** rng.uniform(-1.0, 1.0, 3))
 
 
-@given(SEEDS, st.floats(0.0, 50.0))
-def test_from_a_ball(seed: int, radius: float) -> None:
-    """From a ball, a point's distance is that from its centre less the radius, and 0 inside."""
-    rng = np.random.default_rng(seed)
-    points, centre = rng.normal(0.0, 30.0, (20, 3)), rng.normal(0.0, 10.0, 3)
-    expected = np.maximum(0.0, np.linalg.norm(points - centre, axis=1) - radius)
-    np.testing.assert_allclose(distance_m(points, centre, radius * np.eye(3)), expected, atol=1e-10)
-
-
-@given(SEEDS)
-def test_along_the_normal(seed: int) -> None:
-    """A point put at a distance from the surface along its normal there is at that distance."""
-    rng = np.random.default_rng(seed)
-    matrix, centre = random_matrix(rng), rng.normal(0.0, 10.0, 3)
-    on_ball = rng.normal(size=(20, 3))
-    on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
-    normals = on_ball @ np.linalg.inv(matrix)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    far = 10.0 ** rng.uniform(-3.0, 2.0, 20)
-    points = centre + on_ball @ matrix.T + far[:, None] * normals
-    np.testing.assert_allclose(distance_m(points, centre, matrix), far, rtol=1e-9, atol=1e-9)
-
-
 @given(SEEDS)
 def test_inside_it_is_zero(seed: int) -> None:
     """Points of the set are at no distance from it."""

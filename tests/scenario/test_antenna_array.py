@@ -40,13 +40,6 @@ def test_faults(key: str, value: object, words: str) -> None:
     assert words in fault.message
 
 
-def test_every_key_is_needed() -> None:
-    """An array without its keys is told all of them."""
-    with pytest.raises(ScenarioError) as caught:
-        Array.from_dict({})
-    assert [fault.path for fault in caught.value.faults] == list(GOOD)
-
-
 def scene(**tables: object) -> Scenario:
     """Returns a scene with an array and other tables."""
     return Scenario(

@@ -8,11 +8,9 @@ import pytest
 import shapely
 
 from nullpose.errors import ScenarioError
-from nullpose.physics import Pose
 from nullpose.problem.build import build_family
-from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides
+from nullpose.scenario import Airspace, NoFlyZone, Scenario
 from nullpose.scenario.polygon import offset_outlines_m
-from nullpose.study.evaluation import pose_faults
 
 ALTITUDE_M = (10.0, 50.0)
 FARTHEST = 1.81
@@ -133,16 +131,6 @@ def test_what_is_allowed(position_m: list[float], allowed: bool, shape: str) -> 
     assert len(family.zone_kind) == 4
 
 
-def test_none_is_nothing() -> None:
-    """Without a margin, or with one of 0, the file, the airspace and what is solved are what they were."""
-    stated = {"geofence_m": FENCE, "no_fly": [{"polygon_m": [[0, 0], [9, 0], [4, 7]]}]}
-    with_none, without = scene(margin_m=0.0, **stated), scene(**stated)
-    assert with_none == without
-    assert "margin_m" not in with_none.to_toml()
-    assert with_none.airspace.inner is with_none.airspace
-    assert build_family(with_none).digest == build_family(without).digest
-
-
 def test_a_saved_scenario_is_as_it_was_stated(tmp_path: Path) -> None:
     """The margin is saved beside zones and fence as stated; loaded again, it counts once."""
     airspace = {
@@ -160,13 +148,6 @@ def test_a_saved_scenario_is_as_it_was_stated(tmp_path: Path) -> None:
     for again in (Scenario.from_file(path), Scenario.from_dict(stated.to_dict())):
         assert again == stated
         assert build_family(again).digest == digest
-
-
-def test_a_margin_can_be_set() -> None:
-    """An override states it as the file does."""
-    assert apply_overrides(scene(geofence_m=FENCE), ["airspace.margin_m=3"]) == scene(
-        geofence_m=FENCE, margin_m=3
-    )
 
 
 HOURGLASS = [[-50, -20], [0, -4], [50, -20], [50, 20], [0, 4], [-50, 20]]
@@ -191,20 +172,6 @@ def test_a_closed_pocket_is_forbidden() -> None:
     zones = {"no_fly": [{"polygon_m": yard}]}
     assert Airspace(altitude_m=ALTITUDE_M, margin_m=1.5, **zones).allows([0.0, 0.0, 20.0])
     assert not Airspace(altitude_m=ALTITUDE_M, margin_m=2.0, **zones).allows([0.0, 0.0, 20.0])
-
-
-def test_a_pose_is_told_how_far_it_is_off() -> None:
-    """The words give the distance to where it would be allowed, and the margin that is in it."""
-    scenario = scene(
-        geofence_m=FENCE, no_fly=[{"name": "mast", "centre_m": [0, 0], "radius_m": 5}], margin_m=3
-    )
-    at_fence, in_zone = ([49.0, 0.0, 20.0], [7.0, 0.0, 20.0])
-    assert [*pose_faults(scenario, Pose(at_fence, 0.0, 0.0))] == [
-        "the position is 2 m outside the geofence, its margin of 3 m counted"
-    ]
-    assert [*pose_faults(scenario, Pose(in_zone, 0.0, 0.0))] == [
-        "the position is 1 m inside the no-fly zone mast, its margin of 3 m counted"
-    ]
 
 
 def test_no_room_is_refused() -> None:
