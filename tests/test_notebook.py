@@ -5,7 +5,6 @@ import pytest
 
 import nullpose
 from nullpose import notebook
-from nullpose.report.comparison import compare_all
 from nullpose.study import value_map
 
 SCENE = nullpose.Scenario.from_arrays(
@@ -31,39 +30,22 @@ def test_a_line_tells_what_it_is(found: object) -> None:
     assert "\n" not in line
 
 
-def test_what_the_lines_say() -> None:
-    """A scenario its size, a result its value and bound."""
-    assert repr(SCENE) == "Scenario('a <scene>': 2 nodes, 1 jammer, min-sinr, altitude 8 to 30 m)"
-    assert repr(RESULT).startswith("Result(Optimum, certified: smallest SINR 0.9836997 dB, at most 0.98370")
-
-
-def test_many_answers_are_printed_in_a_few_lines() -> None:
-    """A line, a table in dB of 80 columns, and how many rows there are beside: no flood of arrays."""
-    line, head, *rows, more = str(MANY).splitlines()
-    assert line == repr(MANY)
-    assert "60 best-found" in line
-    assert len(rows) == 10
-    assert more.startswith("50 more rows")
-    assert max(map(len, str(MANY).splitlines())) <= 80
-    cells = dict(zip(head.split(), rows[1].split(), strict=False))
-    assert float(cells["value_db"]) == pytest.approx(10.0 * np.log10(MANY.value[0, 1]), rel=1e-5)
-    assert "nan" not in str(MANY)
+def test_many_answers_have_a_frame() -> None:
+    """A row for each scene and vehicle, in dB and metres."""
+    assert "60 best-found" in repr(MANY)
     frame = MANY.frame()
     assert (len(frame), frame["vehicle"].tolist()[:2]) == (60, [0, 1])
     assert frame["value_db"].to_numpy() == pytest.approx(10.0 * np.log10(MANY.value.ravel()))
     assert frame["x_m"].tolist() == MANY.position_m[..., 0].ravel().tolist()
 
 
-@pytest.mark.parametrize(
-    "found", [SCENE, RESULT, CASES, TABLE, VEHICLES, MANY, compare_all(SCENE, certify=False)]
-)
-def test_a_table_in_html(found: object) -> None:
-    """Names are escaped, and every row has as many cells as there are headings."""
+@pytest.mark.parametrize("found", [CASES, TABLE, VEHICLES, MANY])
+def test_tables_are_html(found: object) -> None:
+    """Names are escaped, and a long table is cut."""
     text = found._repr_html_()  # type: ignore[attr-defined]
+    assert "<table" in text
     assert "<scene>" not in text
-    head, *rows = text.split("<tr>")[1:]
-    assert rows
-    assert {row.count("<td>") for row in rows} == {head.count("<th>")}
+    assert text.count("<tr") < 50
 
 
 def test_frames_have_the_numbers() -> None:
@@ -91,19 +73,19 @@ def test_grids_become_arrays() -> None:
 
 
 def test_a_sweep_says_what_it_left_out() -> None:
-    """With the reason, in the line and in the table."""
+    """With the reason."""
     calm = SCENE.model_copy(update={"jammers": ()})
     table = nullpose.sweep(calm, "receiver.noise_w", [1e-3, 1e-2], certify=False)
-    for text in (repr(table), table._repr_html_()):
-        assert "left out: zero-interference (" in text
+    assert "left out: zero-interference (" in repr(table)
 
 
 def test_without_pandas_the_message_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As an error of nullpose."""
+    """As an error of nullpose; a notebook shows the plain text."""
 
     def missing(name: str) -> None:
         raise ImportError(name)
 
     monkeypatch.setattr(notebook, "import_module", missing)
+    assert TABLE._repr_html_() is None
     with pytest.raises(nullpose.NullposeError, match="pip install pandas"):
         TABLE.frame()

@@ -14,7 +14,6 @@ from pydantic import Field
 from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna, GroundAntennas, unit_axis
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.errors import WrongTypeError
-from nullpose.notebook import html_table
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
@@ -215,20 +214,6 @@ class Scenario(Section):
         return f"Scenario({self.name!r}: {numbers}, {self.objective}, altitude {low:g} to {high:g} m)"
 
     __str__ = __repr__
-
-    def _repr_html_(self) -> str:
-        groups = {"node": self.nodes, "jammer": self.jammers, "eavesdropper": self.eavesdroppers}
-        rows = [
-            {
-                "kind": kind,
-                "name": point.name,
-                **dict(zip(("x (m)", "y (m)", "z (m)"), point.position_m, strict=True)),
-                "power (W)": getattr(point, "transmit_power_w", None) or None,
-            }
-            for kind, points in groups.items()
-            for point in points
-        ]
-        return html_table(repr(self), rows)
 
     @property
     def objective_record(self) -> ObjectiveRecord:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import SolveError, UsageError
-from nullpose.notebook import html_table, imported, text_table
+from nullpose.notebook import html_table, imported
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, to_db, values_of_many
 from nullpose.problem.axis_field import AxisField
@@ -29,9 +29,6 @@ NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""
 
 _BLOCK = 64  # scenes between two reports
-
-
-_PRINTED = ("scene", "vehicle", "value_db", "upper_bound_db", "status", "x_m", "y_m", "z_m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -80,11 +77,8 @@ class ManySolutions:
         words = ", ".join(f"{count} {name}" for name, count in counts.items())
         return f"ManySolutions(scenes: {scenes}, vehicles: {vehicles}; {words})"
 
-    def __str__(self) -> str:
-        return text_table(repr(self), [{name: row[name] for name in _PRINTED} for row in self._rows()])
-
-    def _repr_html_(self) -> str:
-        return html_table(repr(self), self._rows())
+    def _repr_html_(self) -> str | None:
+        return html_table(self._rows())
 
     def frame(self) -> Any:
         """Return the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.

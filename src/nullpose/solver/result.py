@@ -252,9 +252,6 @@ class Result:
         place = ", ".join(f"{x:z.3f}" for x in self.pose.position_m)
         return f"{type(self).__name__}({self.label}, {self.status.value}: {value}{above}; at ({place}) m)"
 
-    def _repr_html_(self) -> str:
-        return html_table(self.scenario.name, [self.row()], [self.status.message])
-
     def row(self) -> dict[str, object]:
         """Return the result as a row of a table: numbers by name and unit, angles in degrees."""
         quantity, bound = self.objective.quantity, self.objective.upper_bound
@@ -313,8 +310,8 @@ class Results(tuple[Result, ...]):
         """
         return imported("pandas").DataFrame([one.row() for one in self])
 
-    def _repr_html_(self) -> str:
-        return html_table(self[0].scenario.name if self else "", [one.row() for one in self])
+    def _repr_html_(self) -> str | None:
+        return html_table([result.row() for result in self])
 
 
 def _finite(value: float | None) -> float | None:

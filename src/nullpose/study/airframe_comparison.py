@@ -181,8 +181,8 @@ class AirframeComparison:
         enough = "none suffices" if least is None else f"{least.case.name} suffices"
         return f"AirframeComparison({self.scenario.name!r}: {len(self.results)} vehicles, {enough})"
 
-    def _repr_html_(self) -> str:
-        return html_table(repr(self), self._records())
+    def _repr_html_(self) -> str | None:
+        return html_table(self._records())
 
     def frame(self) -> Any:
         """Return the comparison as a data frame of pandas, a row for each vehicle.

@@ -157,10 +157,8 @@ class SweepTable:
         told = [f"SweepTable({self.path}: {span}{len(values)} values of {cases}", *self._absent()]
         return "; ".join(told) + ")"
 
-    def _repr_html_(self) -> str:
-        return html_table(
-            self.path, [{self.path: row.value} | row.row() for row in self.rows], self._absent()
-        )
+    def _repr_html_(self) -> str | None:
+        return html_table([{self.path: row.value} | row.row() for row in self.rows])
 
     def _absent(self) -> list[str]:
         """Return what was left out, with the reasons."""

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
-from nullpose.notebook import html_table
 from nullpose.solver import Rigour
 from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, Part, require_extra
 from nullpose.study.monte_carlo.rows import read_parquet, schema_of
@@ -73,10 +72,9 @@ class StudyTable:
         done = f"{self.scenes_done} of {self.spec.n_scenes} scenes"
         return f"StudyTable({self.spec.name!r}: {done}, {self.quantity.smallest})"
 
-    def _repr_html_(self) -> str:
-        some = next(self.batches(), None)
-        rows = [] if some is None else some.head(_SHOWN).to_dict("records")
-        return html_table(repr(self), rows, [f"the first {len(rows)} rows; .frame() has all"])
+    def _repr_html_(self) -> str | None:
+        batch = next(self.batches(), None)
+        return None if batch is None else str(batch.head(_SHOWN).to_html(index=False))
 
     def to_xarray(self) -> xr.Dataset:
         """Return all rows as arrays over scene, each swept parameter, and case.
