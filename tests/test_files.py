@@ -11,14 +11,6 @@ from nullpose.errors import OutputError, ScenarioError
 from nullpose.files import check_outputs, parse_json, prepare_folder, read_bytes, replacing, write_text
 
 
-def test_folder_is_made_with_its_parents(tmp_path: Path) -> None:
-    """Missing parents are made, an existing folder is accepted, and nothing is left in it."""
-    folder = tmp_path / "a" / "b"
-    assert prepare_folder(folder) == folder
-    assert prepare_folder(folder) == folder
-    assert list(folder.iterdir()) == []
-
-
 @pytest.mark.parametrize("below", ["", "deeper"])
 def test_file_in_the_way(tmp_path: Path, below: str) -> None:
     """A file where a folder is needed is told apart from other troubles."""
@@ -112,14 +104,6 @@ def test_what_is_no_file_is_never_replaced(tmp_path: Path, kind: str) -> None:
     assert os.path.samestat(before, path.stat())
 
 
-def test_outputs_are_prepared(tmp_path: Path) -> None:
-    """Folders are made; names that nobody gave are left out, and nothing is written."""
-    check_outputs(
-        {"the scenario": tmp_path / "s.toml"}, {"--a": None, "--b": tmp_path / "new" / "b", "--c": None}
-    )
-    assert [path.name for path in tmp_path.rglob("*")] == ["new"]
-
-
 @pytest.mark.parametrize("way", ["plain", "dots", "link", "hard link", "linked folder"])
 def test_one_file_is_not_two(tmp_path: Path, way: str) -> None:
     """An output that is an input or another output, by whatever name, is refused, and both are named."""
@@ -177,10 +161,3 @@ def test_json_is_read_in_bounds(text: str, place: str, words: str) -> None:
     (fault,) = caught.value.faults
     assert fault.path == place
     assert words in fault.message
-
-
-def test_many_keys_are_no_trouble() -> None:
-    """The key that is given twice is found among very many in no time."""
-    pairs = ", ".join(f'"k{number}": 0' for number in range(100_000))
-    with pytest.raises(ScenarioError, match="k99999"):
-        parse_json(f'{{{pairs}, "k99999": 1}}')

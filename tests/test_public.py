@@ -37,14 +37,3 @@ def test_solve_is_the_function_whatever_was_imported_before(before: str) -> None
         f"import nullpose; {before} nullpose.solve; print(nullpose.solve.__name__, callable(nullpose.solve))"
     )
     assert _python(code) == "solve True"
-
-
-def test_an_unknown_name_is_an_attribute_error() -> None:
-    """A name that is not public is refused in Python's own way."""
-    with pytest.raises(AttributeError, match="best_pose"):
-        _ = nullpose.best_pose
-
-
-def test_version_is_the_installed_one() -> None:
-    """The version is that of the installed distribution."""
-    assert nullpose.__version__.split(".")[0].isdigit()

@@ -65,12 +65,3 @@ def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
     for words in ((file, "--format", "msi"), (HALF, "--frequency", "1e9"), (tmp_path / "none.csv",)):
         refused = run("antenna", *words)
         assert (refused.exit_code, refused.stdout) == (2, "")
-
-
-def test_a_figure_never_takes_the_place_of_the_file(run: Run, tmp_path: Path) -> None:
-    """The pattern is not overwritten, and only pictures are drawn."""
-    file = tmp_path / "pattern.png"
-    file.write_bytes(HALF.read_bytes())
-    assert run("antenna", file, "--figure", file).exit_code == 2
-    assert file.read_bytes() == HALF.read_bytes()
-    assert "ends in .png, .svg or .pdf" in run("antenna", HALF, "--figure", tmp_path / "x.gif").stderr

@@ -181,13 +181,6 @@ def test_a_fence_in_another_unit(run: Run, paper: str, settings: tuple[str, ...]
     refused(run("check", paper, *options), "airspace.geofence_m: ", why, "or the corners in metres")
 
 
-@pytest.mark.parametrize("sides_m", [(0.6, 0.2), (0.05, 0.55), (3.0, 3.0)])
-def test_a_small_fence_that_can_be_meant(run: Run, paper: str, sides_m: tuple[float, float]) -> None:
-    """A place to hover, half a metre across among points 50 m apart, is allowed."""
-    result = run("check", paper, "--set", _fence(*sides_m))
-    assert (result.exit_code, result.stderr) == (0, "")
-
-
 def test_a_study_without_its_extra(
     run: Run, paper: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

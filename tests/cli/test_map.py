@@ -1,7 +1,6 @@
 """The verb `map`: a table and a figure of what each place gives."""
 
 import csv
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,16 +20,6 @@ def test_files_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:
     assert max(float(row["min_sinr_db"]) for row in rows) == pytest.approx(0.9836997, abs=1e-3)
     assert "best 0.98369" in result.stdout
     assert result.stdout.count("Wrote ") == 3
-
-
-def test_json_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:
-    """The result as of `solve`, the map's best place, and the files."""
-    arguments = ("--scheme", "vertical", "--altitude", 9, "--cells", 21, "--fast", "--json")
-    answer = json.loads(run("map", paper, "--out", tmp_path, *arguments).stdout)
-    assert answer["scheme"] == "vertical"
-    assert answer["map"]["altitude_m"] == 9.0
-    assert answer["map"]["best"]["value"] < answer["objective"]["value_db"]
-    assert len(answer["files"]) == 3
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The verb `solve` with an array: it is solved, not passed over."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -28,14 +27,6 @@ def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
     ):
         assert words in result.stdout
     assert "antenna axis" not in result.stdout
-
-
-def test_json(run: Run, array: str) -> None:
-    """The JSON object is the array's."""
-    data = json.loads(run("solve", array, "--fast", "--json").stdout)
-    assert data["scheme"] == "array-digital"
-    assert (data["array"]["elements"], data["array"]["combining"]) == (4, "digital")
-    assert data["status"] == "best-found"
 
 
 @pytest.mark.parametrize(

@@ -67,15 +67,6 @@ def test_options_without_meaning_are_refused(run: Run, option: tuple[str, str]) 
     assert "--robust" in result.stderr
 
 
-def test_a_figure_of_both_poses(run: Run, tmp_path: Path) -> None:
-    """It is drawn, and the tables are printed as without it."""
-    path = tmp_path / "robust.svg"
-    result = run("solve", ROBUST, "--robust", "--fast", "--figure", path)
-    assert result.exit_code == 0
-    assert "guaranteed: smallest SINR" in result.stdout
-    assert b"<svg" in path.read_bytes()
-
-
 def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     """With an origin both poses are told on the Earth and in NED, in tables, in JSON and as GeoJSON."""
     earthly = tmp_path / "scene.toml"

@@ -47,24 +47,3 @@ def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
         (3.0, "vertical"),
     ]
     assert [Path(path).exists() for path in answer["files"]] == [True] * 4
-
-
-def test_proofs_can_be_limited_or_left_out(run: Run, paper: str, tmp_path: Path) -> None:
-    """The options of a proof hold for every row, and the file says what became of it."""
-    arguments = ("--from", 0.5, "--to", 2, "--points", 2, "--scheme", "optimum", "--json", "--out", tmp_path)
-    swept = ("sweep", paper, "--set", "jammers.M.power_w", *arguments)
-    for options, status, reason in (
-        ((), "certified", ""),
-        (("--gap", "0.1"), "certified", ""),
-        (("--fast",), "best-found", ""),
-        (("--node-limit", 5), "gap-not-reached", "the node limit of 5"),
-    ):
-        result = run(*swept, *options)
-        assert result.exit_code == 0
-        rows = json.loads(result.stdout)["rows"]
-        assert [(row["status"], row["reason"]) for row in rows] == [(status, reason)] * 2
-        with (tmp_path / "sweep.csv").open(encoding="utf-8", newline="") as file:
-            written = list(csv.DictReader(file))
-        assert [(row["status"], row["reason"]) for row in written] == [(status, reason)] * 2
-        assert all((row["upper_bound_db"] == "") is (status == "best-found") for row in written)
-        assert all(row["upper_bound"] is None or row["upper_bound"] >= row["min_sinr"] for row in rows)

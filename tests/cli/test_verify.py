@@ -1,6 +1,5 @@
 """The verb `verify`: what was proved, or why not, and the exit code that goes with it."""
 
-import gzip
 import json
 import subprocess
 from collections.abc import Callable
@@ -87,21 +86,6 @@ def test_a_rejected_certificate_names_the_leaf(run: Run, proof: Path) -> None:
     assert "leaf 7" in json.loads(answer.stdout)["message"]
 
 
-def test_a_missing_leaf_is_told(run: Run, proof: Path) -> None:
-    """Without one of its leaves the certificate is rejected for the hole."""
-
-    def drop(data: dict[str, Any]) -> None:
-        leaves = data["trees"][0]["leaves"]
-        for name, column in leaves.items():
-            if name != "mixes":
-                del column[3]
-
-    spoil(proof, drop)
-    result = run("verify", proof)
-    assert result.exit_code == 1
-    assert "the leaves do not cover the root" in result.stderr
-
-
 @pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b"\x1f\x8b\x08\x00", b'{"format": 1}'])
 def test_what_is_no_certificate_is_refused(content: bytes, run: Run, tmp_path: Path) -> None:
     """A malformed file is bad input: exit code 2, the file named on standard error."""
@@ -127,12 +111,3 @@ def test_malformed_parts_are_named(run: Run, proof: Path) -> None:
     result = run("verify", proof.with_name("none.json"))
     assert result.exit_code == 2
     assert "cannot be read" in result.stderr
-
-
-def test_a_process_of_its_own_needs_no_solver(process: Process, proof: Path) -> None:
-    """The whole program verifies a compressed certificate and says so in one line."""
-    packed = proof.with_name("proof.json.gz")
-    packed.write_bytes(gzip.compress(proof.read_bytes()))
-    done = process("verify", packed)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("proved: ")

@@ -80,16 +80,6 @@ def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
     assert "Of the vehicles compared with one dipole, it comes nearest" in nearest
 
 
-def test_arrays_that_do_not_suffice(plain: AirframeComparison) -> None:
-    """Where no array is enough, the best found is told with its size and its share."""
-    poor = plain
-    for size in (2, 4, 8):
-        poor = with_value(poor, f"array-{size}-digital", 0.1 * size * plain.omnidirectional.value)
-    (arrays,) = answer_lines(poor)[1:]
-    assert "with an array of 8 with digital combining reaches 0.97 dB less" in arrays
-    assert "compared with an array, it comes nearest" in arrays
-
-
 def test_nothing_to_give() -> None:
     """Where no vehicle gives anything there is nothing to compare, and it is said."""
     zero = compared("eavesdropper", certify=False)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import pytest
 from hypothesis import given, strategies as st
 
 from nullpose import Pose, Status
@@ -54,19 +53,3 @@ def test_rounding_is_outward(number: float, digits: int) -> None:
     """What is at most a number is never stated as less."""
     slack = 1e-8 * abs(number)
     assert float(rounded_up(number, digits)) >= number - slack
-
-
-@pytest.mark.parametrize(
-    ("number", "text"),
-    [
-        (9.99900001e-7, "1e-6"),
-        (3.21e-7, "3.3e-7"),
-        (1e-4, "1e-4"),
-        (0.25, "0.25"),
-        (6.15e4, "6.2e4"),
-        (0, "0"),
-    ],
-)
-def test_gaps_are_short(number: float, text: str) -> None:
-    """A gap is told by two digits, rounded up."""
-    assert rounded_up(number) == text

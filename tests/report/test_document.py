@@ -17,13 +17,6 @@ def test_texts_are_shown_as_they_are() -> None:
     assert console.file.getvalue().count(odd) >= 5
 
 
-def test_nothing_has_no_table() -> None:
-    """Without rows, or with rules alone, there is no table."""
-    assert table("title", []) is None
-    assert table("title", [{}, {}]) is None
-    assert beside({}) == []
-
-
 def test_what_is_compared_stands_side_by_side() -> None:
     """Each label has a row, each of those compared a column."""
     rows = beside({"one": {"x": "1", "y": "2"}, "two": {"y": "4", "x": "3"}})

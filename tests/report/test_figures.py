@@ -69,13 +69,6 @@ def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
     assert max(values) < high < max(values) + 10.0
 
 
-def test_nothing_proved_is_said_below_the_figure(paper: Scenario) -> None:
-    """Without proofs there are no bands, and the caption does not call anything certified."""
-    figure = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0], certify=False))
-    assert bands_of(figure) == []
-    assert figure.get_supxlabel() == "Best found by search, no upper bound."
-
-
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (-0.9, 0.4, 0.2)])
 def test_pattern_is_sine_squared(axis: tuple[float, float, float]) -> None:
     """In each direction the surface is as far from the drone as the gain there, and zero along the axis."""

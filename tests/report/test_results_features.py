@@ -61,16 +61,6 @@ def test_a_rate_has_no_decibels() -> None:
     assert "Zero interference; Maximum gain: not applicable" in text
 
 
-def test_jamming_in_a_downlink_is_noise() -> None:
-    """Jammers beside eavesdroppers raise the nodes' noise, which is shown, and get no table."""
-    data = example("eavesdropper").to_dict()
-    data["jammers"] = [{"name": "M", "position_m": [17.0, 40.0, 4.0], "power_w": 1.0}]
-    text = text_of(result_view(solve(Scenario.from_dict(data), certify=False)))
-    assert "noise (dBm)" in text
-    assert "Jammers" not in text
-    assert "part of the nodes' noise" in text
-
-
 def test_a_margin_is_called_so() -> None:
     """Margins decide which node binds, and stand beside SINR and requirement."""
     solution = solve(example("requirements"))
@@ -84,17 +74,6 @@ def test_a_margin_is_called_so() -> None:
     assert "SINR thermometer (dB)" in text
     assert "Vertical: missed: node " in text
     assert "node camera: 0.87 dB below" in text
-
-
-def test_errors_are_in_the_summary() -> None:
-    """Attitude and position errors, and each jammer's uncertainty."""
-    text = text_of(scenario_view(example("robust")))
-    assert "at most 2 deg" in text
-    assert "at most 0.5 m" in text
-    assert "uncertainty (m)" in text
-    data = example("robust").to_dict()
-    data["jammers"][0]["uncertainty_m"] = [3.0, 2.0, 1.0]
-    assert "3 x 2 x 1" in text_of(scenario_view(Scenario.from_dict(data)))
 
 
 def test_a_downlink_is_summarised_as_one() -> None:
