@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
 from nullpose.report.comparison import Comparison
@@ -21,17 +21,20 @@ from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result
 from nullpose.study import AirframeComparison, Field, SweepTable, value_map
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 __all__ = ["comparison", "heat_map", "plan", "pose", "sweep"]
 
 _CELLS = 121  # of a map, along its longer side
 
 
 @contextmanager
-def _axes(ax: Any, size_inch: tuple[float, float], *, solid: bool = False) -> Iterator[Any]:
-    """Yield axes to draw on: those given, in the caller's style, or new ones in the house's.
+def _axes(ax: Axes | None, size_inch: tuple[float, float], *, solid: bool = False) -> Iterator[Axes]:
+    """Yield axes to draw on: the caller's in the caller's style, or new ones in the house's.
 
     Raises:
-        UsageError: the axes given are flat where a scene in 3-D is drawn, or the other way round.
+        UsageError: the caller's axes are flat where a scene in 3-D is drawn, or the reverse.
     """
     if ax is not None:
         if (getattr(ax, "name", "") == "3d") != solid:
@@ -49,8 +52,8 @@ def _axes(ax: Any, size_inch: tuple[float, float], *, solid: bool = False) -> It
     matplotlib.interactive(shows_by_itself)
 
 
-def pose(result: Result, ax: Any = None) -> Any:
-    """Return axes with a scene in 3-D, the best pose and the antenna's pattern.
+def pose(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw a scene in 3-D, the best pose and the antenna's pattern.
 
     Args:
         result: of a dipole or another antenna; of an array see ``solve --figure``.
@@ -73,8 +76,8 @@ def pose(result: Result, ax: Any = None) -> Any:
     return axes
 
 
-def plan(result: Result, ax: Any = None) -> Any:
-    """Return axes with a scene from above: points, zones, the drone and its antenna's axis.
+def plan(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw a scene from above: points, zones, the drone and its antenna's axis.
 
     Args:
         result: of any kind.
@@ -93,8 +96,8 @@ def plan(result: Result, ax: Any = None) -> Any:
     return axes
 
 
-def heat_map(result: Result, ax: Any = None, *, field: Field | None = None) -> Any:
-    """Return axes with a map of what each place gives with the best axis there, and the scene on it.
+def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = None) -> Axes:
+    """Draw a map of what each place gives with the best axis there, and the scene on it.
 
     Args:
         result: of a solve.
@@ -115,8 +118,8 @@ def heat_map(result: Result, ax: Any = None, *, field: Field | None = None) -> A
     return axes
 
 
-def sweep(table: SweepTable, ax: Any = None, *, log: bool = False) -> Any:
-    """Return axes with a curve for each scheme of a sweep, and its bounds where they can be seen.
+def sweep(table: SweepTable, ax: Axes | None = None, *, log: bool = False) -> Axes:
+    """Draw a curve for each scheme of a sweep, and its bounds where they can be seen.
 
     Args:
         table: what the sweep found.
@@ -140,8 +143,8 @@ def sweep(table: SweepTable, ax: Any = None, *, log: bool = False) -> Any:
     return axes
 
 
-def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: Any = None) -> Any:
-    """Return axes with a bar for each case or vehicle, and a mark at its bound.
+def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: Axes | None = None) -> Axes:
+    """Draw a bar for each case or vehicle, and a mark at its bound.
 
     Args:
         found: by ``nullpose.compare`` or ``nullpose.compare_airframes``.

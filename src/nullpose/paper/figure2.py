@@ -26,22 +26,13 @@ _PRINTED_LABEL = (3.2, -2.95)
 
 
 def figure2_lines(table: SweepTable) -> list[str]:
-    """Return what is proved of the curves of Figure 2, in sentences.
-
-    Args:
-        table: a sweep of the paper's scenario over the jammer's power.
-    """
+    """Write how certain the curves of Figure 2 are, of a sweep over the jammer's power."""
     searched = ("Maximum gain, as printed", "best found by search, no upper bound")
     return [f"{capitalised(line)}." for line in grouped([*labelled_certainty(table), searched])]
 
 
 def draw_figure2(table: SweepTable, printed: Sequence[PrintedPoint]) -> Figure:
-    """Return the paper's Figure 2 with its four curves, and maximum gain as eq. 3.5 is printed.
-
-    Args:
-        table: a sweep of the paper's scenario over the jammer's power.
-        printed: the best by eq. 3.5 as printed, by ascending power.
-    """
+    """Draw the paper's Figure 2: the four curves of a sweep, and maximum gain as eq. 3.5 is printed."""
     from matplotlib.figure import Figure
 
     last_db = printed[-1].min_sinr_db

@@ -37,7 +37,7 @@ class PrintedPoint(NamedTuple):
 
 
 def sinr_as_printed(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
-    """Return eq. 3.5 to the letter.
+    """Evaluate eq. 3.5 to the letter.
 
     ``Gamma_i = (P_i / d_i^2) / (sum_j (1 - <d_j, d_1 x d_2>^2) J_j / d_j^2 + sigma^2)``. The gain towards the
     jammer comes out too large unless the nodes are seen at right angles; no antenna receives this.
@@ -67,7 +67,7 @@ def sinr_as_printed(scenario: Scenario, position_m: ArrayLike) -> FloatArray:
 
 
 def search_as_printed(scenario: Scenario, level: float, *, seed: int = 0) -> PrintedPoint:
-    """Return the position with the largest smaller ratio by eq. 3.5 as printed, searched by values.
+    """Search the position with the largest smaller ratio by eq. 3.5 as printed, by values.
 
     Args:
         scenario: the paper's scenario, in any airspace.

@@ -41,7 +41,7 @@ class Reproduction:
     files: tuple[Path, ...]
 
     def to_dict(self) -> dict[str, object]:
-        """Return what is proved of each curve as plain data."""
+        """Return the certainty of each curve as plain data."""
         return {
             "scenario": self.table.rows[0].scenario.name,
             "levels_are": "P_M/P, the jamming-to-transmission power ratio",
@@ -58,7 +58,7 @@ def reproduce(
     printed_levels: Sequence[float] = PRINTED_LEVELS,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> Reproduction:
-    """Return what the paper's section 4 looks like when computed, after writing it to a folder.
+    """Compute the paper's section 4 and write its figures and tables to a folder.
 
     Every point of the four curves comes with an upper bound.
 
@@ -89,9 +89,5 @@ def reproduce(
 
 
 def reproduction_view(reproduction: Reproduction) -> View:
-    """Return what is proved of Figure 2, as lines.
-
-    Args:
-        reproduction: what was found.
-    """
+    """Write how certain the curves of Figure 2 are."""
     return document("\n".join(f"Figure 2: {line}" for line in figure2_lines(reproduction.table)))

@@ -114,7 +114,7 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
 
     The least of them that suffices or the one that comes nearest, with one dipole and with an array.
     """
-    least, stated = comparison.least_sufficient, comparison.stated
+    least, mine = comparison.least_sufficient, comparison.stated
     if least is None:
         return ["Of the vehicles compared, none with one dipole gives every node a signal in this scene."]
     lesser = [result for result in comparison.dipoles if result is not comparison.omnidirectional]
@@ -122,9 +122,9 @@ def answer_lines(comparison: AirframeComparison) -> list[str]:
     if least is comparison.omnidirectional:
         only = "Of the vehicles compared with one dipole, only the omnidirectional one was found to suffice."
         lines.insert(0, f"{only} Another tilt or mount may: state it in [airframe] to compare it.")
-    if stated is not None and stated is not least:
-        verdict = "suffices too" if comparison.suffices(stated) else "does not suffice"
-        lines.append(f"{capitalised(stated.case.phrase)} {verdict}: it {_reach(comparison, stated)}.")
+    if mine is not None and mine is not least:
+        verdict = "suffices too" if comparison.suffices(mine) else "does not suffice"
+        lines.append(f"{capitalised(mine.case.phrase)} {verdict}: it {_reach(comparison, mine)}.")
     return lines
 
 

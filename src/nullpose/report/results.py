@@ -87,7 +87,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         return result_view(results[0])
     quantity = best.objective.quantity
     step = -(-len(results) // _SHOWN)
-    given = [result.details for result in results if isinstance(result.details, GivenDetails)]
+    details = [result.details for result in results if isinstance(result.details, GivenDetails)]
     shown, poses = results[::step], [result.pose for result in results[::step]]
     attitudes = [(pose.roll_rad, pose.pitch_rad, pose.yaw_rad) for pose in poses]
     columns: dict[str, list[str | None]] = {
@@ -99,7 +99,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         ],
         "worst node": [result.binding_node for result in shown],
         f"to bound ({quantity.unit})": [
-            "not allowed" if pose.not_allowed else cell(pose.below_bound, ".4f") for pose in given[::step]
+            "not allowed" if pose.not_allowed else cell(pose.below_bound, ".4f") for pose in details[::step]
         ],
     }
     value = with_unit(quantity.in_unit(best.objective.value), quantity)
@@ -108,7 +108,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         head(best.scenario.name, "Best pose", f"{quantity.smallest} {value}", lines),
         table("", rows(columns), left=["worst node"]),
         f"One row in {step} is shown." if step > 1 else None,
-        "Not allowed: --pose and --json tell why." if any(pose.not_allowed for pose in given) else None,
+        "Not allowed: --pose and --json tell why." if any(pose.not_allowed for pose in details) else None,
     )
 
 
