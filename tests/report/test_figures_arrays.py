@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nullpose import apply_overrides, load
-from nullpose.physics.array import element_positions
+from nullpose.physics.array import placed_elements
 from nullpose.report.figures.pattern import beam_surface_m
 from nullpose.report.figures.poses import draw_array
 from nullpose.solver import Result, solve
@@ -21,8 +21,7 @@ def solution() -> Result:
 
 
 def _elements(solution: Result) -> np.ndarray:
-    array = solution.scenario.array
-    return element_positions(array.elements, array.layout, array.spacing_wavelengths, solution.pose.yaw_rad)
+    return placed_elements(solution.scenario, solution.pose)
 
 
 def _drawn_elements(solution: Result) -> np.ndarray:

@@ -27,6 +27,7 @@ def test_values() -> None:
         ("elements", float("nan"), "got NaN"),
         ("layout", "ring", 'must be a layout: "linear" or "circular"'),
         ("layout", "Linear", 'did you mean "linear"?'),
+        ("combining", "analogue", "must be digital combining, which nullpose solves with a bound"),
         ("spacing_wavelengths", 0.0, "got 0.0, must be a length in wavelengths"),
         ("spacing_wavelengths", float("inf"), "half a wavelength is 0.5"),
     ],

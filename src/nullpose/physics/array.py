@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas
 from nullpose.physics.error_case import ErrorCase
+from nullpose.physics.pose import Pose
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -154,6 +155,33 @@ def digital_sinr(
     noise_w = scenario.receiver.noise_power_w
     clear = np.sum(np.abs(free) ** 2, axis=-1) / noise_w
     return np.asarray(clear + np.sum(np.abs(parts) ** 2 / (noise_w + jamming_w)[..., None, :], axis=-1))
+
+
+def array_ratios_under(scenario: Scenario, pose: Pose, case: ErrorCase) -> FloatArray:
+    """Return every node's margin when error cases come true and digital combining follows them.
+
+    Args:
+        scenario: nodes, jammers, receiver and array.
+        pose: the commanded pose.
+        case: where vehicle and jammers actually are, in one case or several.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    sinr = digital_sinr(scenario, pose.position_m, placed_elements(scenario, pose), case)
+    return np.asarray(sinr / scenario.node_required_sinr)
+
+
+def placed_elements(scenario: Scenario, pose: Pose) -> FloatArray:
+    """Return where the elements of a scenario's array are at a pose, as :func:`element_positions`.
+
+    Args:
+        scenario: one with an array.
+        pose: of the vehicle, whose yaw counts.
+    """
+    array = scenario.array
+    assert array is not None, "the caller asks"
+    return element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
 
 
 def digital_weights(

@@ -155,9 +155,9 @@ def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
 
 
 _Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
-
-
 _Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
+_DIGITAL = "digital combining, which nullpose solves with a bound (analogue combining has none)"
+_Combining = Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))]
 
 
 class Array(Section):
@@ -167,7 +167,11 @@ class Array(Section):
         elements: number of dipoles.
         layout: linear, evenly spaced on a horizontal line; or circular, evenly spaced on such a circle.
         spacing_wavelengths: distance between neighbours in wavelengths.
+        combining: digital.
     """
+
+    header: ClassVar[str] = "a table with elements, layout and spacing_wavelengths"
+    unstated: ClassVar[frozenset[str]] = frozenset({"combining"})
 
     elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
     layout: _Layout = Field(
@@ -176,4 +180,9 @@ class Array(Section):
     )
     spacing_wavelengths: Wavelengths = Field(
         description="Distance between neighbours, in wavelengths.", examples=[0.5]
+    )
+    combining: _Combining = Field(
+        default="digital",
+        description="How the elements are combined: digital, which need not be stated.",
+        examples=["digital"],
     )

@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
-from nullpose.objectives import USUAL, FloatArray, Quantity
-from nullpose.physics import ErrorCase, Pose
-from nullpose.physics.array import digital_sinr, digital_weights, element_positions
+from nullpose.objectives import USUAL, Quantity
+from nullpose.physics import Pose
+from nullpose.physics.array import ComplexArray, digital_sinr, digital_weights, placed_elements
 from nullpose.physics.evaluate import links_of
-from nullpose.scenario import Scenario
+from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_bound import ArrayBound, array_bound
 from nullpose.solver.array_search import ArrayHunt
 from nullpose.solver.array_task import ArrayTask
@@ -26,52 +25,33 @@ from nullpose.solver.result import Result, Stats, objective_of, status_of
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ArrayDetails:
-    """How an array's elements are placed, and the weights of its digital combining.
+    """An array and the weights of its digital combining.
 
     Args:
-        elements: number of dipoles.
-        layout: ``"linear"`` or ``"circular"``.
-        spacing_wavelengths: distance between neighbours, in wavelengths.
+        array: number, layout and spacing of the elements.
         weights: what each element is multiplied by for each node (its conjugate), of unit length:
             (n_nodes, K), complex, read-only.
     """
 
-    elements: int
-    layout: str
-    spacing_wavelengths: float
-    weights: NDArray[np.complex128]
+    array: Array
+    weights: ComplexArray
 
     def __post_init__(self) -> None:
-        weights = np.array(self.weights, dtype=complex)
-        weights.flags.writeable = False
-        object.__setattr__(self, "weights", weights)
+        self.weights.flags.writeable = False
 
     @property
     def label(self) -> str:
         """The name of the case for tables, as in "array of 4, digital"."""
-        return f"array of {self.elements}, digital"
+        return f"array of {self.array.elements}, digital"
 
-    def ratios_under(self, scenario: Scenario, pose: Pose, case: ErrorCase) -> FloatArray:
-        """Return every node's margin when error cases come true and digital combining follows them.
-
-        Args:
-            scenario: nodes, jammers and receiver.
-            pose: the commanded pose.
-            case: where vehicle and jammers actually are, in one case or several.
-        """
-        places = element_positions(self.elements, self.layout, self.spacing_wavelengths, pose.yaw_rad)
-        return digital_sinr(scenario, pose.position_m, places, case) / scenario.node_required_sinr
-
-    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+    def to_dict(self, objective: object) -> dict[str, Any]:
         """Return the array as plain data for JSON; a weight is [real part, imaginary part].
 
         Args:
-            objective: not needed here.
+            objective: of the result, which has it already.
         """
         weights = np.stack([self.weights.real, self.weights.imag], axis=-1).tolist()
-        names = ("elements", "layout", "spacing_wavelengths")
-        placed = {name: getattr(self, name) for name in names}
-        return {"array": placed | {"combining": "digital", "weights": weights}}
+        return {"array": self.array.to_dict() | {"combining": "digital", "weights": weights}}
 
 
 def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
@@ -101,7 +81,7 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     task = ArrayTask.of(scenario, array)
     hunt, bound = _solved(task, options)
     pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
-    places = element_positions(array.elements, array.layout, array.spacing_wavelengths, pose.yaw_rad)
+    places = placed_elements(scenario, pose)
     ratios = {"sinr": digital_sinr(scenario, pose.position_m, places)}
     if scenario.has_margins:
         ratios["margin"] = ratios["sinr"] / scenario.node_required_sinr
@@ -127,7 +107,7 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
         ),
         provenance=provenance(options.seed) | options.settings,
         reason=reason,
-        details=ArrayDetails(weights=digital_weights(scenario, pose.position_m, places), **array.to_dict()),
+        details=ArrayDetails(array=array, weights=digital_weights(scenario, pose.position_m, places)),
     )
 
 

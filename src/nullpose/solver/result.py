@@ -236,9 +236,7 @@ class Result:
         """The smallest values found when attitude, position or jammers are off, in milliseconds."""
         if self.error_sizes is None:
             return None
-        ratios = getattr(self.details, "ratios_under", None)  # of an antenna that is an array
-        under = None if ratios is None else partial(ratios, self.scenario, self.pose)
-        return sensitivity(self.scenario, self.pose, self.error_sizes, ratios=under)
+        return sensitivity(self.scenario, self.pose, self.error_sizes)
 
     @property
     def interrupted(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
@@ -13,12 +13,10 @@ import numpy as np
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import ErrorCase, ratios_under
+from nullpose.physics.array import array_ratios_under
 from nullpose.physics.pose import Pose
 from nullpose.physics.rotation import rotation_about
 from nullpose.scenario import Scenario
-
-Ratios = Callable[[ErrorCase], FloatArray]
-"""From a batch of error cases to the ratios of which the objective takes the smallest."""
 
 _KINDS = "attitude", "position", "jammers", "all"
 _SAMPLES = 64  # of each kind of error, over the whole set
@@ -115,9 +113,7 @@ class Sensitivity:
         return {"value": value, "value_db": value_db if math.isfinite(value_db) else None}
 
 
-def sensitivity(
-    scenario: Scenario, pose: Pose, sizes: ErrorSizes | None = None, *, ratios: Ratios | None = None
-) -> Sensitivity:
+def sensitivity(scenario: Scenario, pose: Pose, sizes: ErrorSizes | None = None) -> Sensitivity:
     """Search the worst value of a pose over errors of attitude, position and jammers.
 
     The errors are a ball of rotation vectors, a ball of positions and a disc for each jammer. Samples of
@@ -128,8 +124,6 @@ def sensitivity(
         scenario: nodes, jammers or eavesdroppers, receiver; its airspace and stated errors are not consulted.
         pose: the pose.
         sizes: the largest errors; 1 degree, 1 m and 10 m if left out.
-        ratios: from error cases to ratios, for an antenna that is an array;
-            :func:`nullpose.physics.ratios_under` otherwise.
 
     Example:
         >>> import nullpose
@@ -140,7 +134,7 @@ def sensitivity(
     """
     sizes = ErrorSizes() if sizes is None else sizes
     quantity = Quantity.of(scenario)
-    worst = _Search(scenario, pose, sizes, ratios).worst()
+    worst = _Search(scenario, pose, sizes).worst()
     values = (quantity.of_ratio(float(ratio)) for ratio in worst)
     names = ("nominal", *_KINDS)
     return Sensitivity(quantity=quantity, sizes=sizes, **dict(zip(names, values, strict=True)))
@@ -149,10 +143,12 @@ def sensitivity(
 class _Search:
     """Errors as points of a product of unit balls: a rotation vector, an offset, a disc for each jammer."""
 
-    def __init__(self, scenario: Scenario, pose: Pose, sizes: ErrorSizes, ratios: Ratios | None) -> None:
+    def __init__(self, scenario: Scenario, pose: Pose, sizes: ErrorSizes) -> None:
         self.sizes = sizes
         orientation = pose.orientation(scenario.antenna_record)
-        self.ratios_under = ratios or partial(ratios_under, scenario, pose.position_m, orientation)
+        self.ratios_under = partial(ratios_under, scenario, pose.position_m, orientation)
+        if scenario.array is not None:
+            self.ratios_under = partial(array_ratios_under, scenario, pose)
         point = scenario.objective_record.interferers.removesuffix("s")
         self.offsets, self.unmoved = f"{point}_offsets_m", ErrorCase.none(scenario)
         self.points_m = getattr(scenario, f"{point}_positions_m").reshape(-1, 3)

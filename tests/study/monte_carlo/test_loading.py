@@ -108,7 +108,7 @@ def test_analogue_combining_is_refused() -> None:
     case = {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5, "combining": "digital"}}
     assert StudyCase.from_dict(case).array.elements == 2
     case["array"]["combining"] = "analogue"
-    with pytest.raises(ScenarioError, match=r"array\.combining.*analogue combining is not there any more"):
+    with pytest.raises(ScenarioError, match=r"array\.combining.*digital combining, which nullpose solves"):
         StudyCase.from_dict(case)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.physics.array import element_positions
+from nullpose.physics.array import placed_elements
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.panels import draw_panels
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
@@ -120,12 +120,12 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
 
     There is a beam for each node; the one drawn is that of the node with the smallest value.
     """
-    array, quantity, yaw_rad = result.details, result.objective.quantity, result.pose.yaw_rad
-    assert isinstance(array, ArrayDetails), "the caller asks"
-    elements = element_positions(array.elements, array.layout, array.spacing_wavelengths, yaw_rad)
-    weights = array.weights[[link.node for link in result.links].index(result.binding_node)]
+    details, quantity, yaw_rad = result.details, result.objective.quantity, result.pose.yaw_rad
+    assert isinstance(details, ArrayDetails), "the caller asks"
+    elements = placed_elements(result.scenario, result.pose)
+    weights = details.weights[[link.node for link in result.links].index(result.binding_node)]
     azimuth_deg = ALONE.azimuth_deg
-    if array.layout == "linear":  # seen more from the side
+    if details.array.layout == "linear":  # seen more from the side
         places = (azimuth_deg, _ELSEWHERE_DEG)
         azimuth_deg = max(places, key=lambda deg: abs(math.sin(yaw_rad - math.radians(deg))))
     value = with_unit(quantity.in_unit(result.objective.value), quantity)

@@ -29,8 +29,6 @@ Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
 _SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
-_DIGITAL = "digital combining, which is what arrays have (analogue combining is not there any more)"
-_Combining = Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))]
 
 _BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_CASES} | {
     preset: Airframe.from_dict({"preset": preset})
@@ -68,27 +66,6 @@ class _Truth(Rule):
 
 
 _Bool = Annotated[bool, _Truth()]
-
-
-class CaseArray(Array):
-    """Several dipoles on a level vehicle.
-
-    Args:
-        combining: digital, which need not be stated.
-    """
-
-    header: ClassVar[str] = "a table such as { elements = 4, layout = ..., spacing_wavelengths = 0.5 }"
-
-    combining: _Combining = Field(
-        default="digital",
-        description="How the elements are combined: digital, which need not be stated.",
-        examples=["digital"],
-    )
-
-    @property
-    def array(self) -> Array:
-        """The array without its combining, as a scenario states it."""
-        return Array.from_dict({key: value for key, value in self.to_dict().items() if key != "combining"})
 
 
 class FixedPose(Section):
@@ -185,7 +162,7 @@ class StudyCase(Section):
         description='With mount_deg = "best": number of scenes that choose the mount. Left out: 64.',
         examples=[64],
     )
-    array: CaseArray | None = Field(
+    array: Array | None = Field(
         default=None,
         description="An array on a level vehicle: elements, layout and spacing_wavelengths.",
         examples=[{"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}],
@@ -252,7 +229,7 @@ class StudyCase(Section):
             scenario: a scene.
         """
         if self.array is not None:
-            return scenario.model_copy(update={"airframe": None, "array": self.array.array})
+            return scenario.model_copy(update={"airframe": None, "array": self.array})
         if self.airframe is not None:
             return scenario.model_copy(update={"airframe": self.airframe, "array": None})
         return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
