@@ -27,18 +27,6 @@ def _printed(header: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in after]
 
 
-def _joined() -> tuple[Table, Table]:
-    """Return the fields with arrays, and the same fields with dipoles."""
-    arrays, dipoles = _table("field-arrays"), _table("fields")
-    rows = {key: index for index, key in enumerate(_names(dipoles))}
-    order = [rows[key] for key in _names(arrays)]
-    return arrays, {key: column[order] for key, column in dipoles.items()}
-
-
-def _names(table: Table) -> list[tuple[float, ...]]:
-    return list(zip(table["nodes"], table["jammers"], table["index"], strict=True))
-
-
 def test_the_papers_scene() -> None:
     """Each vehicle at each jamming power, to the last digit."""
     table = _table("paper")
@@ -61,15 +49,3 @@ def test_the_fields() -> None:
         assert [float(cell.split()[0]) for cell in cells[2:]] == pytest.approx(
             [np.median(loss_db), loss_db.min()], abs=6e-3
         )
-
-
-def test_arrays_in_fields() -> None:
-    """Gains in dB, and how many fields of each kind there are."""
-    arrays, dipoles = _joined()
-    kinds = list(zip(arrays["nodes"], arrays["jammers"], strict=True))
-    assert {kinds.count(kind) for kind in kinds} == {len(kinds) // 6}
-    assert f"{len(kinds)} random fields, {len(kinds) // 6} of each kind" in " ".join(PAGE.split())
-    for jammers, size, *cells in _printed("jammers | elements"):
-        chosen = arrays["jammers"] == float(jammers)
-        gain_db = 10.0 * np.log10(arrays[f"array-{size}"][chosen] / dipoles["omnidirectional"][chosen])
-        assert cells == [f"{value:.1f}" for value in (gain_db.min(), np.median(gain_db), gain_db.max())]

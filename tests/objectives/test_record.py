@@ -17,10 +17,14 @@ def _scenario(name: str, rng: np.random.Generator) -> Scenario:
     data = {
         "objective": name,
         "airspace": {"altitude_m": [10.0, 60.0]},
-        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": float(rng.uniform(-3.0, 3.0))},
         "nodes": [{"position_m": spot(), "power_w": float(rng.uniform(0.5, 2.0))} for _ in range(3)],
         "jammers": [{"position_m": spot(), "power_w": float(rng.uniform(0.1, 9.0))} for _ in range(2)],
     }
+    if "nodes.weight" not in record.unused:
+        data["nodes"][0]["weight"], data["nodes"][1]["min_sinr_db"] = 2.5, -4.0
+    if "nodes.noise" not in record.unused:
+        data["nodes"][0]["noise_dbm"], data["nodes"][1]["jamming_dbm"] = -5.0, -3.0
     if record.transmits:
         data["transmitter"] = {"power_w": 1.0}
         data["eavesdroppers"] = [{"position_m": spot()} for _ in range(2)]

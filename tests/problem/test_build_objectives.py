@@ -7,10 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.errors import ScenarioError
-from nullpose.physics import Reception, objective_value
-from nullpose.physics.reception import node_values
 from nullpose.problem.build import build_family
-from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -46,48 +43,6 @@ def secret_scene(rng: np.random.Generator, ears: int) -> Scenario:
     return scene_of(rng, **tables)
 
 
-def ratios_at(family: Family, positions: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Returns the ratios (n, r) of a family at poses (n, 3) and (n, 3), by its definition."""
-    r = family.points_m - positions[:, None]
-    links = np.sum(np.cross(axes[:, None], r) ** 2, axis=-1) / np.sum(r**2, axis=-1) ** 2
-    entries = family.denominator_weight * links[:, family.denominator_point]
-    below = np.stack(
-        [
-            isotropic + np.sum(entries[:, start:end], axis=1)
-            for isotropic, start, end in zip(
-                family.denominator_isotropic,
-                family.denominator_start[:-1],
-                family.denominator_start[1:],
-                strict=True,
-            )
-        ],
-        axis=1,
-    )
-    above = family.numerator_isotropic + family.numerator_weight * links[:, family.numerator_point]
-    return above / below[:, family.denominator_of]
-
-
-def poses(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Returns positions above the field and unit axes."""
-    axes = rng.normal(size=(count, 3))
-    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
-    return rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0], (count, 3)), axes
-
-
-@given(seed=SEEDS, ears=st.integers(1, 4))
-def test_ratios_are_two_to_the_rate(seed: int, ears: int) -> None:
-    """The smallest ratio over a node's eavesdroppers is two to the power of its rate, where it has one."""
-    rng = np.random.default_rng(seed)
-    scene = secret_scene(rng, ears)
-    positions, axes = poses(rng, 20)
-    ratios = ratios_at(build_family(scene), positions, axes).reshape(20, 3, ears).min(axis=2)
-    np.testing.assert_allclose(
-        np.maximum(1.0, ratios), 2.0 ** node_values(Reception(scene, positions, axes)), rtol=1e-12
-    )
-    value = objective_value(scene, positions, axes)
-    np.testing.assert_allclose(np.maximum(1.0, ratios.min(axis=1)), 2.0**value, rtol=1e-12)
-
-
 @given(seed=SEEDS)
 def test_a_secrecy_family_keeps_clear_of_everyone(seed: int) -> None:
     """Nodes, eavesdroppers and jammers are its points; jammers are in no ratio but are kept clear of."""
@@ -99,22 +54,6 @@ def test_a_secrecy_family_keeps_clear_of_everyone(seed: int) -> None:
     np.testing.assert_array_equal(family.keep_out_points_m, family.points_m)
     assert set(family.numerator_point) == {0, 1, 2}
     np.testing.assert_array_equal(family.denominator_point, [3, 4])
-
-
-@given(seed=SEEDS)
-def test_ratios_are_margins(seed: int) -> None:
-    """With weights and requirements the ratios are the margins: SINR over either."""
-    rng = np.random.default_rng(seed)
-    wishes: list[dict] = [{"weight": rng.uniform(0.1, 10.0)}, {"min_sinr_db": rng.uniform(-9.0, 9.0)}, {}]
-    nodes = [
-        {"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} | wish
-        for at, wish in zip(rng.uniform(0.0, [100.0, 100.0, 5.0], (3, 3)).tolist(), wishes, strict=True)
-    ]
-    scene = scene_of(rng, nodes=nodes)
-    positions, axes = poses(rng, 20)
-    ratios = ratios_at(build_family(scene), positions, axes)
-    np.testing.assert_allclose(ratios, node_values(Reception(scene, positions, axes)), rtol=1e-12)
-    np.testing.assert_allclose(ratios.min(axis=1), objective_value(scene, positions, axes), rtol=1e-12)
 
 
 def test_a_fence_bounds_the_box(random_problem: Callable) -> None:
