@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from claims.claim import Claim
 from claims.claims import CLAIMS
 from claims.study import JammingStudy
 from nullpose.paper.figure2 import figure2_lines
 from nullpose.paper.reproduce import Reproduction
-from nullpose.report.document import markdown_table
+from nullpose.report.document import Row
 
 _BEYOND = (
     "A bound is on a value at one power: where the best pose lies, a level found by bisection, and powers "
@@ -44,7 +44,7 @@ def claims_page(reproduction: Reproduction, claims: tuple[Claim, ...]) -> str:
         {"claim": each.claim, "verdict": f"**{each.verdict}**", "where": _where(each)} for each in claims
     ]
     lines = [*figure2_lines(reproduction.table), _BEYOND]
-    blocks = [_HEAD, "\n".join(f"- {line}" for line in lines), markdown_table(verdicts)]
+    blocks = [_HEAD, "\n".join(f"- {line}" for line in lines), _table(verdicts)]
     blocks += [block for claim in claims for block in _section(claim)]
     return "\n\n".join(filter(None, blocks)) + "\n"
 
@@ -65,7 +65,7 @@ def _section(claim: Claim) -> Iterator[str]:
         {_words(name): _cell(value) for name, value in row.items()}
         for row in claim.evidence.get("levels", ())
     ]
-    yield markdown_table(levels) if levels else ""
+    yield _table(levels) if levels else ""
 
 
 def _where(claim: Claim) -> str:
@@ -90,3 +90,10 @@ def _cell(value: object) -> str:
     if isinstance(value, float):
         return "0" if abs(value) < 1e-12 else f"{value:.5g}"
     return str(value)
+
+
+def _table(rows: Sequence[Row]) -> str:
+    """Write rows as a table in Markdown; the first heading names the row."""
+    rule = ["---", *("---:" for _ in list(rows[0])[1:])]
+    lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose import solve
-from nullpose.report.numbers import MINUS, fixed
+from nullpose.report.numbers import MINUS
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, case_named
@@ -54,9 +54,9 @@ def test_it_says_what_the_panel_says(proved: Session) -> None:
     assert answer is not None
     html, bound = overlay_html(proved), answer.result.objective.upper_bound
     assert bound is not None
-    value = fixed(answer.shown_value, 4).replace("-", MINUS)
+    value = f"{answer.shown_value:z.4f}".replace("-", MINUS)
     assert f">{value} dB<" in html
-    assert f"upper bound {fixed(answer.result.objective.quantity.in_unit(bound), 4)} dB" in html
+    assert f"upper bound {answer.result.objective.quantity.in_unit(bound):z.4f} dB" in html
     assert "certified to 1e-6, verifiable" in html
     for name in ("data-value", "data-version"):
         (own,), panel = set(re.findall(f'{name}="([^"]+)"', html)), readout_html(proved)

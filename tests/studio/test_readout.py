@@ -9,7 +9,7 @@ import pytest
 
 from nullpose import load
 from nullpose.errors import ScenarioError
-from nullpose.report.numbers import MINUS, fixed
+from nullpose.report.numbers import MINUS
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import solve
@@ -72,7 +72,7 @@ def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenar
     assert 'data-np="difference"' not in readout_html(idle)
     known = answer_of(idle.version, robust, solve(unsure, robust=True, certify=False))
     idle.take(known)
-    difference = fixed(first.shown_value - known.shown_value, 2)
+    difference = f"{first.shown_value - known.shown_value:z.2f}"
     text = _Text(readout_html(idle)).text
     assert f"A over B: {difference} dB (B guaranteed, A without errors)" in text
     assert idle.close()
@@ -103,7 +103,7 @@ def test_a_margin_stands_beside_the_node_that_it_decides(idle: Session, paper: S
     text = _Text(readout_html(idle)).text
     for link in answer.result.links:
         assert link.margin_db is not None
-        assert f"margin {fixed(link.margin_db, 2)} dB".replace("-", MINUS) in text
+        assert f"margin {link.margin_db:z.2f} dB".replace("-", MINUS) in text
     assert idle.close()
 
 

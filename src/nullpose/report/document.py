@@ -83,13 +83,6 @@ def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> View | None:
     return table(title, [{"": name, " ": words} for name, words in rows if words is not None], left=(" ",))
 
 
-def markdown_table(rows: Sequence[Row]) -> str:
-    """Write rows as a table in Markdown; the first heading names the row."""
-    rule = ["---", *("---:" for _ in list(rows[0])[1:])]
-    lines = [list(rows[0]), rule, *(list(row.values()) for row in rows)]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
-
-
 def cell(value: float | None, digits: str) -> str | None:
     """Format a number as a cell, as in ``.6g``; None, which is no cell, for no number."""
     return None if value is None else format(value, digits)

@@ -115,52 +115,13 @@ def axis_label(path: str) -> str:
     return f"{label}  ({unit})" if unit else label
 
 
-# Of the reports of studies alone.
-
-
-def span(low: float, high: float, quantity: Quantity | None = None) -> str:
-    """Write an interval, as in "3.9 to 4.3"; an end that is not known is a dash."""
-    return f"{number(low, quantity)} to {number(high, quantity)}"
-
-
-def with_interval(value: float, low: float, high: float, quantity: Quantity | None = None) -> str:
-    """Write a number with its interval, as in "4.10 (3.90 to 4.30)"; without, if neither end is known."""
-    if math.isnan(low) and math.isnan(high):
-        return number(value, quantity)
-    return f"{number(value, quantity)} ({span(low, high, quantity)})"
-
-
 def percent(share: float, digits: int = 0) -> str:
     """Write a share in per cent, never rounded to all or nothing unless it is."""
     if math.isnan(share):
         return NONE
-    text = f"{100.0 * share:.{digits}f}"
-    step = 10.0**-digits
-    if float(text) == 100.0 and share < 1.0 - 1e-9:
-        text = f"{100.0 - step:.{digits}f}"
+    text, step = f"{100.0 * share:.{digits}f}", 10.0**-digits
     if float(text) == 0.0 and share > 1e-12:
         return f"under {step:g} %"
+    if float(text) == 100.0 and share < 1.0 - 1e-9:
+        text = f"{100.0 - step:.{digits}f}"
     return f"{text} %".replace("-", MINUS)
-
-
-def listed(parts: list[str]) -> str:
-    """Join parts with commas, and with "and" before the last."""
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
-
-
-def count_of(count: int, noun: str, nouns: str = "") -> str:
-    """Write a count with its noun, thousands apart, as in "2,000 scenes"."""
-    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
-
-
-def escaped(text: str) -> str:
-    """Escape a title, a name or a reason for a line of Markdown."""
-    return "".join(f"\\{letter}" if letter in "\\`*|<>[]#$" else letter for letter in " ".join(text.split()))
-
-
-def fixed(value: float, digits: int) -> str:
-    """Write a number with so many decimals, without the sign of a zero."""
-    return f"{value:z.{digits}f}"
-
-
-begun, short = capitalised, rounded_up

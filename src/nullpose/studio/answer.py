@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from nullpose.report.numbers import MINUS, fixed, short
+from nullpose.report.numbers import MINUS, rounded_up
 from nullpose.report.results import binding_nodes
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solver import Result, Status
@@ -67,7 +67,7 @@ def signed(number: float, digits: int = 2) -> str:
         number: any.
         digits: how many decimals.
     """
-    return fixed(number, digits).replace("-", MINUS).replace("inf", "\N{INFINITY}")
+    return f"{number:z.{digits}f}".replace("-", MINUS).replace("inf", "\N{INFINITY}")
 
 
 def answer_of(version: int, case: Case, result: Result) -> Answer:
@@ -119,7 +119,7 @@ def status_words(answer: Answer | None) -> str:
     result, gap = answer.result, answer.result.objective.relative_gap
     if result.status is Status.BEST_FOUND or gap is None:
         return "best so far"
-    reach = short(gap) if math.isfinite(gap) else "no gap that is finite"
+    reach = rounded_up(gap) if math.isfinite(gap) else "no gap that is finite"
     if result.status is Status.CERTIFIED:
         return f"certified to {reach}, {result.rigour.value}"
     return f"best so far, proved to {reach}"

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import Antenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import null_angle_rad
-from nullpose.report.numbers import fixed
 from nullpose.solver import Result
 from nullpose.studio.answer import Answer
 from nullpose.studio.colours import scale_colours
@@ -125,7 +124,7 @@ class Drone:
         nearest = min(angles, key=lambda name: angles[name], default="")
         put(
             parts["angle"],
-            text=f"null {fixed(angles[nearest], 1)}\u00b0 off {nearest}" if nearest else "null",
+            text=f"null {angles[nearest]:z.1f}\u00b0 off {nearest}" if nearest else "null",
         )
         parts["angle"].position = 0.35 * pose.position_m + 0.65 * ends[1]
 

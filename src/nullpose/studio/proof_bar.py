@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.report.numbers import fixed, short
+from nullpose.report.numbers import rounded_up
 from nullpose.studio.session import Session
 
 _COLOUR = "#d63384"  # a pink that stands out from all else in the page, light or dark
@@ -63,5 +63,5 @@ def gap_words(gap: float) -> str:
     if not math.isfinite(gap):
         return "not finite"
     if gap >= 1.0:
-        return f"{fixed(100.0 * gap, 0)} %"
-    return f"{short(100.0 * gap)} %" if gap > 1e-3 else short(gap)
+        return f"{100.0 * gap:z.0f} %"
+    return f"{rounded_up(100.0 * gap)} %" if gap > 1e-3 else rounded_up(gap)

@@ -137,7 +137,7 @@ def test_values_are_those_of_the_rows(make: Make, ladder: Ladder) -> None:
     report = report_study(folder)
     frame = read_study(folder).frame()
     np.testing.assert_allclose(report.summary.value.ravel(), 10.0 * np.log10(frame["value"].to_numpy(float)))
-    assert report.notes[0].startswith("Of 54 rows: 51 certified, 1 best found, 1 given and 1 failed;")
+    assert report.notes[0].startswith("Of 54 rows: 51 certified, 1 best found, 1 given, 1 failed;")
     gain = report.summary.row(1, report.summary.cases[2])["gain_median"]
     assert f"an omnidirectional vehicle gains {gain:.2f}" in report.answer
 

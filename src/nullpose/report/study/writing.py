@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,14 +14,7 @@ from nullpose.errors import UsageError
 from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
-from nullpose.report.numbers import (
-    count_of,
-    escaped,
-    listed,
-    percent,
-    with_interval,
-    with_unit,
-)
+from nullpose.report.numbers import NONE, number, percent, with_unit
 from nullpose.report.study.cases import ReportCase, point_words, report_cases, shown_points
 from nullpose.report.study.statistics import CONFIDENCE
 from nullpose.report.study.summary import STATUSES, Summary, gather, summarise
@@ -97,7 +91,7 @@ def report_study(
         values = gather(table, lambda batch: file.write(_csv(batch, header=file.tell() == 0)))
     summary = summarise(table, values, cases, requirement)
     figures = _write_figures(summary, prepare_folder(target / "figures"))
-    done = f"{summary.scenes:,} of {count_of(table.spec.n_scenes, 'scene')}"
+    done = f"{summary.scenes:,} of {table.spec.n_scenes:,} scenes"
     unfinished = "" if summary.is_complete else f"This study is not finished: {done} are done."
     page: dict[str, object] = {
         "title": table.spec.name or "A study without a name",
@@ -143,7 +137,7 @@ def _gain_sentence(summary: Summary) -> str:
     if not summary.scenes:
         return "No scene is solved yet."
     quantity, words = summary.quantity, point_words(summary.spec, -1)
-    scenes = f"Over {count_of(summary.scenes, 'scene')}{f' at {words}' if words else ''}"
+    scenes = f"Over {summary.scenes:,} scenes{f' at {words}' if words else ''}"
     leader = _leader(summary)
     if leader is None:
         case = summary.cases[0]
@@ -170,7 +164,7 @@ def _proof_sentence(summary: Summary) -> str:
         "; rows that are not certified count with the value of their pose, a lower bound of the optimum, "
         "failed rows not at all, and study.csv has the reasons"
     )
-    return f"Of {count_of(rows, 'row')}: {listed(kinds)}{'' if counts['certified'] == rows else rest}."
+    return f"Of {rows:,} rows: {', '.join(kinds)}{'' if counts['certified'] == rows else rest}."
 
 
 _GAINS = {"gain_median": "median gain", "shift_worst_tenth": "gain in the worst tenth"}
@@ -206,8 +200,15 @@ def _table(summary: Summary) -> list[dict[str, str]]:
 
 
 def _cell(summary: Summary, point: int, case: ReportCase, name: str) -> str:
-    row = summary.row(point, case)
-    return with_interval(row[name], row[f"{name}_low"], row[f"{name}_high"], summary.quantity)
+    """Write a number with its interval, as in "4.10 (3.90 to 4.30)"; without, if neither end is known."""
+    row, quantity = summary.row(point, case), summary.quantity
+    value, low, high = (number(row[key], quantity) for key in (name, f"{name}_low", f"{name}_high"))
+    return value if low == high == NONE else f"{value} ({low} to {high})"
+
+
+def _escaped(value: object) -> str:
+    """Escape a title, a name or a reason for a line of Markdown."""
+    return re.sub(r"([\\`*|<>\[\]#$])", r"\\\1", " ".join(str(value).split()))
 
 
 def _rendered(template: str, page: Mapping[str, object]) -> str:
@@ -218,7 +219,7 @@ def _rendered(template: str, page: Mapping[str, object]) -> str:
     environment = Environment(
         loader=PackageLoader("nullpose.report.study"),
         autoescape=is_html,
-        finalize=None if is_html else lambda value: escaped(str(value)),
+        finalize=None if is_html else _escaped,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
