@@ -33,6 +33,7 @@ _ROUNDS = 60  # of halving what is not excluded
 _MOST = (
     4  # pieces of a leaf at once, on average, and some thousand: a certificate that holds needs one or two
 )
+_NOTHING = 1e-300  # a share below it is outward rounding of zero
 _CHUNK = 4096
 _DEEPEST = 50  # halvings of a turn: with more its middle is no floating-point number
 _ANGLE_SLACK_RAD = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
@@ -151,7 +152,9 @@ def _negative(
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
-    side = np.argmax(np.where(np.all(np.isfinite(shares), axis=0), shares, sizes), axis=0)
+    # without a multiplier the leaf is out of the airframe's reach, whatever the sum
+    tells = np.all(np.isfinite(shares), axis=0) & np.any(shares > _NOTHING, axis=0)
+    side = np.argmax(np.where(tells, shares, sizes), axis=0)
     return bound < 0.0, np.where(side < 3, order[np.minimum(side, 2)], side)
 
 

@@ -22,7 +22,7 @@ from nullpose.solver.options import SolveOptions
 from nullpose.solver.rigour import bound_above
 from nullpose.solver.worker_pool import Kernel, WorkerPool, processors
 
-_SMALLEST = 2.0**-60  # side of a leaf in a certificate, of the root's
+_SMALLEST = 0.99 * 2.0**-50  # of a box or a cell over the root: the verifier takes 50 halvings
 _AT_ONCE = 5_000  # nodes that take as long as a thorough search
 _DIRECT_NODES = 50_000  # of a try with axes split early; most problems of the paper's size need hundreds
 _ALONE_NODES = 20_000  # of them on one thread: to start more takes longer than most proofs
@@ -239,7 +239,12 @@ class _Run:
     def _has_certificate(self, side_m: FloatArray) -> bool:
         """Return whether a certificate can hold the leaves: so many, and halved so often."""
         halves_m = self.leaves[:, self.node.HALF : self.node.LEVEL]
-        return len(self.leaves) <= MOST_LEAVES and bool(np.all(halves_m >= _SMALLEST * side_m))
+        cells = self.leaves[self.leaves[:, self.node.FACE] >= 0.0, self.node.CELL : self.node.SIDE]
+        return (
+            len(self.leaves) <= MOST_LEAVES
+            and bool(np.all(halves_m >= _SMALLEST * side_m))
+            and bool(np.all(cells[:, 1::2] - cells[:, ::2] >= 2.0 * _SMALLEST))
+        )
 
     def result(self, reason: str) -> Proof:
         """Return what the run has come to."""
