@@ -53,7 +53,7 @@ def test_frames_have_the_numbers() -> None:
     assert RESULT.frame()["sinr_db"].tolist() == [link.sinr_db for link in RESULT.links]
     expected = [one.objective.value_db for one in CASES]
     assert CASES.frame()["min_sinr_db"].tolist() == pytest.approx(expected)
-    assert VEHICLES.frame()["vehicle"].tolist() == [one.case.label for one in VEHICLES.results]
+    assert VEHICLES.frame()["case"].tolist() == [row.case.label for row in VEHICLES.rows]
     frame = TABLE.frame()
     assert frame["jammers.M1.power_w"].tolist() == [row.value for row in TABLE.rows]
     assert frame["min_sinr_db"].tolist() == [row.min_sinr_db for row in TABLE.rows]

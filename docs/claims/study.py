@@ -11,7 +11,7 @@ from nullpose.paper.reproduce import Reproduction
 from nullpose.paper.scene import JAMMER_POWER
 from nullpose.report.numbers import rounded_up
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.study import SweepRow, sweep
+from nullpose.study import ResultRow, sweep
 
 RATIO = "jamming_to_transmission_ratio"
 """Name of P_M/P in evidence."""
@@ -46,10 +46,10 @@ class JammingStudy:
     def __init__(self, reproduction: Reproduction) -> None:
         self.table, self.printed = reproduction.table, reproduction.printed
         self.scenario, self.levels = self.table.rows[0].scenario, self.table.values
-        self.used: dict[tuple[str, float], SweepRow] = {}
+        self.used: dict[tuple[str, float], ResultRow] = {}
         self._rows = {(row.scheme, row.value): row for row in self.table.rows}
 
-    def at(self, scheme: str, level: float) -> SweepRow:
+    def at(self, scheme: str, level: float) -> ResultRow:
         """Return the pose of a scheme at a jamming level, solved now if it has not been yet.
 
         Args:
@@ -58,7 +58,7 @@ class JammingStudy:
         """
         return self._row(scheme, float(level), scheme, self.scenario)
 
-    def curve(self, scheme: str) -> tuple[SweepRow, ...]:
+    def curve(self, scheme: str) -> tuple[ResultRow, ...]:
         """Return a scheme's rows at the swept levels.
 
         Args:
@@ -66,7 +66,7 @@ class JammingStudy:
         """
         return tuple(self.at(scheme, row.value) for row in self.table.of(scheme))
 
-    def equidistant_at(self, scheme: str, level: float) -> SweepRow:
+    def equidistant_at(self, scheme: str, level: float) -> ResultRow:
         """Return a scheme's best pose among those equally far from both nodes.
 
         The paper's nodes lie north of one another, so that these are the positions of one northing: an
@@ -99,7 +99,7 @@ class JammingStudy:
         """
         return search_as_printed(self._plane, level)
 
-    def _row(self, name: str, level: float, scheme: str, scenario: Scenario) -> SweepRow:
+    def _row(self, name: str, level: float, scheme: str, scenario: Scenario) -> ResultRow:
         row = self._rows.get((name, level))
         if row is None:
             row = sweep(scenario, JAMMER_POWER, [level], schemes=[scheme]).rows[0]
@@ -144,7 +144,7 @@ class JammingStudy:
         return self.holds_up_to(condition, self.levels[::-1])
 
 
-def bound_db(row: SweepRow) -> float:
+def bound_db(row: ResultRow) -> float:
     """Return the upper bound of a row, dB; infinite where nothing is proved.
 
     Args:
@@ -153,7 +153,7 @@ def bound_db(row: SweepRow) -> float:
     return math.inf if row.upper_bound_db is None else row.upper_bound_db
 
 
-def lead_of(row: SweepRow, other: SweepRow) -> Lead:
+def lead_of(row: ResultRow, other: ResultRow) -> Lead:
     """Return how far one row's smallest SINR is above another's.
 
     Args:

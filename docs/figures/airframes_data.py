@@ -19,7 +19,7 @@ import nullpose
 from nullpose.physics.types import FloatArray
 from nullpose.solver import solve
 from nullpose.solver.robust import guarantee
-from nullpose.study import AIRFRAME_CASES, AirframeCase, spaced
+from nullpose.study import AIRFRAME_CASES, Case, spaced
 
 FOLDER = Path(__file__).parent
 PAPER = nullpose.load(FOLDER.parents[1] / "examples" / "paper.toml")
@@ -54,7 +54,7 @@ def at(level: float) -> nullpose.Scenario:
     return nullpose.apply_overrides(PAPER, [f"{POWER}={level!r}"])
 
 
-def certified(case: AirframeCase, scenario: nullpose.Scenario, gap: float = 1e-6) -> nullpose.Result:
+def certified(case: Case, scenario: nullpose.Scenario, gap: float = 1e-6) -> nullpose.Result:
     """Return what a vehicle reaches, certified.
 
     Args:
@@ -94,7 +94,7 @@ def tilt_rows() -> Iterator[Row]:
         for mount_deg in MOUNTS_DEG:
             for tilt_deg in TILTS_DEG:
                 airframe = nullpose.Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
-                case = AirframeCase(name="tilt", label="", phrase="", airframe=airframe)
+                case = Case(name="tilt", label="", phrase="", airframe=airframe)
                 yield [level, mount_deg, tilt_deg, certified(case, at(level), TILT_GAP).objective.value]
 
 

@@ -55,8 +55,7 @@ from .studio.show import (
     show as show,
 )
 from .study import (
-    AirframeComparison as AirframeComparison,
-    SweepTable as SweepTable,
+    ResultTable as ResultTable,
     compare_airframes as compare_airframes,
     evaluate_against as evaluate_against,
     poses_from_csv as poses_from_csv,

@@ -19,7 +19,7 @@ from nullpose.report.figures.scene import ALONE, Stage, draw_panel
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result
-from nullpose.study import AirframeComparison, Field, SweepTable, value_map
+from nullpose.study import Field, ResultTable, value_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,7 +118,7 @@ def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = No
     return axes
 
 
-def sweep(table: SweepTable, ax: Axes | None = None, *, log: bool = False) -> Axes:
+def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False) -> Axes:
     """Draw a curve for each scheme of a sweep, and its bounds where they can be seen.
 
     Args:
@@ -143,7 +143,7 @@ def sweep(table: SweepTable, ax: Axes | None = None, *, log: bool = False) -> Ax
     return axes
 
 
-def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: Axes | None = None) -> Axes:
+def comparison(found: Comparison | ResultTable | Sequence[Result], ax: Axes | None = None) -> Axes:
     """Draw a bar for each case or vehicle, and a mark at its bound.
 
     Args:
@@ -160,7 +160,7 @@ def comparison(found: Comparison | AirframeComparison | Sequence[Result], ax: Ax
         4
     """
     with _axes(ax, (7.0, 3.6)) as axes:
-        if isinstance(found, AirframeComparison):
+        if isinstance(found, ResultTable):
             draw_airframe_bars(axes, found)
         else:
             draw_cases(axes, found.solutions if isinstance(found, Comparison) else found)

@@ -16,7 +16,7 @@ from nullpose.paper.figure2 import draw_figure2
 from nullpose.paper.reproduce import Reproduction
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES
-from nullpose.study import SweepTable
+from nullpose.study import ResultTable
 
 PRINTED_COLOUR = "#9a6060"
 
@@ -63,7 +63,7 @@ def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
     assert "as printed: best found by search" in figure.get_supxlabel()
     first, *others = reproduction.table.rows
     doubtful = replace(first, status="gap-not-reached")
-    figure = draw_figure2(SweepTable(reproduction.table.path, (doubtful, *others)), reproduction.printed)
+    figure = draw_figure2(ResultTable(reproduction.table.path, (doubtful, *others)), reproduction.printed)
     assert "not reached at 1 of 19 points" in figure.get_supxlabel()
 
 

@@ -8,59 +8,55 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from nullpose import Airframe, AirframeComparison, Status, compare_airframes, load
+from nullpose import Airframe, ResultTable, Status, compare_airframes, load
 from nullpose.objectives import Quantity
 from nullpose.report.airframes import airframes_view, answer_lines, proof_lines
 from nullpose.report.figures.bars import draw_airframes
 from nullpose.scenario import apply_overrides
+from nullpose.study.vehicles import difference, dipoles, omnidirectional
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @cache
-def compared(name: str, *overrides: str, **options: object) -> AirframeComparison:
+def compared(name: str, *overrides: str, **options: object) -> ResultTable:
     """Returns an example's vehicles compared."""
     return compare_airframes(apply_overrides(load(EXAMPLES / f"{name}.toml"), list(overrides)), **options)
 
 
-def text_of(comparison: AirframeComparison, width: int = 200) -> str:
+def text_of(comparison: ResultTable, width: int = 200) -> str:
     """Returns what a terminal without colours shows."""
     console = Console(width=width, file=io.StringIO(), highlight=False)
     console.print(airframes_view(comparison))
     return console.file.getvalue()
 
 
-def with_value(comparison: AirframeComparison, name: str, value: float) -> AirframeComparison:
+def with_value(comparison: ResultTable, name: str, value: float) -> ResultTable:
     """Returns the comparison with one vehicle's value replaced."""
-    results = tuple(
-        replace(
-            result,
-            result=replace(
-                result.result, objective=replace(result.objective, value=value, upper_bound=value)
-            ),
-        )
-        if result.case.name == name
-        else result
-        for result in comparison.results
+    rows = tuple(
+        replace(row, objective=replace(row.objective, value=value, upper_bound=value))
+        if row.name == name
+        else row
+        for row in comparison.rows
     )
-    return replace(comparison, results=results)
+    return replace(comparison, rows=rows)
 
 
 @pytest.fixture(scope="module")
-def plain() -> AirframeComparison:
+def plain() -> ResultTable:
     """The paper's scene at a jamming power of 100."""
     return compared("paper", "jammers.M.power_w=100")
 
 
 @pytest.fixture(scope="module")
-def robust() -> AirframeComparison:
+def robust() -> ResultTable:
     """The example with errors, with a vehicle of its own."""
     scenario = load(EXAMPLES / "robust.toml")
     own = Airframe(tilt_max_deg=5.0, mount_deg=90.0)
     return compare_airframes(scenario.model_copy(update={"airframe": own}))
 
 
-def test_the_example_of_the_question(plain: AirframeComparison) -> None:
+def test_the_example_of_the_question(plain: ResultTable) -> None:
     """At strong jamming ten degrees with a horizontal dipole are the least compared that suffices."""
     first, arrays = answer_lines(plain)
     assert first == (
@@ -71,9 +67,11 @@ def test_the_example_of_the_question(plain: AirframeComparison) -> None:
     assert "compared with an array, it is the simplest" in arrays
 
 
-def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
+def test_no_lesser_vehicle_suffices(plain: ResultTable) -> None:
     """Were the tilted ones worse, it would take the omnidirectional one; who comes nearest is told."""
-    worse = with_value(with_value(plain, "tilt-10", 0.5), "tilt-30", 0.9 * plain.omnidirectional.value)
+    worse = with_value(
+        with_value(plain, "tilt-10", 0.5), "tilt-30", 0.9 * omnidirectional(plain).objective.value
+    )
     first, nearest, *_ = answer_lines(worse)
     assert first.startswith("Of the vehicles compared with one dipole, only the omnidirectional one")
     assert nearest.startswith("A 30 degree tilt with a horizontal dipole reaches 0.46 dB less")
@@ -83,23 +81,23 @@ def test_no_lesser_vehicle_suffices(plain: AirframeComparison) -> None:
 def test_nothing_to_give() -> None:
     """Where no vehicle gives anything there is nothing to compare, and it is said."""
     zero = compared("eavesdropper", certify=False)
-    for result in zero.results:
-        zero = with_value(zero, result.case.name, 0.0)
+    for result in zero.rows:
+        zero = with_value(zero, result.name, 0.0)
     (line,) = answer_lines(zero)
     assert line == "Of the vehicles compared, none with one dipole gives every node a signal in this scene."
     assert "nan" not in text_of(zero)
     draw_airframes(zero)
 
 
-def test_what_is_proved_is_told(plain: AirframeComparison) -> None:
+def test_what_is_proved_is_told(plain: ResultTable) -> None:
     """Certified values, and nothing where nothing was proved."""
     lines = proof_lines(plain)
     assert any(line == "certified: optimal within the requested gap" for line in lines)
-    gap = max(one.objective.relative_gap for one in plain.results)
+    gap = max(one.objective.relative_gap for one in plain.rows)
     (told,) = (float(line.split()[-1][:-1]) for line in lines if "widest relative gap" in line)
     assert gap <= told <= 1.1 * gap
     fast = compared("paper", certify=False)
-    assert {result.status for result in fast.dipoles} == {Status.BEST_FOUND}
+    assert {result.status for result in dipoles(fast)} == {Status.BEST_FOUND}
     assert "certified" not in " ".join(proof_lines(fast))
     short = compared("eavesdropper", node_limit=5)
     text = text_of(short)
@@ -115,7 +113,7 @@ def test_tables_fit_a_terminal(name: str) -> None:
     assert max(map(len, text.splitlines())) <= 80
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
     assert "nan" not in text
-    for result in comparison.results:
+    for result in comparison.rows:
         assert result.case.label in text
 
 
@@ -127,16 +125,16 @@ def test_no_answer_is_a_share(name: str) -> None:
     lines = answer_lines(comparison)
     assert not any("%" in line.replace("within 1 %", "") for line in lines)
     assert any(f"{quantity.unit} less than the omnidirectional vehicle" in line for line in lines)
-    for case, result in zip(comparison.to_dict()["cases"], comparison.results, strict=True):
-        values = [quantity.in_unit(each.value) for each in (result, comparison.omnidirectional)]
-        assert case["difference_from_omnidirectional"] == pytest.approx(values[0] - values[1])
+    for row in comparison.rows:
+        values = [quantity.in_unit(each.objective.value) for each in (row, omnidirectional(comparison))]
+        assert difference(comparison, row) == pytest.approx(values[0] - values[1])
 
 
-def test_figure_has_a_bar_for_each_vehicle(robust: AirframeComparison) -> None:
+def test_figure_has_a_bar_for_each_vehicle(robust: ResultTable) -> None:
     """A row for each vehicle by its name, the answer below, guarantees in the legend, no overlaps."""
     figure = draw_airframes(robust)
     (axes,) = figure.axes
-    assert [text.get_text() for text in axes.get_yticklabels()] == [one.case.label for one in robust.results]
+    assert [text.get_text() for text in axes.get_yticklabels()] == [one.case.label for one in robust.rows]
     assert "0.03 dB less" in figure.get_supxlabel()
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert set(legend) == {"upper bound", "guaranteed, robust pose", "guaranteed, pose shown"}

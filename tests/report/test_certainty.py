@@ -8,11 +8,11 @@ from nullpose import Pose, Status
 from nullpose.report.certainty import Certainty, certainty_lines
 from nullpose.report.numbers import rounded_up
 from nullpose.solver import Objective
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
 VALUE = Objective(name="min_sinr", value=1.0, value_db=0.0)
-SEARCHED = SweepRow(
+SEARCHED = ResultRow(
     value=1.0,
     scenario=None,
     scheme="optimum",
@@ -37,15 +37,15 @@ def test_statuses_are_counted() -> None:
 
 def test_lines_name_the_curves_that_are_not_proved() -> None:
     """One line when all is proved; otherwise each curve is named with what is proved of it."""
-    (line,) = certainty_lines(SweepTable("x", (PROVED,)))
+    (line,) = certainty_lines(ResultTable("x", (PROVED,)))
     assert line.startswith("Each point is certified optimal within 9e-7 (relative)")
     vertical, gain = replace(OPEN, scheme="vertical"), replace(SEARCHED, scheme="maximum-gain")
-    lines = certainty_lines(SweepTable("x", (PROVED, vertical, gain)))
+    lines = certainty_lines(ResultTable("x", (PROVED, vertical, gain)))
     assert lines[0].startswith("Optimum: each point is certified optimal within 9e-7")
     assert "Vertical: all bounds are valid" in lines[1]
     assert "not reached at 1 of 1 points; relative gap up to 0.25" in lines[1]
     assert lines[2] == "Maximum gain: best found by search, no upper bound"
-    assert certainty_lines(SweepTable("x", (SEARCHED,))) == ["Best found by search, no upper bound"]
+    assert certainty_lines(ResultTable("x", (SEARCHED,))) == ["Best found by search, no upper bound"]
 
 
 @given(number=st.floats(-1e12, 1e12).filter(lambda x: x == 0.0 or abs(x) > 1e-12), digits=st.integers(1, 6))

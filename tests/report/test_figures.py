@@ -13,7 +13,7 @@ from nullpose.report.figures.pattern import pattern_surface_m
 from nullpose.report.figures.style import CURVES
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.solver import Scheme
-from nullpose.study import SweepTable, sweep
+from nullpose.study import ResultTable, sweep
 
 
 def test_curves_differ_in_more_than_colour() -> None:
@@ -63,7 +63,7 @@ def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
         replace(row, objective=replace(row.objective, upper_bound=1e6, relative_gap=1e6))
         for row in table.rows
     ]
-    low, high = draw_sweep(SweepTable(table.path, tuple(rows))).axes[0].get_ylim()
+    low, high = draw_sweep(ResultTable(table.path, tuple(rows))).axes[0].get_ylim()
     values = [row.min_sinr_db for row in rows]
     assert low < min(values)
     assert max(values) < high < max(values) + 10.0

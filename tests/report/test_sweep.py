@@ -7,10 +7,10 @@ from rich.console import Console
 
 from nullpose import Scenario
 from nullpose.report.sweep import sweep_view, write_sweep
-from nullpose.study import SweepTable, spaced, sweep
+from nullpose.study import ResultTable, spaced, sweep
 
 
-def shown(table: SweepTable) -> str:
+def shown(table: ResultTable) -> str:
     """Returns what a terminal shows of a sweep."""
     console = Console(width=200, file=io.StringIO())
     console.print(sweep_view(table))
@@ -26,7 +26,7 @@ def test_what_is_proved_is_shown(paper: Scenario) -> None:
     assert "no upper bound" in shown(sweep(paper, power, values, certify=False))
     proved = sweep(paper, power, values, schemes=["vertical"])
     short = sweep(paper, power, values, schemes=["optimum"], node_limit=5)
-    text = shown(SweepTable(power, (*proved.rows, *short.rows)))
+    text = shown(ResultTable(power, (*proved.rows, *short.rows)))
     assert text.count("upper bound") == 2
     assert "Vertical: each point is certified optimal within 1e-6" in text
     assert "Optimum: all bounds are valid, but the requested gap is not reached at 2 of 2" in text

@@ -10,15 +10,15 @@ import pytest
 
 from nullpose import Link, Pose, Status
 from nullpose.solver import Objective
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 
-def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRow:
+def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> ResultRow:
     """Returns a row with an easy pose."""
     ratio = 10.0 ** (db / 10.0)
     pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
     objective = Objective(name="min_sinr", value=ratio, value_db=db)
-    return SweepRow(
+    return ResultRow(
         value=value,
         scenario=None,
         scheme=scheme,
@@ -32,14 +32,14 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> SweepRo
     )
 
 
-def proved(row: SweepRow, relative_gap: float) -> SweepRow:
+def proved(row: ResultRow, relative_gap: float) -> ResultRow:
     """Returns the row with a bound."""
     bound = row.min_sinr * (1.0 + relative_gap)
     objective = replace(row.objective, upper_bound=bound, relative_gap=relative_gap)
     return replace(row, status=Status.CERTIFIED, objective=objective)
 
 
-TABLE = SweepTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))
+TABLE = ResultTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for s in ("optimum", "vertical")))
 
 
 def test_values_and_schemes_come_once_in_order() -> None:
@@ -51,13 +51,13 @@ def test_values_and_schemes_come_once_in_order() -> None:
 
 def test_unknown_scheme() -> None:
     """Asking for a scheme that was not swept names those that were."""
-    with pytest.raises(KeyError, match="optimum, vertical"):
+    with pytest.raises(KeyError, match=r"no case .*optimum, vertical"):
         TABLE.of("maximum-gain")
 
 
 def test_csv_reads_back_to_the_last_digit(tmp_path: Path) -> None:
     """Numbers survive the file, angles in degrees, names with commas and notes quoted."""
-    table = SweepTable("receiver.noise_w", (row(1 / 3, "optimum", db=-1 / 7, node='gate, "north"'),))
+    table = ResultTable("receiver.noise_w", (row(1 / 3, "optimum", db=-1 / 7, node='gate, "north"'),))
     path = table.write_csv(tmp_path / "t.csv")
     with path.open(encoding="utf-8", newline="") as file:
         (read,) = csv.DictReader(file)
@@ -72,8 +72,8 @@ def test_csv_reads_back_to_the_last_digit(tmp_path: Path) -> None:
 
 def test_plain_data() -> None:
     """The table as plain data keeps rows, poses and what was left out."""
-    data = SweepTable("receiver.noise_w", TABLE.rows[:1], {"zero-interference": "no jammer"}).to_dict()
-    assert data["left_out"] == [{"scheme": "zero-interference", "reason": "no jammer"}]
+    data = ResultTable("receiver.noise_w", TABLE.rows[:1], {"zero-interference": "no jammer"}).to_dict()
+    assert data["left_out"] == [{"case": "zero-interference", "reason": "no jammer"}]
     assert data["rows"][0]["pose"]["position_m"] == [1.0, 2.0, 8.0]
     assert data["rows"][0]["links"] == [{"node": "S1", "sinr": 1.0, "sinr_db": 0.0}]
 
@@ -81,7 +81,7 @@ def test_plain_data() -> None:
 def test_bounds_are_columns(tmp_path: Path) -> None:
     """A proved row has its bound in dB and its gap; a row of which nothing is proved has empty cells."""
     open_row = replace(row(2.0, "vertical"), reason="the time limit, 60 s")
-    table = SweepTable("receiver.noise_w", (proved(row(1.0, "optimum", db=1.0), 1e-6), open_row))
+    table = ResultTable("receiver.noise_w", (proved(row(1.0, "optimum", db=1.0), 1e-6), open_row))
     path = table.write_csv(tmp_path / "t.csv")
     with path.open(encoding="utf-8", newline="") as file:
         first, second = csv.DictReader(file)

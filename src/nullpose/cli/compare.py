@@ -33,7 +33,7 @@ def compare(
     prepare_outputs(scene, figure=figure, width=width)
     from nullpose.report.airframes import airframes_view, answer_lines
     from nullpose.report.comparison import compare_all, comparison_view
-    from nullpose.study import compare_airframes
+    from nullpose.study.vehicles import compare_airframes, verdict
 
     solver: Any = compare_airframes if airframes else compare_all
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
@@ -45,5 +45,5 @@ def compare(
         drawing = draw_airframes(found, width) if airframes else draw_comparison(found, width)
         write_figure_file(drawing, figure)
     view: Any = airframes_view if airframes else comparison_view
-    answer: dict[str, Any] = {"answer": answer_lines(found)} if airframes else {}
+    answer: dict[str, Any] = {"answer": answer_lines(found), **verdict(found)} if airframes else {}
     tell(found, view, json_output, files=[] if figure is None else [figure], **answer)

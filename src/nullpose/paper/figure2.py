@@ -12,7 +12,7 @@ from nullpose.report.document import grouped
 from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_style
 from nullpose.report.figures.sweep import draw_caption, draw_curves
 from nullpose.report.numbers import MINUS, capitalised
-from nullpose.study import SweepTable
+from nullpose.study import ResultTable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,13 +25,13 @@ _PRINTED = Curve("maximum gain, eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)),
 _PRINTED_LABEL = (3.2, -2.95)
 
 
-def figure2_lines(table: SweepTable) -> list[str]:
+def figure2_lines(table: ResultTable) -> list[str]:
     """Write how certain the curves of Figure 2 are, of a sweep over the jammer's power."""
     searched = ("Maximum gain, as printed", "best found by search, no upper bound")
     return [f"{capitalised(line)}." for line in grouped([*labelled_certainty(table), searched])]
 
 
-def draw_figure2(table: SweepTable, printed: Sequence[PrintedPoint]) -> Figure:
+def draw_figure2(table: ResultTable, printed: Sequence[PrintedPoint]) -> Figure:
     """Draw the paper's Figure 2: the four curves of a sweep, and maximum gain as eq. 3.5 is printed."""
     from matplotlib.figure import Figure
 

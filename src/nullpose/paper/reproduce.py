@@ -21,7 +21,7 @@ from nullpose.report.certainty import Certainty
 from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
-from nullpose.study import SweepTable, sweep
+from nullpose.study import ResultTable, sweep
 
 _FILES = ("figure2.png", "figure2.svg", "figure2.csv", "figure2-printed.csv", "poses.png", "poses.svg")
 
@@ -36,7 +36,7 @@ class Reproduction:
         files: what was written.
     """
 
-    table: SweepTable
+    table: ResultTable
     printed: tuple[PrintedPoint, ...]
     files: tuple[Path, ...]
 

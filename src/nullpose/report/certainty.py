@@ -10,7 +10,7 @@ from nullpose.problem.schemes import Scheme
 from nullpose.report.document import grouped
 from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class Certainty:
     largest_relative_gap: float | None
 
     @classmethod
-    def of(cls, rows: Iterable[SweepRow]) -> Certainty:
+    def of(cls, rows: Iterable[ResultRow]) -> Certainty:
         """Count the rows of a sweep, of any schemes."""
         rows = tuple(rows)
         counts = Counter(row.status for row in rows)
@@ -66,12 +66,12 @@ class Certainty:
         )
 
 
-def certainty_lines(table: SweepTable) -> list[str]:
+def certainty_lines(table: ResultTable) -> list[str]:
     """Write how certain the curves of a sweep are, a sentence for each kind of certainty that occurs."""
     return [capitalised(line) for line in grouped(labelled_certainty(table))]
 
 
-def labelled_certainty(table: SweepTable) -> list[tuple[str, str]]:
+def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
     """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
     labelled: list[tuple[str, str]] = []
     for status in Status:

@@ -11,7 +11,7 @@ from nullpose.report.figures.style import curve_of, write_figure
 from nullpose.report.figures.sweep import draw_sweep, quantity_of
 from nullpose.report.numbers import bound_text, capitalised
 from nullpose.solver import Status
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 _SHARED = (
     "Points without a certificate reuse the bound of another point, which is valid there too. "
@@ -21,7 +21,7 @@ _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the 
 
 
 def write_sweep(
-    sweep: SweepTable, folder: Path, *, log: bool = False, width: str | None = None
+    sweep: ResultTable, folder: Path, *, log: bool = False, width: str | None = None
 ) -> tuple[Path, ...]:
     """Write a sweep as CSV, PNG, SVG and PDF to an existing folder; return the paths.
 
@@ -33,7 +33,7 @@ def write_sweep(
     return (sweep.write_csv(folder / "sweep.csv"), *pictures)
 
 
-def sweep_view(sweep: SweepTable) -> View:
+def sweep_view(sweep: ResultTable) -> View:
     """Set a sweep as a table of the objective, a column for each scheme, and how certain it is."""
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
@@ -55,7 +55,7 @@ def sweep_view(sweep: SweepTable) -> View:
     return document(table(title, _rows(sweep, sweep.path)[::step]), "\n".join(lines))
 
 
-def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:
+def _rows(sweep: ResultTable, heading: str) -> list[dict[str, str]]:
     """Set a row for each value of a sweep."""
     rows = {value: {heading: f"{value:.6g}"} for value in sweep.values}
     for row in sweep.rows:
@@ -63,7 +63,7 @@ def _rows(sweep: SweepTable, heading: str) -> list[dict[str, str]]:
     return list(rows.values())
 
 
-def _cell(row: SweepRow) -> str:
+def _cell(row: ResultRow) -> str:
     value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
     if row.status != Status.GAP_NOT_REACHED:
         return value

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme
-from nullpose.study import AIRFRAME_CASES, AirframeCase
+from nullpose.study import AIRFRAME_CASES, Case as Vehicle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,7 +22,7 @@ class Case:
 
     label: str
     scheme: Scheme = Scheme.OPTIMUM
-    vehicle: AirframeCase | None = None
+    vehicle: Vehicle | None = None
     robust: bool = False
 
     def on(self, scenario: Scenario) -> Scenario:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import Case
 from nullpose.studio.field_map import FieldMap
-from nullpose.study import SweepTable
+from nullpose.study import ResultTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class PowerCurve:
     """
 
     version: int
-    table: SweepTable
+    table: ResultTable
     complete: bool
 
 

@@ -14,7 +14,7 @@ from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.events import PowerCurve
 from nullpose.studio.view import POWER_DB, View
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 POWER_LABEL = "strongest jammer over strongest node (dB)"
 """What the power curve is drawn over."""
@@ -117,16 +117,16 @@ def power_curves(version: int, view: View, go_on: Callable[[], None] = lambda: N
     schemes = [one for one in Scheme if one.not_applicable(view.scenario) is None]
     coarse = range(0, _CURVE_POINTS, 7)
     order = [*coarse, *(i for i in range(_CURVE_POINTS) if i not in coarse)]
-    rows: list[SweepRow] = []
+    rows: list[ResultRow] = []
     for done, i in enumerate(order, start=1):
         power_db = low_db + (high_db - low_db) * i / (_CURVE_POINTS - 1)
         scenario = OPTIMUM.on(view.with_power_db(power_db).scenario)
         for scheme in schemes:
             go_on()
-            rows.append(SweepRow.of(power_db, solve(scenario, scheme, certify=False)))
+            rows.append(ResultRow.of(power_db, solve(scenario, scheme, certify=False)))
         complete = done == len(order)
         if complete or (done - len(coarse)) % _CURVE_SHOWN == 0:
-            table = SweepTable(
+            table = ResultTable(
                 path=POWER_LABEL, rows=tuple(sorted(rows, key=lambda row: (row.value, row.scheme)))
             )
             yield PowerCurve(version=version, table=table, complete=complete)

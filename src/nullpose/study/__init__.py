@@ -1,40 +1,37 @@
-"""Many solves: a setting varied over a range and the table it fills, and vehicles compared."""
+"""Many solves and the table that they fill: a setting swept, vehicles or antennas compared."""
 
-from nullpose.study.airframe_cases import AIRFRAME_CASES, AirframeCase, cases_of
-from nullpose.study.airframe_comparison import (
-    AirframeComparison,
-    AirframeResult,
-    Guaranteed,
-    compare_airframes,
-)
 from nullpose.study.antenna_comparison import AntennaComparison, compare_antennas
+from nullpose.study.case import AIRFRAME_CASES, Case, cases_of
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.spacing import spaced
 from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
-from nullpose.study.table import SweepRow, SweepTable
+from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import Field, value_map
+from nullpose.study.vehicles import compare_airframes, difference, least_sufficient, share, suffices
 
 __all__ = [
     "AIRFRAME_CASES",
-    "AirframeCase",
-    "AirframeComparison",
-    "AirframeResult",
     "AntennaComparison",
+    "Case",
     "Evaluation",
     "Field",
     "GivenDetails",
     "Guaranteed",
+    "ResultRow",
+    "ResultTable",
     "SweepPlan",
-    "SweepRow",
-    "SweepTable",
     "cases_of",
     "compare_airframes",
     "compare_antennas",
+    "difference",
     "evaluate_against",
+    "least_sufficient",
     "plan_sweep",
     "poses_from_csv",
+    "share",
     "spaced",
+    "suffices",
     "sweep",
     "value_map",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from types import MappingProxyType
 from typing import Unpack
 
@@ -12,10 +13,10 @@ from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.solver import Result, SolveKeywords, SolveOptions, solve
-from nullpose.study.grid import solved_grid
+from nullpose.study.case import Case
 from nullpose.study.neighbours import freedom, from_freer
 from nullpose.study.spacing import spaced
-from nullpose.study.table import SweepRow, SweepTable
+from nullpose.study.table import ResultRow, ResultTable
 
 
 def sweep(
@@ -26,7 +27,7 @@ def sweep(
     schemes: Sequence[str] = tuple(Scheme),
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
-) -> SweepTable:
+) -> ResultTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
     Where the best value can only fall along the setting, a point takes the bound of a freer one if a pose of
@@ -68,23 +69,23 @@ def sweep(
     if not applicable:
         raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
 
-    asked, sign = SolveOptions(**options), freedom(path, scenario)
+    solve_options, sign = SolveOptions(**options), freedom(path, scenario)
     found: dict[Scheme, list[Result]] = defaultdict(list)
-
-    def solved(point: tuple[float, Scenario], scheme: Scheme) -> SweepRow:
-        value, varied = point
-        known = from_freer(varied, found[scheme], asked) if sign else None
-        result = known or solve(varied, scheme, **options)
+    rows: dict[tuple[float, Scheme], ResultRow] = {}
+    # a point that bounds others comes first; without a direction the order is that of the values
+    order = sorted(scenarios, key=lambda point: -sign * point[0])
+    for (value, varied), scheme in product(order, applicable):
+        implied = from_freer(varied, found[scheme], solve_options) if sign else None
+        result = implied or solve(varied, scheme, **options)
         if result.interrupted:
             raise KeyboardInterrupt
         found[scheme].append(result)
-        return SweepRow.of(value, result)
-
-    # what bounds others comes first; without a direction the order is that of the values
-    order = sorted(scenarios, key=lambda point: -sign * point[0])
-    rows = {(row.value, row.scheme): row for row in solved_grid(order, applicable, solved, on_progress)}
-    asked_for = (rows[value, scheme] for value, _ in scenarios for scheme in applicable)
-    return SweepTable(path, tuple(asked_for), MappingProxyType(left_out))
+        case = Case(name=scheme.value, label=scheme.label, scheme=scheme)
+        rows[value, scheme] = ResultRow.of(value, result, case)
+        if on_progress is not None:
+            on_progress(len(rows), len(order) * len(applicable))
+    in_order = (rows[value, scheme] for value, _ in scenarios for scheme in applicable)
+    return ResultTable(path, tuple(in_order), MappingProxyType(left_out))
 
 
 def _scenarios_along(
@@ -146,7 +147,7 @@ class SweepPlan:
     schemes: tuple[Scheme, ...]
     options: SolveKeywords
 
-    def run(self, on_progress: Callable[[int, int], None] | None = None) -> SweepTable:
+    def run(self, on_progress: Callable[[int, int], None] | None = None) -> ResultTable:
         """Return what the sweep finds.
 
         Args:

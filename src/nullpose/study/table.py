@@ -1,39 +1,66 @@
-"""The table that a sweep fills: one row per value and scheme."""
+"""The table of several solves: one row per case, and per value of a setting where one is swept."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nullpose.files import write_csv
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL, Quantity
+from nullpose.scenario import Scenario
 from nullpose.solver import Result
+from nullpose.study.case import Case
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Guaranteed:
+    """What is left of a value under the scenario's errors: power ratios, or bits/s/Hz.
+
+    Args:
+        nominal_pose: the value that the pose which is best without errors guarantees; proved.
+        robust_pose: the value that the pose which guarantees most does; proved. None after an interrupt.
+        upper_bound: no pose of the vehicle guarantees more; None if nothing is proved.
+    """
+
+    nominal_pose: float
+    robust_pose: float | None
+    upper_bound: float | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SweepRow(Result):
-    """What was found for one scheme at one value of a setting.
+class ResultRow(Result):
+    """The result of one case, at one value of a setting if one is swept.
 
     Args:
-        value: the swept setting, in the unit of its name.
+        value: the swept setting, in the unit of its name; NaN if nothing is swept.
+        case: how it was solved; None if the scheme alone says it.
+        guaranteed: what is left under errors; None if the scenario has none.
     """
 
-    value: float
+    value: float = math.nan
+    case: Case | None = None
+    guaranteed: Guaranteed | None = None
 
     @classmethod
-    def of(cls, value: float, result: Result) -> SweepRow:
-        """Return the row of what was found at a value.
+    def of(
+        cls, value: float, result: Result, case: Case | None = None, kept: Guaranteed | None = None
+    ) -> ResultRow:
+        """Make a row of a result."""
+        columns = {column.name: getattr(result, column.name) for column in fields(result)}
+        return cls(value=value, case=case, guaranteed=kept, **columns)
 
-        Args:
-            value: the swept setting.
-            result: of a solve there.
-        """
-        return cls(value=value, **{one.name: getattr(result, one.name) for one in fields(result)})
+    @property
+    def name(self) -> str:
+        """The case's name."""
+        return str(self.scheme) if self.case is None else self.case.name
 
     @property
     def min_sinr(self) -> float:
@@ -55,9 +82,14 @@ class SweepRow(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain data, angles in radians."""
-        objective = self.objective
+        objective, case, guaranteed = self.objective, self.case, self.guaranteed
+        vehicle = {} if case is None or case.airframe is None else {"airframe": case.airframe.to_dict()}
+        if case is not None and case.array is not None:
+            vehicle["array"] = case.array.to_dict()
         return {
-            "value": self.value,
+            "case": self.name,
+            **({} if math.isnan(self.value) else {"value": self.value}),
+            **vehicle,
             "scheme": str(self.scheme),
             "status": self.status.value,
             "rigour": objective.rigour.value,
@@ -72,60 +104,78 @@ class SweepRow(Result):
             "pose": self.pose.to_dict(),
             "links": [link.to_dict() for link in self.links],
             "note": self.note,
+            **({} if guaranteed is None else {"guaranteed": asdict(guaranteed)}),
         }
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class SweepTable:
-    """What a sweep found.
+class ResultTable:
+    """The results of several cases, over the values of a setting if one is swept.
 
     Args:
-        path: the setting that was swept, as in ``jammers.M.power_w``.
-        rows: by value, then by scheme, in the order they were asked for.
-        left_out: schemes that do not apply to the scenario, each with the reason.
+        path: the setting that was swept, as in ``jammers.M.power_w``; empty if none was.
+        rows: by value, then by case.
+        left_out: cases without a result, each with the reason.
+        scenario: that every case is about; None of a sweep, whose rows have their own.
+        provenance: versions, seed and settings; of a sweep each row has its own.
     """
 
     path: str
-    rows: tuple[SweepRow, ...]
-    left_out: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    rows: tuple[ResultRow, ...]
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    scenario: Scenario | None = None
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def values(self) -> tuple[float, ...]:
         """The swept values, each once, in order."""
-        return tuple(dict.fromkeys(row.value for row in self.rows))
+        return tuple(dict.fromkeys(row.value for row in self.rows if not math.isnan(row.value)))
 
     @property
     def schemes(self) -> tuple[str, ...]:
         """The schemes, each once, in order."""
-        return tuple(dict.fromkeys(row.scheme for row in self.rows))
+        return tuple(dict.fromkeys(str(row.scheme) for row in self.rows))
 
-    def of(self, scheme: str) -> tuple[SweepRow, ...]:
-        """Return the rows of one scheme, in the order of the values.
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the cases, each once, in order."""
+        return tuple(dict.fromkeys(row.name for row in self.rows))
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended a proof."""
+        return any(row.interrupted for row in self.rows)
+
+    def of(self, name: str) -> tuple[ResultRow, ...]:
+        """Return the rows of one case, in the order of the values.
 
         Args:
-            scheme: the scheme's name.
+            name: of the case: a scheme, or a vehicle such as ``tilt-10``.
 
         Raises:
-            KeyError: the table has no such scheme.
+            KeyError: the table has no such case.
         """
-        rows = tuple(row for row in self.rows if row.scheme == scheme)
+        rows = tuple(row for row in self.rows if row.name == name)
         if not rows:
-            raise KeyError(f"no scheme {scheme!r} in this table; it has {', '.join(self.schemes)}")
+            raise KeyError(f"no case {name!r} in this table; it has {', '.join(self.names)}")
         return rows
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, Any]:
         """Return the table as plain data."""
+        whole: dict[str, Any] = {} if self.scenario is None else {"scenario": self.scenario.to_dict()}
         return {
-            "set": self.path,
+            **whole,
+            **({"set": self.path} if self.path else {}),
             "rows": [row.to_dict() for row in self.rows],
-            "left_out": [{"scheme": scheme, "reason": reason} for scheme, reason in self.left_out.items()],
+            "left_out": [{"case": name, "reason": reason} for name, reason in self.left_out.items()],
+            **({"provenance": dict(self.provenance)} if self.provenance else {}),
         }
 
     def write_csv(self, path: Path) -> Path:
-        """Return the path of a CSV file after writing the table to it, units in the column names.
+        """Write the table to a CSV file, units in the column names; return its path.
 
         Args:
-            path: the file to write; an existing one is replaced.
+            path: the file; an existing one is replaced.
 
         Raises:
             OutputError: the file cannot be written.
@@ -134,7 +184,7 @@ class SweepTable:
         heading = list(records[0]) if records else [self.path]
         return write_csv(path, [heading, *([_text(cell) for cell in record.values()] for record in records)])
 
-    def frame(self) -> Any:
+    def frame(self) -> pd.DataFrame:
         """Return the table as a data frame of pandas with the columns of the CSV file.
 
         Raises:
@@ -142,37 +192,37 @@ class SweepTable:
         """
         return imported("pandas").DataFrame(self._records())
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xr.Dataset:
         """Return the table's numbers as arrays of xarray over the swept setting and the scheme.
 
         Raises:
             UsageError: pandas or xarray is not installed.
         """
         imported("xarray")
-        return self.frame().set_index([self.path, "scheme"]).to_xarray()
+        return self.frame().set_index([*([self.path] if self.path else ["case"]), "scheme"]).to_xarray()
 
     def __repr__(self) -> str:
-        values, cases = self.values, ", ".join(map(str, self.schemes))
-        span = f"{values[0]:g} to {values[-1]:g}, " if values else ""
-        told = [f"SweepTable({self.path}: {span}{len(values)} values of {cases}", *self._absent()]
-        return "; ".join(told) + ")"
+        values = self.values
+        span = f"{values[0]:g} to {values[-1]:g}, {len(values)} values of " if values else ""
+        title = self.path if self.scenario is None else repr(self.scenario.name)
+        names = ", ".join(self.names if len(self.names) < 5 else [*self.names[:4], "..."])
+        return "; ".join([f"ResultTable({title}: {span}{names}", *self._absent()]) + ")"
 
     def _repr_html_(self) -> str | None:
-        return html_table([{self.path: row.value} | row.row() for row in self.rows])
+        swept = [{self.path: row.value} if self.path else {"case": row.name} for row in self.rows]
+        return html_table([first | row.row() for first, row in zip(swept, self.rows, strict=True)])
 
     def _absent(self) -> list[str]:
-        """Return what was left out, with the reasons."""
-        return [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out.items()]
+        return [f"left out: {name} ({reason})" for name, reason in self.left_out.items()]
 
     def _records(self) -> list[dict[str, Any]]:
-        """Return the rows with every column, numbers as such; None for no number."""
-        first = self.rows[:1]
+        """List the rows with every column, numbers as such; None for no number."""
         numbers = _NUMBERS | {
-            name: take for row in first for name, take in _own_numbers(row.objective.quantity)
+            name: take for row in self.rows[:1] for name, take in _further_numbers(row.objective.quantity)
         }
         return [
             {
-                self.path: row.value,
+                **({self.path: row.value} if self.path else {"case": row.case and row.case.label}),
                 "scheme": str(row.scheme),
                 "status": row.status.value,
                 "rigour": row.objective.rigour.value,
@@ -186,15 +236,15 @@ class SweepTable:
 
 
 def _text(cell: object) -> str:
-    """Return a cell of a CSV file, a number to its last digit."""
+    """Write a cell of a CSV file, a number to its last digit."""
     return "" if cell is None else cell if isinstance(cell, str) else repr(float(cell))  # type: ignore[arg-type]
 
 
-_Number = Callable[[SweepRow], float | None]
+_Number = Callable[[ResultRow], float | None]
 
 _SINR = RECORDS[USUAL].quantities[0]
 
-# The columns of numbers that every table has.
+# The columns of numbers of every table.
 _NUMBERS: dict[str, _Number] = {
     "min_sinr": lambda row: row.min_sinr,
     "min_sinr_db": lambda row: row.min_sinr_db,
@@ -212,7 +262,7 @@ _NUMBERS: dict[str, _Number] = {
 }
 
 
-def _own_numbers(quantity: Quantity) -> Iterator[tuple[str, _Number]]:
+def _further_numbers(quantity: Quantity) -> Iterator[tuple[str, _Number]]:
     """Yield the columns of a quantity other than the SINR."""
     unit = "bps_hz" if quantity.is_rate else "db"
     if quantity != _SINR:

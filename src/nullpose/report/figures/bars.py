@@ -12,13 +12,14 @@ from matplotlib.figure import Figure
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.airframes import answer_lines, numbers_of
+from nullpose.report.airframes import answer_lines, case_of, numbers_of
 from nullpose.report.comparison import Comparison
 from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import capitalised, number
 from nullpose.solver import Result
-from nullpose.study import AirframeComparison
+from nullpose.study import ResultTable
+from nullpose.study.vehicles import dipoles, omnidirectional
 
 _ROW_INCH, _SENTENCE_INCH = 0.33, 0.3
 _GAP = 0.6  # between dipoles and arrays, in rows
@@ -52,11 +53,11 @@ def draw_cases(axes: Axes, results: Sequence[Result]) -> None:
         axes.legend(loc="lower right", frameon=False, handlelength=1.0)
 
 
-def draw_airframes(comparison: AirframeComparison, width: str | None = None) -> Figure:
+def draw_airframes(comparison: ResultTable, width: str | None = None) -> Figure:
     """Draw the figure of the vehicles compared: bars and answer, in print (``WIDTHS_MM``) bars alone."""
     lines = answer_lines(comparison)
     with house_style(width):
-        height = 1.6 + _ROW_INCH * len(comparison.results)
+        height = 1.6 + _ROW_INCH * len(comparison.rows)
         size = (7.0, height + _SENTENCE_INCH * len(lines))
         if width is not None:
             size = (inches(size, width, 0.0)[0], 0.7 * height)
@@ -66,24 +67,24 @@ def draw_airframes(comparison: AirframeComparison, width: str | None = None) -> 
         columns = 1 if width == "column" else 3
         figure.legend(loc="outside upper center", ncols=columns, frameon=False, handlelength=1.6)
         if width is None:
-            axes.set_title(comparison.scenario.name, loc="left", fontweight="bold", parse_math=False)
+            axes.set_title(comparison.rows[0].scenario.name, loc="left", fontweight="bold", parse_math=False)
             draw_caption(figure, lines)
     return figure
 
 
-def draw_airframe_bars(axes: Axes, comparison: AirframeComparison) -> None:
+def draw_airframe_bars(axes: Axes, comparison: ResultTable) -> None:
     """Draw a bar for each vehicle, a line from it up to its bound, and what it guarantees under errors."""
-    results, quantity = comparison.results, Quantity.of(comparison.scenario)
-    places = np.arange(len(results)) + _GAP * (np.arange(len(results)) >= len(comparison.dipoles))
+    results, quantity = comparison.rows, comparison.rows[0].objective.quantity
+    places = np.arange(len(results)) + _GAP * (np.arange(len(results)) >= len(dipoles(comparison)))
     values, bounds, nominal, robust, _ = numbers_of(comparison)
-    whole = quantity.in_unit(comparison.omnidirectional.value)
+    whole = quantity.in_unit(omnidirectional(comparison).objective.value)
     words = [_difference_words(value, whole, quantity) for value in values.tolist()]
-    names = ["array" if result.case.array else result.case.name for result in results]
+    names = ["array" if case_of(row).array else row.name for row in results]
     colours = [VEHICLES[name].colour for name in names]
     low = _draw_bars(axes, quantity, places, values, bounds, colours, words, others=(nominal, robust))
     axes.axvline(whole, color=VEHICLES["omnidirectional"].colour, linewidth=0.9, zorder=2.5)
-    axes.set_yticks(places, [result.case.label for result in results])
-    if comparison.scenario.is_uncertain:
+    axes.set_yticks(places, [case_of(row).label for row in results])
+    if results[0].scenario.is_uncertain:
         lengths = np.nan_to_num(np.maximum(robust, low) - low)
         thin: dict[str, Any] = {"left": low, "height": 0.22, "color": INK, "zorder": 2.2}
         axes.barh(places, lengths, label="guaranteed, robust pose", **thin)

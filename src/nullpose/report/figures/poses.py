@@ -29,7 +29,7 @@ from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.solver import Objective, Result
 from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import RobustDetails
-from nullpose.study import SweepRow
+from nullpose.study import ResultRow
 
 _LETTERS = 100  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
@@ -43,7 +43,7 @@ _HEADING = _BEAM = 0.20  # the heading's arrow, and the beam where the gain is l
 _ELSEWHERE_DEG = ALONE.azimuth_deg + 27.0  # where the camera stands if the array would be seen end on
 
 
-def draw_poses(scenario: Scenario, rows: Sequence[SweepRow]) -> Figure:
+def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
     """Draw several best poses side by side, each at its own jamming level, in a scene with a jammer."""
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
     stage = Stage(scenario=scenario, poses=tuple(row.pose for row in rows), view=PANELS)

@@ -16,7 +16,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import CURVES, GREY, curve_of, draw_curve, house_style, inches
 from nullpose.report.numbers import axis_label, capitalised
-from nullpose.study import SweepRow, SweepTable
+from nullpose.study import ResultRow, ResultTable
 
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
 _FREE = 3.0  # at least so many dB above the curves are shown
@@ -26,19 +26,19 @@ _ABOVE_CURVES = 5.0
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
 
 
-def quantity_of(table: SweepTable) -> Quantity:
+def quantity_of(table: ResultTable) -> Quantity:
     """Look up the quantity that a sweep of at least one row maximised."""
     return table.rows[0].objective.quantity
 
 
-def _in_unit(rows: Iterable[SweepRow], name: str) -> FloatArray:
+def _in_unit(rows: Iterable[ResultRow], name: str) -> FloatArray:
     """Convert values or bounds to their unit; NaN, which Matplotlib draws as a gap, for no number."""
     numbers = [(row.objective.quantity, getattr(row.objective, name)) for row in rows]
     found = [math.nan if number is None else quantity.in_unit(number) for quantity, number in numbers]
     return np.where(np.isfinite(found), found, math.nan)
 
 
-def draw_curves(axes: Axes, table: SweepTable) -> bool:
+def draw_curves(axes: Axes, table: ResultTable) -> bool:
     """Draw curves and bounds; return whether bounds can be seen apart from their values."""
     apart = _VISIBLE
     if quantity_of(table).is_rate:
@@ -47,7 +47,7 @@ def draw_curves(axes: Axes, table: SweepTable) -> bool:
     return any(seen)
 
 
-def _draw_scheme(axes: Axes, table: SweepTable, scheme: str, apart: float) -> bool:
+def _draw_scheme(axes: Axes, table: ResultTable, scheme: str, apart: float) -> bool:
     """Draw a curve with a band up to its bounds; return whether they can be seen apart."""
     look, rows = curve_of(scheme), table.of(scheme)
     values, bounds = _in_unit(rows, "value"), _in_unit(rows, "upper_bound")
@@ -69,7 +69,7 @@ def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
     figure.supxlabel(text, x=0.01, ha="left", fontsize=7.5, color=GREY, linespacing=1.35)
 
 
-def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
+def _keep_curves_large(axes: Axes, table: ResultTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
     values, bounds = _in_unit(table.rows, "value"), _in_unit(table.rows, "upper_bound")
     low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # unlike the maximum, they pass over NaN
@@ -79,7 +79,7 @@ def _keep_curves_large(axes: Axes, table: SweepTable) -> None:
         axes.set_ylim(low - 0.05 * free, high + free)
 
 
-def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None) -> Figure:
+def draw_sweep(table: ResultTable, *, log: bool = False, width: str | None = None) -> Figure:
     """Draw a sweep, its legend above the axes and, but in print (``WIDTHS_MM``), what is proved below."""
     lines = [f"{line}." for line in certainty_lines(table)]
     with house_style(width):
@@ -95,7 +95,7 @@ def draw_sweep(table: SweepTable, *, log: bool = False, width: str | None = None
     return figure
 
 
-def draw_sweep_axes(axes: Axes, table: SweepTable, *, log: bool = False) -> bool:
+def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False) -> bool:
     """Draw a sweep with the names of its axes; return whether bounds can be seen apart."""
     quantity = quantity_of(table)
     seen = draw_curves(axes, table)

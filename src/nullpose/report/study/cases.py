@@ -10,7 +10,7 @@ from nullpose.errors import UsageError
 from nullpose.problem.schemes import Scheme
 from nullpose.report.numbers import unit_of
 from nullpose.scenario import Airframe
-from nullpose.study.airframe_cases import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
+from nullpose.study.case import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
 from nullpose.study.monte_carlo import StudyCase, StudySpec
 
 LEVEL = AIRFRAME_CASES[0]  # the others are compared with it
@@ -103,7 +103,7 @@ def _described(place: int, case: StudyCase, scenes_airframe: Airframe | None) ->
         return replace(plain, phrase=f"the {case.scheme.label.lower()} pose")
     if airframe is None:
         return plain
-    same = (usual for usual in AIRFRAME_CASES if usual.airframe.axis_band == airframe.axis_band)
+    same = (usual for usual in AIRFRAME_CASES if usual.airframe_or_any.axis_band == airframe.axis_band)
     usual = next(same, None)  # two vehicles that reach the same axes are one
     phrase = mounted_phrase(airframe) if usual is None else usual.phrase
     chosen = f" (the best mount tried, on up to {case.mount_scenes} scenes)" if case.mount_scenes else ""

@@ -21,7 +21,7 @@ from nullpose.scenario.section import Section
 from nullpose.scenario.units import AttitudeDegrees, Label, Position
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
-from nullpose.study.airframe_cases import AIRFRAME_CASES
+from nullpose.study.case import AIRFRAME_CASES, Case
 from nullpose.study.evaluation import pose_faults
 
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
@@ -30,7 +30,7 @@ NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
 _SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
 
-_BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_CASES} | {
+_BY_NAME: dict[str, Airframe] = {case.name: case.airframe for case in AIRFRAME_CASES if case.airframe} | {
     preset: Airframe.from_dict({"preset": preset})
     for preset in PRESET_TILTS_DEG
     if preset not in {case.name for case in AIRFRAME_CASES}
@@ -223,13 +223,5 @@ class StudyCase(Section):
         return self.model_copy(update={"airframe": airframe, **changes})
 
     def on(self, scenario: Scenario) -> Scenario:
-        """Return the scene with this case's vehicle in place of its own.
-
-        Args:
-            scenario: a scene.
-        """
-        if self.array is not None:
-            return scenario.model_copy(update={"airframe": None, "array": self.array})
-        if self.airframe is not None:
-            return scenario.model_copy(update={"airframe": self.airframe, "array": None})
-        return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
+        """Put this case's vehicle into a scenario."""
+        return Case(name=self.name, airframe=self.airframe, array=self.array).on(scenario)

@@ -8,10 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import AirframeComparison, Scenario, Status, compare_airframes, load, min_sinr
+from nullpose import ResultTable, Scenario, Status, compare_airframes, load, min_sinr
 from nullpose.files import json_text
 from nullpose.scenario import apply_overrides
 from nullpose.study import AIRFRAME_CASES
+from nullpose.study.vehicles import (
+    arrays,
+    least_sufficient,
+    omnidirectional,
+    row_of,
+    share,
+    suffices,
+    verdict,
+)
 
 ROOT = Path(__file__).parents[2]
 KNOWN = ROOT / "tests" / "reference" / "airframes" / "known_answers.csv"
@@ -26,7 +35,7 @@ def known() -> list[dict[str, float]]:
 
 
 @pytest.fixture(scope="module")
-def robust() -> AirframeComparison:
+def robust() -> ResultTable:
     """The example with errors, dipoles only."""
     return compare_airframes(load(ROOT / "examples" / "robust.toml"), cases=AIRFRAME_CASES)
 
@@ -36,59 +45,59 @@ def test_known_answers(paper: Scenario, row: dict[str, float]) -> None:
     """Each vehicle reaches what independent searches found, certified to 1e-6."""
     level = row["jamming_ratio"]
     found = compare_airframes(apply_overrides(paper, [f"jammers.M.power_w={level}"]), cases=AIRFRAME_CASES)
-    for result in found.results:
+    for result in found.rows:
         assert result.status is Status.CERTIFIED
-        assert result.value <= result.objective.upper_bound <= result.value * (1.0 + 1e-6)
-        if result.case.name in row:
-            assert result.value == pytest.approx(row[result.case.name], abs=1e-4)
+        assert result.objective.value <= result.objective.upper_bound <= result.objective.value * (1.0 + 1e-6)
+        if result.name in row:
+            assert result.objective.value == pytest.approx(row[result.name], abs=1e-4)
 
 
 def test_more_tilt_is_never_worse(paper: Scenario) -> None:
     """A vehicle that reaches more axes gives at least as much, and its pose keeps to its limit."""
     found = compare_airframes(paper, cases=AIRFRAME_CASES)
     for less, more in itertools.pairwise(TILTS):
-        assert found.of(less).value <= found.of(more).objective.upper_bound
-    for result in found.results:
+        assert row_of(found, less).objective.value <= row_of(found, more).objective.upper_bound
+    for result in found.rows:
         assert result.pose.tilt_rad <= result.case.airframe.tilt_max_rad + 1e-9
-        assert min_sinr(paper, result.pose) == pytest.approx(result.value, rel=1e-12)
+        assert min_sinr(paper, result.pose) == pytest.approx(result.objective.value, rel=1e-12)
 
 
 def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
     """Ten degrees are enough at a ratio of 1, level is enough where jamming is weak."""
     found = compare_airframes(paper, cases=AIRFRAME_CASES)
-    assert found.least_sufficient.case.name == "tilt-10"
+    assert least_sufficient(found).name == "tilt-10"
     weak = compare_airframes(apply_overrides(paper, ["jammers.M.power_w=0.01"]), cases=AIRFRAME_CASES)
-    assert weak.least_sufficient.case.name == "level-horizontal"
-    assert found.suffices(found.omnidirectional)
-    assert found.share(found.omnidirectional) == 1.0
-    assert not found.suffices(found.of("level-vertical"))
-    assert found.suffices(found.of("level-vertical"), tolerance=0.6)
+    assert least_sufficient(weak).name == "level-horizontal"
+    assert suffices(found, omnidirectional(found))
+    assert share(found, omnidirectional(found)) == 1.0
+    assert not suffices(found, row_of(found, "level-vertical"))
+    assert suffices(found, row_of(found, "level-vertical"), tolerance=0.6)
 
 
 def test_arrays_are_tried_on_a_level_vehicle(paper: Scenario) -> None:
     """More elements give more, and none exceeds its bound."""
     found = compare_airframes(paper)
-    sizes = [found.of(f"array-{size}-digital") for size in (2, 4, 8)]
-    assert found.arrays == tuple(sizes)
-    assert [one.value for one in sizes] == sorted(one.value for one in sizes)
-    assert all(one.value <= one.objective.upper_bound for one in sizes)
+    sizes = [row_of(found, f"array-{size}-digital") for size in (2, 4, 8)]
+    assert arrays(found) == tuple(sizes)
+    assert [one.objective.value for one in sizes] == sorted(one.objective.value for one in sizes)
+    assert all(one.objective.value <= one.objective.upper_bound for one in sizes)
     assert all(one.pose.tilt_rad == 0.0 for one in sizes)
-    assert found.least_sufficient.case.array is None
+    assert least_sufficient(found).case.array is None
 
 
-def test_guarantees_hold_what_they_say(robust: AirframeComparison) -> None:
+def test_guarantees_hold_what_they_say(robust: ResultTable) -> None:
     """The robust pose guarantees no less than the nominal one, and no more than the bound or the value."""
-    for result in robust.results:
+    for result in robust.rows:
         one = result.guaranteed
         assert 0.0 <= one.nominal_pose <= one.robust_pose <= one.upper_bound
         assert one.robust_pose <= result.objective.upper_bound
         assert one.upper_bound <= one.robust_pose * 1.0101
 
 
-def test_a_guarantee_is_below_random_errors(robust: AirframeComparison) -> None:
+def test_a_guarantee_is_below_random_errors(robust: ResultTable) -> None:
     """With axis and jammer moved at random within the stated errors, no value falls below the guarantee."""
     rng = np.random.default_rng(4)
-    result = robust.of("tilt-10")
+    result = row_of(robust, "tilt-10")
     scenario, pose = robust.scenario, result.pose
     place, axis = np.array(scenario.jammer_positions_m[0]), pose.antenna_axis
     worst = np.inf
@@ -102,35 +111,35 @@ def test_a_guarantee_is_below_random_errors(robust: AirframeComparison) -> None:
         off = type(pose).from_axis(pose.position_m, leaning)
         worst = min(worst, min_sinr(Scenario.from_dict(data), off))
     assert worst >= result.guaranteed.nominal_pose
-    assert worst < result.value
+    assert worst < result.objective.value
 
 
 def test_no_errors_nothing_guaranteed(paper: Scenario) -> None:
     """Without errors in the file there is no guaranteed value."""
     found = compare_airframes(paper, cases=AIRFRAME_CASES, certify=False)
-    assert {result.guaranteed for result in found.results} == {None}
-    assert {result.status for result in found.results} == {Status.BEST_FOUND}
-    assert {result.objective.upper_bound for result in found.results} == {None}
+    assert {result.guaranteed for result in found.rows} == {None}
+    assert {result.status for result in found.rows} == {Status.BEST_FOUND}
+    assert {result.objective.upper_bound for result in found.rows} == {None}
 
 
 def test_rates_are_compared_as_rates() -> None:
     """With an eavesdropper the shares are of rates, and more tilt is never worse."""
     found = compare_airframes(load(ROOT / "examples" / "eavesdropper.toml"))
-    assert found.arrays == ()
-    assert {result.objective.name for result in found.results} == {"min_secrecy_rate"}
-    shares = [found.share(found.of(name)) for name in TILTS]
+    assert arrays(found) == ()
+    assert {result.objective.name for result in found.rows} == {"min_secrecy_rate"}
+    shares = [share(found, row_of(found, name)) for name in TILTS]
     assert all(less <= more + 1e-6 for less, more in itertools.pairwise(shares))
 
 
-def test_plain_data(robust: AirframeComparison) -> None:
-    """The comparison as plain data is JSON, and says what the objects say."""
-    data = json.loads(json_text(robust.to_dict()))
-    assert [case["name"] for case in data["cases"]] == [case.name for case in AIRFRAME_CASES]
-    assert data["least_sufficient"] == robust.least_sufficient.case.name
-    case = data["cases"][2]
-    assert case["airframe"] == {"tilt_max_deg": 10.0, "mount_deg": 90.0}
-    assert case["guaranteed"]["robust_pose"] == robust.of("tilt-10").guaranteed.robust_pose
-    assert case["share_of_omnidirectional"] == pytest.approx(0.9926, abs=1e-4)
+def test_plain_data(robust: ResultTable) -> None:
+    """The table as plain data is JSON, and says what the objects say."""
+    data = json.loads(json_text(robust.to_dict() | verdict(robust)))
+    assert [row["case"] for row in data["rows"]] == [case.name for case in AIRFRAME_CASES]
+    assert data["least_sufficient"] == least_sufficient(robust).name
+    row = data["rows"][2]
+    assert row["airframe"] == {"tilt_max_deg": 10.0, "mount_deg": 90.0}
+    assert row["guaranteed"]["robust_pose"] == row_of(robust, "tilt-10").guaranteed.robust_pose
+    assert data["share_of_omnidirectional"]["tilt-10"] == pytest.approx(0.9926, abs=1e-4)
 
 
 def test_progress_counts_the_vehicles(paper: Scenario) -> None:
@@ -142,7 +151,7 @@ def test_progress_counts_the_vehicles(paper: Scenario) -> None:
     assert ticks == [(done, 5) for done in range(1, 6)]
 
 
-def test_unknown_vehicle(robust: AirframeComparison) -> None:
+def test_unknown_vehicle(robust: ResultTable) -> None:
     """Asking for a vehicle that was not tried names those that were."""
     with pytest.raises(KeyError, match="tilt-30"):
-        robust.of("tilt-60")
+        row_of(robust, "tilt-60")

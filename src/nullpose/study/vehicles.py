@@ -1,0 +1,157 @@
+"""Vehicles compared: the question whether it has to be an omnidirectional one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from types import MappingProxyType
+from typing import Any, Unpack
+
+from nullpose.errors import SolveError
+from nullpose.objectives import Quantity
+from nullpose.scenario import Scenario
+from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
+from nullpose.solver.provenance import provenance
+from nullpose.solver.robust import guarantee
+from nullpose.study.case import OMNIDIRECTIONAL, STATED, Case, cases_of
+from nullpose.study.table import Guaranteed, ResultRow, ResultTable
+
+TOLERANCE = 0.01  # a vehicle suffices if it reaches no less than the omnidirectional one but for this share
+_ROBUST_S = 10.0  # for each vehicle's robust pose, at most
+
+
+def compare_airframes(
+    scenario: Scenario,
+    *,
+    cases: Sequence[Case] | None = None,
+    on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> ResultTable:
+    """Solve a scenario for each kind of vehicle: level, tilting, omnidirectional, with an array.
+
+    The scenario's own airframe is tried as well if it states one that is none of the others. Where it states
+    errors, what each dipole guarantees is worked out at the pose that is best without them, and at the pose
+    that guarantees most. After an interrupt during a proof the remaining vehicles are solved without one.
+
+    Args:
+        scenario: what to solve.
+        cases: the vehicles, by the tilt that they take, the omnidirectional one among them; without it
+            those of :func:`cases_of`.
+        on_progress: called after each vehicle with how many are done and how many there are.
+        options: as for :func:`nullpose.solve`.
+
+    Raises:
+        UsageError: a bad seed or limit.
+        SolveError: no pose of the omnidirectional vehicle reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> scenario = nullpose.load("examples/paper.toml")
+        >>> found = nullpose.compare_airframes(scenario, certify=False)
+        >>> nullpose.study.least_sufficient(found).name
+        'tilt-10'
+    """
+    asked = SolveOptions(**options).of(scenario)
+    options["gap"] = asked.target
+    rows: list[ResultRow] = []
+    left_out: dict[str, str] = {}
+    vehicles = cases_of(scenario) if cases is None else cases
+    for done, case in enumerate(vehicles, start=1):
+        is_interrupted = any(row.interrupted for row in rows)
+        try:
+            result = solve(case.on(scenario), **options | {"certify": asked.certify and not is_interrupted})
+        except SolveError as error:
+            if case.name == OMNIDIRECTIONAL:
+                raise
+            left_out[case.name] = str(error)
+        else:
+            is_interrupted = is_interrupted or result.interrupted
+            has_errors = case.array is None and scenario.is_uncertain
+            kept = _guaranteed(result, None if is_interrupted else options) if has_errors else None
+            rows.append(ResultRow.of(math.nan, result, case, kept))
+        if on_progress is not None:
+            on_progress(done, len(vehicles))
+    settings = MappingProxyType(provenance(asked.seed) | asked.settings)
+    return ResultTable("", tuple(rows), MappingProxyType(left_out), scenario, settings)
+
+
+def row_of(table: ResultTable, name: str) -> ResultRow:
+    """Look up the row of a vehicle.
+
+    Raises:
+        KeyError: the table has no such vehicle.
+    """
+    return table.of(name)[0]
+
+
+def omnidirectional(table: ResultTable) -> ResultRow:
+    """Look up the row of the omnidirectional vehicle."""
+    return row_of(table, OMNIDIRECTIONAL)
+
+
+def dipoles(table: ResultTable) -> tuple[ResultRow, ...]:
+    """Select the vehicles with one dipole, by the tilt that they take."""
+    return tuple(row for row in table.rows if row.case is not None and row.case.array is None)
+
+
+def arrays(table: ResultTable) -> tuple[ResultRow, ...]:
+    """Select the level vehicles with an array."""
+    return tuple(row for row in table.rows if row.case is not None and row.case.array is not None)
+
+
+def own_vehicle(table: ResultTable) -> ResultRow | None:
+    """Look up the scenario's own vehicle; None if it is one of the usual ones."""
+    return next((row for row in table.rows if row.name == STATED), None)
+
+
+def share(table: ResultTable, row: ResultRow) -> float | None:
+    """Divide a vehicle's power ratio or rate by the omnidirectional one's; None if that is 0."""
+    whole = omnidirectional(table).objective.value
+    return row.objective.value / whole if whole > 0.0 else None
+
+
+def difference(table: ResultTable, row: ResultRow) -> float:
+    """Subtract the omnidirectional vehicle's value from a vehicle's, in dB or bits/s/Hz."""
+    quantity, whole = row.objective.quantity, omnidirectional(table)
+    return quantity.in_unit(row.objective.value) - quantity.in_unit(whole.objective.value)
+
+
+def suffices(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> bool:
+    """Decide whether a vehicle reaches as much as the omnidirectional one, but for a relative tolerance.
+
+    Measured against the upper bound of the omnidirectional one where there is one, so that a yes is proved.
+    """
+    best = omnidirectional(table)
+    whole = best.objective.value if best.objective.upper_bound is None else best.objective.upper_bound
+    return best.objective.value > 0.0 and (row is best or row.objective.value >= (1.0 - tolerance) * whole)
+
+
+def least_sufficient(table: ResultTable) -> ResultRow | None:
+    """Find the vehicle with one dipole that suffices with the least tilt; None if none reaches anything."""
+    return next((row for row in dipoles(table) if suffices(table, row)), None)
+
+
+def verdict(table: ResultTable) -> dict[str, Any]:
+    """Return the differences from the omnidirectional vehicle, and the least that suffices, as plain data."""
+    least = least_sufficient(table)
+    return {
+        "share_of_omnidirectional": {row.name: share(table, row) for row in table.rows},
+        "difference_from_omnidirectional": {row.name: difference(table, row) for row in table.rows},
+        "tolerance": TOLERANCE,
+        "least_sufficient": None if least is None else least.name,
+    }
+
+
+def _guaranteed(result: Result, options: SolveKeywords | None) -> Guaranteed:
+    """Bound the guarantees of the pose that was found and, but after an interrupt, of the robust pose."""
+    scenario, pose = result.scenario, result.pose
+    nominal = Quantity.of(scenario).of_ratio(guarantee(scenario, pose.position_m, pose.antenna_axis).lower)
+    if options is None:
+        return Guaranteed(nominal_pose=nominal, robust_pose=None, upper_bound=None)
+    limit_s = min(_ROBUST_S, options.get("time_limit_s", TIME_LIMIT_S))
+    robust = solve(scenario, robust=True, **options | {"gap": None, "time_limit_s": limit_s})
+    return Guaranteed(
+        nominal_pose=nominal,
+        robust_pose=max(nominal, robust.objective.value),
+        upper_bound=robust.objective.upper_bound,
+    )
