@@ -28,7 +28,7 @@ class Quantity:
         short: the same for narrow columns.
         unit: dB, or bits/s/Hz.
         ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
-        field: its name among the numbers of a link, :attr:`nullpose.physics.Link.values`.
+        field: its name among the numbers of a link, ``values`` of :class:`nullpose.physics.Link`.
     """
 
     name: str

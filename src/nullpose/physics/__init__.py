@@ -31,7 +31,13 @@ from nullpose.physics.paper_schemes import (
 )
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
-from nullpose.physics.reception import Reception, objective_value, ratios_under, values_of_many
+from nullpose.physics.reception import (
+    Reception,
+    node_values,
+    objective_value,
+    ratios_under,
+    values_of_many,
+)
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -39,7 +45,7 @@ from nullpose.physics.rotation import (
     rotation_world_from_body,
 )
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
-from nullpose.physics.sinr import received_power_w, sinr
+from nullpose.physics.sinr import received_from_sources_w, received_power_w, sinr
 
 __all__ = [
     "ErrorCase",
@@ -74,9 +80,11 @@ __all__ = [
     "min_secrecy_rate",
     "min_sinr",
     "node_snr",
+    "node_values",
     "objective_value",
     "pose_frames",
     "ratios_under",
+    "received_from_sources_w",
     "received_power_w",
     "rotation_between",
     "rotation_world_from_body",
