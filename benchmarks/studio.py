@@ -14,6 +14,7 @@ from benchmarks.machine import ROOT, Progress
 from nullpose.scenario import Scenario, load
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
+from nullpose.studio.state import State
 
 TITLE = "Studio"
 ABOUT = """From a jammer's move in the server to the answer that is drawn for it, without a browser,
@@ -44,7 +45,7 @@ def _moved(name: str, scene: Scenario, steps: int) -> dict[str, Any]:
         if isinstance(event, Answer):
             answered.setdefault(event.version, time.perf_counter())
 
-    session = Session(scene, on_event=note, rest_s=10.0)
+    session = Session(State(scenario=scene), on_event=note, rest_s=10.0)
     session.start()
     while 1 not in answered:
         time.sleep(0.05)
@@ -53,10 +54,10 @@ def _moved(name: str, scene: Scenario, steps: int) -> dict[str, Any]:
     for step in range(1, steps + 1):
         start = time.perf_counter()
         moved = place + np.array([0.05 * step, 0.0, 0.0])
-        session.change(lambda view, moved=moved: view.moved(("jammers", 0), moved), "drag")
-        while session.version not in answered:
+        session.change(lambda state, moved=moved: state.moved(("jammers", 0), moved), "drag")
+        while session.state.version not in answered:
             time.sleep(0.0005)
-        times.append(1e3 * (answered[session.version] - start))
+        times.append(1e3 * (answered[session.state.version] - start))
     session.close()
     return {
         "scene": name,

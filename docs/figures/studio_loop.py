@@ -60,7 +60,7 @@ CAPTION = """words => {
 def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
     """Yield the frames."""
     session, client = ours.session, ours._client
-    start = np.array(session.view.scenario.jammers[0].position_m)
+    start = np.array(session.state.scenario.jammers[0].position_m)
     look_at, eye = np.array(client.camera.look_at), np.array(client.camera.position)
     total = RISES + DRAGS + HOLDS
 
@@ -102,7 +102,9 @@ def nearer(client: Any, size_m: float) -> None:
 
 def settle(page: Any, session: Any) -> None:
     """Wait for the proof and the maps of the present scene."""
-    while session.field_map is None or not session.status(session.view.case).startswith("certified"):
+    while session.state.field_map is None or not session.state.status(session.state.case).startswith(
+        "certified"
+    ):
         page.wait_for_timeout(50)
 
 

@@ -45,7 +45,7 @@ def at_rest(page: Any, session: Session) -> None:
         session: the server's side.
     """
     page.mouse.move(300, 30)  # away from what would show its help
-    while session.field_map is None or session.status(session.view.case).startswith("solving"):
+    while session.state.field_map is None or session.state.status(session.state.case).startswith("solving"):
         page.wait_for_timeout(200)
     before, now = b"", page.screenshot()
     for _ in range(_MOST_LOOKS):

@@ -10,7 +10,7 @@ from benchmarks.chromium import pixels
 from nullpose import load, solve
 from nullpose.scenario import Scenario
 from nullpose.studio.camera import CARD_PX, aim
-from nullpose.studio.scene import ground_m, scene_size_m
+from nullpose.studio.ground import grid_m, scene_size_m
 
 
 @pytest.mark.parametrize("scale", [0.1, 1.0, 20.0, 400.0])
@@ -22,7 +22,7 @@ def test_nothing_of_a_scene_is_cut_away(paper: Scenario, scale: float) -> None:
     scenario = paper.model_copy(update={"nodes": nodes})
     camera = SimpleNamespace(position=np.ones(3), look_at=np.zeros(3), fov=1.3)
     aim(camera, scenario)
-    middle, reach_m = np.mean(ground_m(scenario), axis=0), scene_size_m(scenario)
+    middle, reach_m = np.mean(grid_m(scenario)[:2], axis=0), scene_size_m(scenario)
     middle = np.append(middle, 0.0)
     forward = (camera.look_at - camera.position) / np.linalg.norm(camera.look_at - camera.position)
     for offset in np.ndindex(2, 2, 2):

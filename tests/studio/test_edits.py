@@ -8,19 +8,20 @@ import pytest
 from nullpose import load
 from nullpose.errors import ScenarioError
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.studio.edits import ADDED, entries_of, new_scenario, with_added, with_fence, with_typed, without
+from nullpose.studio.case import new_scenario
+from nullpose.studio.edits import ADDED, entries_of, with_added, with_fence, with_typed, without
+from nullpose.studio.state import State
 from nullpose.studio.toml_like import toml_like
-from nullpose.studio.view import View
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml") if path.stem != "study")
-PAPER = View(scenario=load(EXAMPLES / "paper.toml"))
+PAPER = State(scenario=load(EXAMPLES / "paper.toml"))
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_typed_unchanged_changes_nothing(name: str) -> None:
     """The texts that are shown, taken as they are, leave the very same view."""
-    view = View(scenario=load(EXAMPLES / f"{name}.toml"))
+    view = State(scenario=load(EXAMPLES / f"{name}.toml"))
     keys = [
         None,
         *(key for key, _ in view.points()),
@@ -49,20 +50,20 @@ def test_a_scene_that_has_no_use_for_an_eavesdropper_refuses_it() -> None:
     """The fault says with which objective it has a meaning."""
     with pytest.raises(ScenarioError, match="secrecy-rate"):
         with_added(PAPER, "eavesdropper", (1.0, 2.0), 100.0)
-    secret = View(scenario=load(EXAMPLES / "eavesdropper.toml"))
+    secret = State(scenario=load(EXAMPLES / "eavesdropper.toml"))
     assert len(with_added(secret, "eavesdropper", (1.0, 2.0), 100.0).members("eavesdroppers")) == 2
 
 
 def test_the_last_node_stays() -> None:
     """A scene without a node is refused."""
     with pytest.raises(ScenarioError, match="nodes"):
-        without(View(scenario=new_scenario()), ("nodes", 0))
+        without(State(scenario=new_scenario()), ("nodes", 0))
 
 
 def test_a_tilt_limit_comes_and_goes() -> None:
     """A number limits the tilt, "any" frees it, and the mount alone leaves it free."""
 
-    def typed(view: View, path: str, text: str) -> View:
+    def typed(view: State, path: str, text: str) -> State:
         return with_typed(view, entries_of(view, None), {path: text})
 
     limited = typed(PAPER, "airframe.tilt_max_deg", "30")
@@ -109,7 +110,7 @@ name = "M1"
 position_m = [17.0, 15.0, 4.0]
 power_w = 2.0   # measured
 """
-    view = View(scenario=scenario_from_text(text.encode(), ""), text=text)
+    view = State(scenario=scenario_from_text(text.encode(), ""), text=text)
     key = ("jammers", 0)
     typed = {"jammers[0].name": "roof", "jammers[0].position_m[0]": "18"}
     renamed = with_typed(view, entries_of(view, key), typed).moved(key, (19.0, 15.0, 4.0))

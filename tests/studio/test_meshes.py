@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, seed, strategies as st
 
-from nullpose.antenna import SHORT_DIPOLE, PatternAntenna
-from nullpose.antenna.pattern import harmonics_of_rows
+from nullpose.antenna import SHORT_DIPOLE
 from nullpose.physics import Pose, antenna_gain
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import NoFlyZone
@@ -75,13 +74,6 @@ def test_solids_are_closed_and_face_outwards(mesh: Mesh, volume: float) -> None:
     assert _volume(mesh.placed(offset_m=[5.0, -7.0, 2.0])) == pytest.approx(volume, rel=2e-3)
 
 
-def test_the_cone_stands_on_the_ground() -> None:
-    """A jammer's spike is closed and has its tip above its foot."""
-    cone = meshes.MARKS["jammers"]
-    assert _volume(cone) > 0.0
-    assert cone.vertices[:, 2].min() == 0.0
-
-
 @seed(0)
 @given(east=st.floats(-1.0, 1.0), north=st.floats(-1.0, 1.0))
 def test_the_null_line_lies_along_the_axis(east: float, north: float) -> None:
@@ -112,20 +104,3 @@ def test_zones_are_drawn_where_they_forbid() -> None:
         mesh = meshes.prism_mesh(outline_m(zone), 0.0, min(10.0, zone.ceiling_m))
         assert _volume(mesh) > 0.0
         assert np.all(np.abs(zone.depth_m(mesh.vertices)) < 0.02 * 2.0 + 1e-9)
-
-
-def test_the_multirotor_is_in_one_piece() -> None:
-    """Body and rotors refer to their own vertices only, and the rotors are outside the hull."""
-    for mesh in (meshes.body_mesh(1.0), meshes.rotor_mesh(1.0), meshes.rod_mesh(1.0)):
-        assert mesh.faces.min() == 0
-        assert mesh.faces.max() == len(mesh.vertices) - 1
-        assert _volume(mesh) > 0.0
-
-
-def test_pattern() -> None:
-    """Every vertex is as far out as the gain in its direction, over the largest."""
-    antenna = PatternAntenna("pattern", "any", harmonics_of_rows([[1.0], [0.1, 0.2, 0.3]]))
-    mesh, _ = meshes.pattern_mesh(antenna, 2.0, 60, 96)
-    distance = np.linalg.norm(mesh.vertices, axis=1)
-    gain = antenna.gain(mesh.vertices / distance[:, None])
-    np.testing.assert_allclose(distance, 2.0 * gain / antenna.peak, rtol=1e-9)

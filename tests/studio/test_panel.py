@@ -6,21 +6,23 @@ import pytest
 
 from nullpose.scenario import Scenario
 from nullpose.studio.panel import Panel
-from nullpose.studio.view import View
+from nullpose.studio.session import History
+from nullpose.studio.state import State
 
 
-def test_the_power_shown_is_the_one_that_holds(paper: Scenario) -> None:
-    """A text that is being typed stays until the scene changes or it is refused; then what holds is shown."""
-    panel = Panel(MagicMock())
-    view = View(scenario=paper).with_power_db(-99.0)
-    panel.show(view)
+def test_the_panel_shows_the_state(paper: Scenario) -> None:
+    """The power as it is, on the slider as far as that goes, and whether there is a step to undo."""
+    gui = MagicMock()
+    for add in (gui.add_text, gui.add_button):
+        add.side_effect = lambda *_, **__: MagicMock()
+    panel = Panel(gui, MagicMock())
+    history = History(State(scenario=paper).with_power_db(-99.0))
+    panel.render(history)
     assert panel.power_text.value == "-99"
-    assert panel.power.value == (-30.0,)  # as far as the slider goes
-    panel.power_text.value = "1"
-    panel.show(view)
-    assert panel.power_text.value == "1"
-    panel.show_power(view)
-    assert panel.power_text.value == "-99"
-    panel.show(view.with_power_db(12.3456))
+    assert panel.power.value == (-30.0,)
+    assert panel.undo.disabled
+    history = history.changed(history.present.with_power_db(12.3456))
+    panel.render(history)
     assert panel.power_text.value == "12.3456"
     assert panel.power.value == pytest.approx((12.3456,))
+    assert not panel.undo.disabled

@@ -9,9 +9,9 @@ from hypothesis import given, seed, strategies as st
 from nullpose import load
 from nullpose.studio.edits import with_added
 from nullpose.studio.picking import ground_place_m, picked
-from nullpose.studio.view import View
+from nullpose.studio.state import State
 
-PAPER = View(scenario=load(Path(__file__).parents[2] / "examples" / "paper.toml"))
+PAPER = State(scenario=load(Path(__file__).parents[2] / "examples" / "paper.toml"))
 SIZE_M = 100.0
 _EYES = st.tuples(st.floats(-150, 150), st.floats(-150, 150), st.floats(5, 150))
 

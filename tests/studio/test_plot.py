@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Scenario
-from nullpose.studio.events import PowerCurve
+from nullpose.studio.answer import PowerCurve
 from nullpose.studio.plot import power_plot_svg
+from nullpose.studio.state import POWER_DB, State
 from nullpose.studio.steps import power_curves
-from nullpose.studio.view import POWER_DB, View
 
 
 def _drawn(text: str) -> ElementTree.Element:
@@ -20,7 +20,7 @@ def _drawn(text: str) -> ElementTree.Element:
 
 def test_every_scheme_has_a_line_of_its_own_look(paper: Scenario) -> None:
     """Four curves, told apart by colour and by dashes, and a ring at the present power."""
-    curve = list(power_curves(2, View(scenario=paper)))[-1]
+    curve = list(power_curves(State(scenario=paper, version=2)))[-1]
     drawn = _drawn(power_plot_svg(curve, version=2, power_db=0.0, value=0.98, unit="dB"))
     lines = list(drawn.iter("polyline"))
     assert len({(line.get("stroke"), line.get("stroke-dasharray")) for line in lines}) == 4
@@ -31,7 +31,7 @@ def test_every_scheme_has_a_line_of_its_own_look(paper: Scenario) -> None:
 
 def test_the_ring_is_on_the_curve(paper: Scenario) -> None:
     """At a power that the curve has, the ring and the optimum's line meet."""
-    curve = list(power_curves(1, View(scenario=paper)))[-1]
+    curve = list(power_curves(State(scenario=paper)))[-1]
     row = curve.table.of("optimum")[4]
     drawn = _drawn(
         power_plot_svg(curve, version=1, power_db=row.value, value=row.objective.value_db, unit="dB")
@@ -46,7 +46,7 @@ def test_the_ring_is_on_the_curve(paper: Scenario) -> None:
 def test_a_curve_is_drawn_where_its_values_are(paper: Scenario) -> None:
     """Values far below the top are cut off by the view and never drawn as a plateau at its edge."""
     wide = [(POWER_DB[0], 1e3), (POWER_DB[0] + 7.0, 10.0), (23.0, 1e-2), (POWER_DB[1], 1e-4)]
-    table = next(iter(power_curves(1, View(scenario=paper)))).table
+    table = next(iter(power_curves(State(scenario=paper)))).table
     row = table.of("optimum")[0]
     rows = tuple(replace(row, value=x, objective=replace(row.objective, value=y)) for x, y in wide)
     curve = PowerCurve(version=1, table=replace(table, rows=rows), complete=True)
@@ -64,14 +64,14 @@ def test_a_curve_is_drawn_where_its_values_are(paper: Scenario) -> None:
 
 def test_a_power_beyond_the_plot_has_no_ring(paper: Scenario) -> None:
     """A scene whose jammers are weaker than the plot reaches has no ring at its edge."""
-    curve = next(iter(power_curves(1, View(scenario=paper))))
+    curve = next(iter(power_curves(State(scenario=paper))))
     drawn = _drawn(power_plot_svg(curve, version=1, power_db=-99.0, value=1.0, unit="dB"))
     assert not list(drawn.iter("circle"))
 
 
 def test_an_old_curve_is_marked(paper: Scenario) -> None:
     """A curve of another version is drawn pale and says that it is outdated, without a ring."""
-    curve = next(iter(power_curves(1, View(scenario=paper))))
+    curve = next(iter(power_curves(State(scenario=paper))))
     drawn = _drawn(power_plot_svg(curve, version=2, power_db=0.0, value=None, unit="dB"))
     assert drawn.get("data-state") == "outdated"
     assert not list(drawn.iter("circle"))

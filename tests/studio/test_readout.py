@@ -14,9 +14,10 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import solve
 from nullpose.studio.answer import answer_of
+from nullpose.studio.card import card_html
 from nullpose.studio.case import OPTIMUM, case_named
-from nullpose.studio.readout import about_html, failure_html, readout_html
-from nullpose.studio.session import Session
+from nullpose.studio.readout import failure_html, readout_html
+from nullpose.studio.state import State
 from nullpose.studio.steps import quick_answers
 
 
@@ -38,21 +39,11 @@ class _Text(HTMLParser):
         self.text += data
 
 
-@pytest.fixture
-def idle(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> Session:
-    """A session whose worker never answers."""
-    monkeypatch.setattr("nullpose.studio.worker.Worker._serve", lambda self, version, view: None)
-    session = Session(paper)
-    session.start()
-    return session
-
-
-def test_without_an_answer_there_are_no_numbers(idle: Session) -> None:
+def test_without_an_answer_there_are_no_numbers(paper: Scenario) -> None:
     """Before the first answer it says that it is solving, and no value is shown."""
-    html = readout_html(idle)
+    html = readout_html(State(scenario=paper))
     assert "solving" in _Text(html).text
     assert "data-value" not in html
-    assert idle.close()
 
 
 @pytest.fixture
@@ -62,61 +53,52 @@ def unsure(paper: Scenario) -> Scenario:
     return paper.model_copy(update={"jammers": (jammer,)})
 
 
-def test_two_cases_differ_by_what_is_known_of_both(idle: Session, unsure: Scenario) -> None:
+def test_two_cases_differ_by_what_is_known_of_both(unsure: Scenario) -> None:
     """A robust case counts with what it guarantees, once that is known, and it is said that it does."""
     robust = case_named("Robust pose")
-    idle.change(lambda view: view.with_scenario(unsure).with_compared(robust))
-    (first,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    idle.take(first)
-    idle.take(replace(first, case=robust))
-    assert 'data-np="difference"' not in readout_html(idle)
-    known = answer_of(idle.version, robust, solve(unsure, robust=True, certify=False))
-    idle.take(known)
-    difference = f"{first.shown_value - known.shown_value:z.2f}"
-    text = _Text(readout_html(idle)).text
+    state = State(scenario=unsure, compared=robust)
+    (first,) = quick_answers(state, OPTIMUM)
+    state = state.with_event(first).with_event(replace(first, case=robust))
+    assert 'data-np="difference"' not in readout_html(state)
+    guarded = answer_of(1, robust, solve(unsure, robust=True, certify=False))
+    difference = f"{first.shown_value - guarded.shown_value:z.2f}"
+    text = _Text(readout_html(state.with_event(guarded))).text
     assert f"A over B: {difference} dB (B guaranteed, A without errors)" in text
-    assert idle.close()
 
 
-def test_the_worst_node_has_the_smallest_number(idle: Session, unsure: Scenario) -> None:
+def test_the_worst_node_has_the_smallest_number(unsure: Scenario) -> None:
     """Beside each node of a robust case stands what it is guaranteed, and the smallest is the value."""
     robust = case_named("Robust pose")
-    idle.change(lambda view: view.with_scenario(unsure).with_case(robust))
-    known = answer_of(idle.version, robust, solve(unsure, robust=True, certify=False))
-    idle.take(known)
-    (table,) = re.findall(r'<table data-np="guaranteed".*</table>', readout_html(idle))
+    guarded = answer_of(1, robust, solve(unsure, robust=True, certify=False))
+    html = readout_html(State(scenario=unsure, case=robust).with_event(guarded))
+    (table,) = re.findall(r'<table data-np="guaranteed".*</table>', html)
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
     numbers = {row[0]: float(row[2].replace(MINUS, "-")) for row in found}
     (worst,) = (row[0] for row in found if "worst" in row[3])
-    assert list(numbers) == [link.node for link in known.result.links]
-    assert numbers[worst] == min(numbers.values()) == pytest.approx(known.shown_value, abs=0.006)
-    assert "guaranteed SINR" in _Text(readout_html(idle)).text
-    assert idle.close()
+    assert list(numbers) == [link.node for link in guarded.result.links]
+    assert numbers[worst] == min(numbers.values()) == pytest.approx(guarded.shown_value, abs=0.006)
+    assert "guaranteed SINR" in _Text(html).text
 
 
-def test_a_margin_stands_beside_the_node_that_it_decides(idle: Session, paper: Scenario) -> None:
+def test_a_margin_stands_beside_the_node_that_it_decides(paper: Scenario) -> None:
     """Where nodes require an SINR, each has its margin shown, of which the smallest decides."""
     nodes = (paper.nodes[0].model_copy(update={"min_sinr_db": 3.0}), paper.nodes[1])
-    idle.change(lambda view: view.with_scenario(paper.model_copy(update={"nodes": nodes})))
-    (answer,) = quick_answers(idle.version, idle.view, OPTIMUM)
-    idle.take(answer)
-    text = _Text(readout_html(idle)).text
+    state = State(scenario=paper.model_copy(update={"nodes": nodes}))
+    (answer,) = quick_answers(state, OPTIMUM)
+    text = _Text(readout_html(state.with_event(answer))).text
     for link in answer.result.links:
         assert link.margin_db is not None
         assert f"margin {link.margin_db:z.2f} dB".replace("-", MINUS) in text
-    assert idle.close()
 
 
-def test_what_is_left_out_is_said(idle: Session, unsure: Scenario) -> None:
+def test_what_is_left_out_is_said(unsure: Scenario) -> None:
     """The optimum of a scene with errors says that they are left out; a robust pose does not."""
-    idle.change(lambda view: view.with_scenario(unsure))
-    assert "errors of the file are left out" in _Text(readout_html(idle)).text
-    idle.change(lambda view: view.with_case(case_named("Robust pose")))
-    assert "left out" not in _Text(readout_html(idle)).text
     array = load(Path(__file__).parents[2] / "examples" / "array.toml")
-    idle.change(lambda view: view.with_scenario(array))
-    assert "array of the file is not shown" in _Text(readout_html(idle)).text
-    assert idle.close()
+    robust = case_named("Robust pose")
+    for write in (readout_html, card_html):
+        assert "errors of the file are left out" in _Text(write(State(scenario=unsure))).text
+        assert "left out" not in _Text(write(State(scenario=unsure, case=robust))).text
+        assert "array of the file is not shown" in _Text(write(State(scenario=array))).text
 
 
 def test_faults_are_listed_by_their_path() -> None:
@@ -129,10 +111,3 @@ def test_faults_are_listed_by_their_path() -> None:
     assert "<i>.toml was not taken" in text.text
     assert "airspace" in text.text
     assert "<i>" not in html
-
-
-def test_the_explanation_is_short_and_closed() -> None:
-    """What am I looking at fits a panel."""
-    text = _Text(about_html())
-    assert text.open == []
-    assert len(text.text.split()) < 110

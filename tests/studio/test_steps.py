@@ -5,20 +5,20 @@ import pytest
 from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
 from nullpose.studio.case import cases_of
+from nullpose.studio.state import State
 from nullpose.studio.steps import power_curves, quick_answers
-from nullpose.studio.view import View
 
 
 @pytest.mark.parametrize("power_db", [-30.0, 0.0, 20.0, 40.0])
 def test_a_quick_answer_is_the_best_pose(paper: Scenario, power_db: float) -> None:
     """Of every case, though nothing of it is said to be proved."""
-    view = View(scenario=paper).with_power_db(power_db)
-    for case in cases_of(view.scenario):
-        (answer,) = quick_answers(3, view, case)
+    state = State(scenario=paper, version=3).with_power_db(power_db)
+    for case in cases_of(state.scenario):
+        (answer,) = quick_answers(state, case)
         assert answer.version == 3
         assert answer.result.status is Status.BEST_FOUND
         assert answer.result.objective.upper_bound is None
-        best = solve(case.on(view.scenario), case.scheme)
+        best = solve(case.on(state.scenario), case.scheme)
         assert answer.result.objective.value == pytest.approx(best.objective.value, rel=1e-6)
 
 
@@ -34,7 +34,7 @@ def test_a_curve_asks_before_every_search(paper: Scenario) -> None:
         nonlocal asked
         asked += 1
 
-    *growing, last = power_curves(1, View(scenario=paper), go_on)
+    *growing, last = power_curves(State(scenario=paper), go_on)
     assert last.complete
     assert not any(curve.complete for curve in growing)
     assert asked == len(last.table.rows)
@@ -54,5 +54,5 @@ def test_a_curve_ends_when_told(paper: Scenario) -> None:
             raise Enough
 
     with pytest.raises(Enough):
-        next(power_curves(1, View(scenario=paper), go_on))
+        next(power_curves(State(scenario=paper), go_on))
     assert asked == 3

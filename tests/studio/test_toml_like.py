@@ -14,8 +14,8 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario import Jammer, Node, NoFlyZone, Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.edits import entries_of, with_added, with_typed
+from nullpose.studio.state import State
 from nullpose.studio.toml_like import toml_like
-from nullpose.studio.view import View
 
 EXAMPLES = {
     path.stem: (path.read_text(), load(path))
@@ -95,7 +95,7 @@ EDITS = st.one_of(
     ),
     st.builds(lambda low_m: _airspace(altitude_m=(low_m, 90.0)), st.floats(6.0, 80.0)),
     st.builds(_tilted, st.floats(1.0, 180.0)),
-    st.builds(lambda db: lambda s: View(scenario=s).with_power_db(db).scenario, st.floats(-30.0, 40.0)),
+    st.builds(lambda db: lambda s: State(scenario=s).with_power_db(db).scenario, st.floats(-30.0, 40.0)),
 )
 
 
@@ -219,7 +219,7 @@ def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
 def test_powers_in_dbm_stay_in_dbm() -> None:
     """Those that are typed, those that the slider sets, and that of a point that is added."""
     text, scenario = EXAMPLES["field"]
-    view = View(scenario=scenario, text=text)
+    view = State(scenario=scenario, text=text)
     typed = with_typed(view, entries_of(view, ("nodes", 0)), {"nodes[0].power_dbm": "17.5"})
     saved = with_added(typed.with_power_db(3.0), "jammer", (10.0, 20.0), 100.0).written.text
     assert "power_w =" not in saved

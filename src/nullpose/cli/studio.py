@@ -37,7 +37,7 @@ def studio(
     """
     from nullpose.scenario import apply_overrides
     from nullpose.scenario.toml_file import file_text
-    from nullpose.studio.edits import new_scenario
+    from nullpose.studio.case import new_scenario
     from nullpose.studio.server import studio as running_studio
 
     if file is None:

@@ -1,4 +1,4 @@
-"""What is shown for one case of one version of a scene."""
+"""What is found for a version of a scene: answers, progress, the power curve; and the words for them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solver import Result, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
+from nullpose.study import ResultTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,6 +59,55 @@ class Answer:
         """What the value is called."""
         quantity = self.result.objective.quantity
         return quantity.smallest if self.guarded is None else f"guaranteed {quantity.noun}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Notice:
+    """Why there is no answer: a case that cannot be solved, or kernels that are being compiled.
+
+    Args:
+        version: the version of the scene.
+        case: the case that cannot be solved; None while the kernels are compiled, once after an installation.
+        words: what to show.
+    """
+
+    version: int
+    case: Case | None
+    words: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PowerCurve:
+    """The objective of several schemes against the jamming power, as far as it has been worked out.
+
+    Args:
+        version: the version of the scene.
+        table: one row for each power, in dB, and scheme.
+        complete: whether all powers are there.
+    """
+
+    version: int
+    table: ResultTable
+    complete: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a proof that runs has come.
+
+    Args:
+        version: the version of the scene.
+        case: the case that is proved.
+        gap: the bound above the value, relative.
+        target: the gap that is aimed at.
+        boxes: how many were examined.
+    """
+
+    version: int
+    case: Case
+    gap: float
+    target: float
+    boxes: int
 
 
 def signed(number: float, digits: int = 2) -> str:
@@ -109,7 +159,7 @@ def with_errors(answer: Answer) -> Answer:
 
 
 def status_words(answer: Answer | None) -> str:
-    """Return how far the solve of the present scene has come, in words.
+    """Say how far the solve of the present scene has come.
 
     Args:
         answer: the latest to the present scene, or None.

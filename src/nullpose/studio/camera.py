@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.studio.scene import grid_m, scene_size_m
+from nullpose.studio.ground import grid_m, scene_size_m
 
 FloatArray = NDArray[np.float64]
 

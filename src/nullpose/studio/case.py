@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nullpose.scenario import Scenario
+from nullpose.scenario import Airspace, Node, Receiver, Scenario
 from nullpose.solver import Scheme
 from nullpose.study import AIRFRAME_CASES, Case as Vehicle
 
@@ -36,7 +36,7 @@ class Case:
         return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
 
     def missing(self, scenario: Scenario) -> str | None:
-        """Return why the case has no meaning for a scenario, or None if it has.
+        """Name the reason for which the case has no meaning for a scenario, or None.
 
         Args:
             scenario: as stated.
@@ -46,17 +46,17 @@ class Case:
         return self.scheme.not_applicable(self.on(scenario))
 
     def left_out(self, scenario: Scenario) -> str:
-        """Return what of a scenario the case leaves out, in sentences; empty if it takes all of it.
+        """List in sentences the parts of a scenario that the case leaves out.
 
         Args:
             scenario: as stated.
         """
-        said = []
+        sentences = []
         if scenario.array is not None:
-            said.append("The array of the file is not shown: this is the pose of one antenna.")
+            sentences.append("The array of the file is not shown: this is the pose of one antenna.")
         if scenario.is_uncertain and not self.robust:
-            said.append("The errors of the file are left out; the case Robust pose guards against them.")
-        return " ".join(said)
+            sentences.append("The errors of the file are left out; the case Robust pose guards against them.")
+        return " ".join(sentences)
 
 
 OPTIMUM = Case(label="Optimum pose")
@@ -104,3 +104,13 @@ def case_named(label: str) -> Case:
         KeyError: there is none.
     """
     return {case.label: case for case in CASES}[label]
+
+
+def new_scenario() -> Scenario:
+    """Return the scene to build another in: one node, and the paper's noise and altitudes."""
+    return Scenario(
+        name="New scene",
+        airspace=Airspace(altitude_m=(8.0, 30.0)),
+        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
+        nodes=(Node(name="S1", position_m=(0.0, 0.0, 0.0), power_w=1.0),),
+    )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.studio.colours import linear_colours
+from nullpose.studio.look import linear_colours
 from nullpose.studio.meshes import Mesh
 
 if TYPE_CHECKING:

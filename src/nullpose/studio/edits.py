@@ -14,17 +14,16 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import GROUND_ANTENNAS
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import (
-    Airspace,
     Eavesdropper,
+    GroundPoint,
     Jammer,
     Node,
     NoFlyZone,
-    Receiver,
     Scenario,
     apply_overrides,
 )
 from nullpose.scenario.overrides import Override, parse_override
-from nullpose.studio.view import KINDS, Key, Kind, View
+from nullpose.studio.state import KINDS, Key, Kind, State
 
 ADDED: dict[str, Kind] = {
     "node": "nodes",
@@ -77,21 +76,11 @@ class Entry:
     options: tuple[str, ...] = ()
 
 
-def new_scenario() -> Scenario:
-    """Return the scene to build another in: one node, and the paper's noise and altitudes."""
-    return Scenario(
-        name="New scene",
-        airspace=Airspace(altitude_m=(8.0, 30.0)),
-        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        nodes=(Node(name="S1", position_m=(0.0, 0.0, 0.0), power_w=1.0),),
-    )
-
-
-def with_added(view: View, what: str, place_m: ArrayLike, size_m: float) -> View:
-    """Return the view with a point or a zone more, the last of its kind and like the one before.
+def with_added(state: State, what: str, place_m: ArrayLike, size_m: float) -> State:
+    """Return the state with a point or a zone more, the last of its kind and like the one before.
 
     Args:
-        view: the view now.
+        state: before.
         what: a key of :data:`ADDED`.
         place_m: (2,) where it is on the ground, east and north, metres.
         size_m: of the scene, from which a zone's radius follows.
@@ -100,8 +89,8 @@ def with_added(view: View, what: str, place_m: ArrayLike, size_m: float) -> View
         ScenarioError: the scenario has no use for it.
     """
     kind = ADDED[what]
-    table, members = _TABLES[kind], view.members(kind)
-    taken = {one.name for each in KINDS for one in view.members(each)}
+    table, members = _TABLES[kind], state.members(kind)
+    taken = {member.name for each in KINDS for member in state.members(each)}
     east, north = (round(float(number), 2) for number in np.asarray(place_m))
     values: dict[str, Any] = {
         "name": next(name for i in count(1) if (name := f"{table.letter}{i}") not in taken)
@@ -109,17 +98,17 @@ def with_added(view: View, what: str, place_m: ArrayLike, size_m: float) -> View
     if kind == "no_fly":
         values |= {"centre_m": (east, north), "radius_m": float(f"{0.08 * size_m:.1g}")}
     else:
-        alike = (*view.scenario.nodes, *members)[-1]
+        alike = (*state.scenario.nodes, *members)[-1]
         keys = table.model_fields.keys() & type(alike).model_fields.keys() & set(_ALIKE)
         values |= {key: getattr(alike, key) for key in keys} | {"position_m": (east, north, 0.0)}
-    return view.with_members(kind, (*members, table.from_dict(values)))
+    return state.with_members(kind, (*members, table.from_dict(values)))
 
 
-def without(view: View, key: Key) -> View:
-    """Return the view without a point or a zone.
+def without(state: State, key: Key) -> State:
+    """Return the state without a point or a zone.
 
     Args:
-        view: the view now.
+        state: before.
         key: which.
 
     Raises:
@@ -127,55 +116,56 @@ def without(view: View, key: Key) -> View:
     """
     kind, index = key
     # the text follows at once: a point that is added later may have the same name, and other comments
-    return view.with_members(kind, (one for i, one in enumerate(view.members(kind)) if i != index)).written
+    members = [member for i, member in enumerate(state.members(kind)) if i != index]
+    return replace(state.with_members(kind, members).written, selected=None)
 
 
-def with_fence(view: View, corners_m: ArrayLike) -> View:
-    """Return the view with another fence.
+def with_fence(state: State, corners_m: ArrayLike) -> State:
+    """Return the state with another fence.
 
     Args:
-        view: the view now.
+        state: before.
         corners_m: (n, 2) east and north of its corners in order around it, metres.
 
     Raises:
         ScenarioError: they make no fence.
     """
     corners = tuple((round(float(x), 2), round(float(y), 2)) for x, y in np.asarray(corners_m))
-    airspace = view.scenario.airspace.model_copy(update={"geofence_m": corners})
-    return view.with_scenario(view.scenario.model_copy(update={"airspace": airspace}))
+    airspace = state.scenario.airspace.model_copy(update={"geofence_m": corners})
+    return state.with_scenario(state.scenario.model_copy(update={"airspace": airspace}))
 
 
-def entries_of(view: View, key: Key | None) -> tuple[Entry, ...]:
-    """Return what can be typed of a point or a zone; of the vehicle and its airspace without one.
+def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
+    """List the values of a point or a zone that can be typed; of the vehicle and its airspace without one.
 
     Args:
-        view: the view now.
+        state: before.
         key: which, or None.
     """
     if key is None:
-        return tuple(_vehicle_entries(view.scenario))
+        return tuple(_vehicle_entries(state.scenario))
     kind, index = key
-    one, path = view.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
-    stated = {"name": "name"} | _keys(one)
-    entries = [Entry(f"{path}.{name}", label, _text(getattr(one, name))) for name, label in stated.items()]
+    member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
+    labels = {"name": "name"} | _keys(member)
+    entries = [Entry(f"{path}.{key}", label, _text(getattr(member, key))) for key, label in labels.items()]
     if kind == "no_fly":
         return tuple(entries)
     place = [
         Entry(f"{path}.position_m[{i}]", *each)
-        for i, each in enumerate(zip(_DIRECTIONS, map(_text, one.position_m), strict=True))
+        for i, each in enumerate(zip(_DIRECTIONS, map(_text, member.position_m), strict=True))
     ]
-    antenna = Entry(f"{path}.antenna", "antenna", one.antenna, tuple(GROUND_ANTENNAS))
+    antenna = Entry(f"{path}.antenna", "antenna", member.antenna, tuple(GROUND_ANTENNAS))
     return (entries[0], *place, *entries[1:], antenna)
 
 
-def _keys(one: Any) -> dict[str, str]:
-    """Return what can be typed of a point or a zone besides its name and its place, with labels."""
-    if isinstance(one, NoFlyZone):
-        return _SHAPES[one.shape] | {"altitude_m": "altitudes (m)"}
-    in_dbm = getattr(one, "power_dbm", None) is not None
+def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
+    """Label the keys of a point or a zone that can be typed besides its name and its place."""
+    if isinstance(member, NoFlyZone):
+        return _SHAPES[member.shape] | {"altitude_m": "altitudes (m)"}
+    in_dbm = getattr(member, "power_dbm", None) is not None
     power = {"power_dbm": "power (dBm)"} if in_dbm else {"power_w": "power (W)"}
     keys = power | {"min_sinr_db": "required SINR (dB)", "uncertainty_m": "position error (m)"}
-    return {key: label for key, label in keys.items() if key in type(one).model_fields}
+    return {key: label for key, label in keys.items() if key in type(member).model_fields}
 
 
 def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
@@ -199,11 +189,11 @@ def _text(value: Any) -> str:
     return f"{value + 0.0:.12g}" if isinstance(value, float) else str(value)
 
 
-def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -> View:
-    """Return the view with the values that were typed.
+def with_typed(state: State, entries: Iterable[Entry], texts: Mapping[str, str]) -> State:
+    """Return the state with the values that were typed.
 
     Args:
-        view: the view now.
+        state: before.
         entries: what could be typed.
         texts: what was, by path; where it is what it was, nothing changes.
 
@@ -215,7 +205,7 @@ def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -
         typed = texts.get(entry.path, entry.text).strip()
         if typed == entry.text:
             continue
-        if entry.path.startswith("airframe.") and not overrides and view.scenario.airframe is None:
+        if entry.path.startswith("airframe.") and not overrides and state.scenario.airframe is None:
             overrides.append(_FREE)
         if entry.path == "airframe.tilt_max_deg" and typed in ("", _ANY):
             overrides.append(_FREE)
@@ -223,9 +213,9 @@ def with_typed(view: View, entries: Iterable[Entry], texts: Mapping[str, str]) -
             overrides.append(Override(entry.path, typed or None))
         else:
             overrides.append(parse_override(f"{entry.path}={typed.replace(MINUS, '-')}"))
-    typed_in = view.with_scenario(apply_overrides(view.scenario, overrides)) if overrides else view
-    names = [one for one in overrides if one.path.endswith(".name")]
+    typed_in = state.with_scenario(apply_overrides(state.scenario, overrides)) if overrides else state
+    names = [override for override in overrides if override.path.endswith(".name")]
     if names:  # by itself in the text, where a point that has moved too would be taken for another one
-        renamed = view.written.with_scenario(apply_overrides(view.scenario, names)).written
+        renamed = state.written.with_scenario(apply_overrides(state.scenario, names)).written
         return replace(typed_in, text=renamed.text)
     return typed_in

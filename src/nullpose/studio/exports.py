@@ -1,18 +1,30 @@
-"""What can be taken away from a page: the scenario, the pose, the power plot, the scene."""
+"""What can be taken away from a page: the scenario, the pose, the power plot, the scene, a picture of it."""
 
 from __future__ import annotations
 
 import json
 from io import BytesIO
+from textwrap import fill
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
-from nullpose.studio.answer import Answer
-from nullpose.studio.drone import LINK_RANGE_DB
-from nullpose.studio.look import LIGHT, Look
-from nullpose.studio.session import Session
+from nullpose.report.numbers import MINUS
+from nullpose.studio.answer import Answer, signed
+from nullpose.studio.camera import aim
+from nullpose.studio.card import card_html
+from nullpose.studio.ground import grid_m
+from nullpose.studio.guard import look_html
+from nullpose.studio.look import LIGHT, Look, scale_colours
+from nullpose.studio.opening import LOOPBACK, open_server, unannounced
+from nullpose.studio.state import State
 from nullpose.studio.toml_like import toml_like
+
+if TYPE_CHECKING:
+    from viser import ClientHandle
 
 _PHONE_PX = {"image_width": 390, "image_height": 844}
 
@@ -22,49 +34,43 @@ _ON_A_PHONE = """if (innerWidth < 600 && innerWidth < innerHeight) {
 }"""
 """Gives viser, which asks the address of a page for it, a camera that sees the whole scene on a phone."""
 
-
-def scenario_toml(session: Session) -> bytes:
-    """Return the scene as a scenario file, in the text of the file that it is from.
-
-    Args:
-        session: whose.
-    """
-    return toml_like(session.view.text, session.view.scenario).encode()
+_FINER = 2  # pixels of the picture for each of the canvas
+_FAR_M = 1000.0  # what is farther from the camera is not in viser's pictures
+_ROW = 0.022  # height of a row of the text below, widths of the picture
+_LONGEST_TITLE = 55  # letters in a row
+_LONGEST_S = 60.0
+_GROUND, _INK = {False: "#ffffff", True: "#141414"}, {False: "#16191d", True: "#f1f3f5"}
 
 
-def pose_json(session: Session) -> bytes:
-    """Return the solutions of the cases that are shown, as JSON.
+def scenario_toml(state: State) -> bytes:
+    """Write the scene as a scenario file, in the text of the file that it is from."""
+    return toml_like(state.text, state.scenario).encode()
 
-    Args:
-        session: whose.
+
+def pose_json(state: State) -> bytes:
+    """Write the solutions of the cases that are shown, as JSON.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    solved = [{"case": one.case.label} | one.result.to_dict() for one in current_answers(session)]
+    solved = [{"case": answer.case.label} | answer.result.to_dict() for answer in current_answers(state)]
     return (json.dumps(solved[0] if len(solved) == 1 else solved, indent=2, allow_nan=False) + "\n").encode()
 
 
-def current_answers(session: Session) -> list[Answer]:
+def current_answers(state: State) -> list[Answer]:
     """Return the answers of the cases that are shown, all to the present scene.
-
-    Args:
-        session: whose.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    current = [answer for answer in map(session.current, session.view.cases) if answer is not None]
-    if len(current) < len(session.view.cases):
+    current = [answer for answer in map(state.current, state.cases) if answer is not None]
+    if len(current) < len(state.cases):
         raise UsageError("the scene is being solved; try again when its pose is there")
     return current
 
 
-def figure_png(session: Session) -> bytes:
-    """Return the power plot as a picture (PNG).
-
-    Args:
-        session: whose.
+def figure_png(state: State) -> bytes:
+    """Draw the power plot as a picture (PNG).
 
     Raises:
         UsageError: there is no complete plot of the present scene yet.
@@ -72,8 +78,8 @@ def figure_png(session: Session) -> bytes:
     from nullpose.report.figures.style import house_style
     from nullpose.report.figures.sweep import draw_sweep
 
-    curve = session.curve
-    if curve is None or not curve.complete or curve.version != session.version:
+    curve = state.curve
+    if curve is None or not curve.complete or curve.version != state.version:
         raise UsageError("the plot of this scene is not complete yet; try again in a moment")
     figure, picture = draw_sweep(curve.table), BytesIO()
     with house_style():
@@ -81,58 +87,111 @@ def figure_png(session: Session) -> bytes:
     return picture.getvalue()
 
 
-def scene_html(
-    session: Session,
-    chosen_map: str,
-    link_range_db: tuple[float, float] = LINK_RANGE_DB,
-    *,
-    look: Look = LIGHT,
-    camera: Any = None,
-    pattern: bool = True,
-) -> bytes:
-    """Return the scene with its card as one HTML file that needs neither a server nor a network.
+def scene_html(state: State, look: Look = LIGHT, camera: Any = None) -> bytes:
+    """Write the scene with its card as one HTML file that needs neither a server nor a network.
 
     Args:
-        session: whose.
-        chosen_map: the map that is shown.
-        link_range_db: ends of the links' colours, dB.
+        state: of the page.
         look: its colours.
-        camera: of the page, to begin with what it sees; None for one that sees the whole scene, as it is on a
+        camera: of the page, to begin with its view; None for one that sees the whole scene, as it is on a
             phone in any case.
-        pattern: whether the antenna's pattern is shown.
 
     Raises:
         UsageError: the present scene is not solved yet.
     """
-    from nullpose.studio.camera import aim
-    from nullpose.studio.frame import look_html
-    from nullpose.studio.opening import LOOPBACK, open_server, unannounced
-    from nullpose.studio.overlay import overlay_html
     from nullpose.studio.stage import Stage
 
-    best = current_answers(session)[0]
+    pose = current_answers(state)[0].result.pose
     server, _ = open_server(LOOPBACK, 0)
     try:
         first = server.initial_camera
-        aim(first, session.view.scenario, best.result.pose)
+        aim(first, state.scenario, pose)
         if camera is not None:
             first.position, first.look_at, first.fov = camera.position, camera.look_at, camera.fov
             first.up = camera.up_direction
-        stage = Stage(server.scene, session, look)
-        stage.link_range_db = link_range_db
-        stage.show(first.position, chosen_map=chosen_map, pattern=pattern)
+        stage = Stage(server.scene, look)
+        stage.eye_m = first.position
+        stage.render(state)
         page = str(server.scene.as_html(dark_mode=look.dark))
-        ends = {"position": first.position, "look_at": first.look_at, "fov": first.fov}
-        phone = SimpleNamespace(**ends, **_PHONE_PX)
-        aim(phone, session.view.scenario, best.result.pose)
+        phone = SimpleNamespace(fov=first.fov, **_PHONE_PX)
+        aim(phone, state.scenario, pose)
     finally:
         with unannounced():
             server.stop()
     card = (
-        f"{look_html()}<div id=np-overlay>{overlay_html(session, stage.scale)}</div>"
+        f"{look_html()}<div id=np-overlay>{card_html(state)}</div>"
         f"<script>{_ON_A_PHONE % (phone.position.tolist(), phone.look_at.tolist())}</script>"
         "<script>document.documentElement.style.setProperty('--np-height',"
         "`${document.getElementById('np-overlay').offsetHeight}px`)</script>"  # viser's notices are below
     )
     head, body, rest = page.rpartition("</body>")
     return f"{head}{card}{body}{rest}".encode()
+
+
+def scene_png(state: State, client: ClientHandle, look: Look) -> bytes:
+    """Draw a page's scene as a picture (PNG), with value, bound, status and colours below it.
+
+    Args:
+        state: of the page.
+        client: its browser, which draws; this waits for it.
+        look: the page's colours.
+
+    Raises:
+        UsageError: the present scene is not solved yet, a part of it is too far away, or the browser does
+            not answer.
+    """
+    answers, camera = current_answers(state), client.camera
+    low, high, _ = grid_m(state.scenario)
+    corners = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
+    seen_m = np.vstack([corners, answers[0].result.pose.position_m])
+    far_m = float(np.linalg.norm(seen_m - camera.position, axis=1).max())
+    if far_m > _FAR_M:
+        raise UsageError(
+            f"a part of the scene is {far_m:.0f} m from the camera, and a picture holds {_FAR_M:.0f} m; move "
+            "the camera nearer, or export the scene (HTML), which has no limit"
+        )
+    width, height = _FINER * camera.image_width, _FINER * camera.image_height
+    try:
+        drawn = client.get_render(height, width, transport_format="png", timeout=_LONGEST_S)
+    except (RuntimeError, TimeoutError) as error:
+        raise UsageError(
+            "the browser has drawn no picture; bring its tab to the front and try again"
+        ) from error
+    return _with_legend(drawn, state, [row for answer in answers for row in _rows(state, answer)], look)
+
+
+def _rows(state: State, answer: Answer) -> tuple[str, str]:
+    """Write an answer in two rows."""
+    unit = answer.result.objective.quantity.unit
+    bound = answer.bound_text and f", {answer.bound_text} {unit}"
+    numbers = f"{signed(answer.shown_value, 4)} {unit} {answer.value_words}{bound}"
+    return numbers, f"{answer.case.label}: {state.status(answer.case)}"
+
+
+def _with_legend(drawn: NDArray[Any], state: State, rows: list[str], look: Look) -> bytes:
+    """Set a picture on the page's ground, with rows of text and the map's colours below it."""
+    from matplotlib.colors import to_rgb
+    from matplotlib.figure import Figure
+
+    height, width = drawn.shape[:2]
+    strip, ink, ground = int(_ROW * max(len(rows) + 1, 5) * width), _INK[look.dark], _GROUND[look.dark]
+    share = drawn[..., 3:] / 255.0
+    figure = Figure(figsize=(width / 100, (height + strip) / 100), dpi=100, facecolor=ground)
+    figure.figimage(share * drawn[..., :3] / 255.0 + (1.0 - share) * np.array(to_rgb(ground)), 0, strip)
+    size, tall, row_tall = 0.011 * width, strip / (height + strip), _ROW * width / (height + strip)
+    style: dict[str, Any] = {"color": ink, "va": "top", "size": size}
+    for row, text in enumerate(rows):
+        weight = "normal" if row % 2 else "bold"
+        figure.text(0.02, tall - row_tall * (row + 0.5), text, weight=weight, **style)
+    if state.scale is not None:
+        (low, high), unit = state.scale.ends, state.scale.field.unit
+        bar = figure.add_axes((0.62, 0.72 * tall, 0.36, 0.12 * tall))
+        bar.imshow(scale_colours(np.linspace(0.0, 1.0, 256), 0.0, 1.0)[None], aspect="auto")
+        bar.set_axis_off()
+        style["size"] = 0.75 * size
+        ends = f"{low:g} to {high:g} {unit}".replace("-", MINUS)
+        words = f"{ends}: {fill(state.scale.field.title, _LONGEST_TITLE)}"
+        figure.text(0.62, tall - 1.7 * row_tall, words, **style)
+    picture = BytesIO()
+    figure.savefig(picture, format="png", dpi=100, facecolor=ground)
+    return picture.getvalue()

@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from nullpose.physics import antenna_gain
+from nullpose.problem.build import build_family
+from nullpose.solver.background_compiler import BackgroundCompiler
 from nullpose.studio.answer import Answer
+from nullpose.studio.case import new_scenario
+from nullpose.studio.look import scale_range
 from nullpose.study.value_map import Field, in_decibels, value_map
 
 MAPS = ("best value at each place", "pattern's footprint")
 """What the two maps are called, the first being that of the best values."""
+
+
+_asking = threading.Lock()
+
+
+class Scale(NamedTuple):
+    """A map and its colours.
+
+    Args:
+        field: the map.
+        ends: values of the dark and of the bright end.
+        of_value: whether it is of the value that is maximised, so that the pose's own has a place on it.
+    """
+
+    field: Field
+    ends: tuple[float, float]
+    of_value: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,13 +53,16 @@ class FieldMap:
     best: Field
     footprint: Field
 
-    def named(self, name: str) -> Field | None:
-        """Return the map of a name, or None.
+    def scale(self, name: str) -> Scale | None:
+        """Return the map of a name with its colours, or None.
 
         Args:
             name: one of ``MAPS``, or any other.
         """
-        return dict(zip(MAPS, (self.best, self.footprint), strict=True)).get(name)
+        if name not in MAPS:
+            return None
+        field = self.best if name == MAPS[0] else self.footprint
+        return Scale(field, scale_range(field.values, is_rate=field.unit != "dB"), name == MAPS[0])
 
 
 def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> FieldMap:
@@ -62,3 +89,20 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     unlike = " without errors" if answer.case.robust else ""
     best = replace(best, title=f"{best.title}{unlike}")
     return FieldMap(version=answer.version, best=best, footprint=footprint)
+
+
+def map_kernel_is_ready() -> bool:
+    """Tell whether the map needs no compiling; the first call has another process compile its kernel."""
+    with _asking:
+        return not _compiler().is_busy()
+
+
+@cache
+def _compiler() -> BackgroundCompiler:
+    """Return the compiler of the kernel, after one call that needs it."""
+    from nullpose.solver.kernels.axis import best_axis
+
+    compiler = BackgroundCompiler()
+    with compiler.in_use():
+        best_axis(build_family(new_scenario()).arrays, np.array([5.0, 5.0, 9.0]), np.empty(3))
+    return compiler

@@ -1,4 +1,4 @@
-"""Who is let in: requests with the token, to the own address, that no foreign page sent."""
+"""The gate before viser: requests with the token, to this address, from this page; and the page's frame."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import partial
+from functools import cache, partial
 from http import HTTPStatus
+from importlib.resources import files
 from ipaddress import ip_address
 from typing import Any
 from urllib.parse import parse_qs
-
-from nullpose.studio.frame import framed
 
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
 _ALIVE = "/alive"  # where a page asks whether its studio still runs
@@ -85,11 +84,11 @@ class Guard:
         if not self._ours(hosts, origins, connection.local_address[1]):
             return connection.respond(HTTPStatus.FORBIDDEN, _NOT_OURS)
         path, _, query = request.path.partition("?")
-        given = parse_qs(query)
-        if not hmac.compare_digest(given.get("token", [""])[0].encode(), self._token.encode()):
+        values = parse_qs(query)
+        if not hmac.compare_digest(values.get("token", [""])[0].encode(), self._token.encode()):
             return connection.respond(HTTPStatus.FORBIDDEN, _NO_TOKEN)
         if "Upgrade" in request.headers:  # this task goes on to serve the websocket
-            PREFERS_DARK.set(given.get("dark") == ["1"])
+            PREFERS_DARK.set(values.get("dark") == ["1"])
         if path == _ALIVE:
             response = connection.respond(HTTPStatus.OK, "")
         else:
@@ -99,7 +98,7 @@ class Guard:
         return response
 
     def _ours(self, hosts: list[str], origins: list[str], port: int) -> bool:
-        """Return whether a request is to the address listened at, and from no other's page."""
+        """Check that a request is to the address listened at, and from no other's page."""
         if len(hosts) != 1 or any(origin.lower() != f"http://{hosts[0].lower()}" for origin in origins):
             return False
         names = {_bracketed(name) for name in self._names}
@@ -116,6 +115,26 @@ def _page(viser: Callable[[Any, Any], Any], connection: Any, request: Any) -> An
         response.headers.pop("Content-Length")
         response.headers["Content-Length"] = str(len(response.body))
     return response
+
+
+def framed(page: bytes) -> bytes:
+    """Give viser's page the studio's title, style, and script, which runs before anything of viser's.
+
+    Args:
+        page: viser's page as HTML.
+    """
+    head = f"<head>{look_html()}<script>{_asset('frame.js')}</script>"
+    return page.replace(b"<head>", head.encode(), 1).replace(b"<title>Viser<", b"<title>nullpose studio<", 1)
+
+
+def look_html() -> str:
+    """Return the overlay's style and what keeps the colours of lines, for an exported page too."""
+    return f"<style>{_asset('frame.css')}</style><script>{_asset('lines.js')}</script>"
+
+
+@cache
+def _asset(name: str) -> str:
+    return (files("nullpose.studio") / "assets" / name).read_text(encoding="utf-8")
 
 
 def _bracketed(name: str) -> str:

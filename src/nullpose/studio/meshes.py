@@ -32,8 +32,8 @@ class Mesh(NamedTuple):
             matrix: A, (3, 3), or a number that scales.
             offset_m: b, (3,) metres.
         """
-        given = np.asarray(matrix, dtype=float)
-        turned = self.vertices @ given.T if given.ndim else given * self.vertices
+        factor = np.asarray(matrix, dtype=float)
+        turned = self.vertices @ factor.T if factor.ndim else factor * self.vertices
         return Mesh(turned + np.asarray(offset_m, dtype=float), self.faces)
 
 
@@ -65,10 +65,10 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_ra
     azimuth = np.linspace(*ends, around + (open_rad > 0.0), endpoint=open_rad > 0.0)
     x, y = np.outer(radius, np.cos(azimuth)), np.outer(radius, np.sin(azimuth))
     vertices = np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=-1).reshape(-1, 3)
-    here = np.arange(len(vertices)).reshape(x.shape)
-    beside = np.roll(here, -1, axis=1)
+    index = np.arange(len(vertices)).reshape(x.shape)
+    beside = np.roll(index, -1, axis=1)
     steps = slice(around)  # which lead back to the first if nothing is left out
-    a, b, c, d = here[:-1, steps], beside[:-1, steps], here[1:, steps], beside[1:, steps]
+    a, b, c, d = index[:-1, steps], beside[:-1, steps], index[1:, steps], beside[1:, steps]
     faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([b, d, c], -1).reshape(-1, 3)])
     return Mesh(vertices, faces)
 
@@ -202,7 +202,7 @@ def rotor_mesh(size_m: float) -> Mesh:
 
 
 def _four(mesh: Mesh) -> list[Mesh]:
-    """Return what is drawn along the x axis at the four arms, half-way between the axes."""
+    """Repeat a mesh along the x axis at the four arms, half-way between the axes."""
     c = math.sqrt(0.5)
     first = mesh.placed([[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]])
     return [
@@ -242,10 +242,10 @@ def beam_mesh(start_m: ArrayLike, end_m: ArrayLike, half_angle_rad: float, aroun
         half_angle_rad: between its axis and its surface, radians.
         around: steps about its axis.
     """
-    start, way = np.asarray(start_m, dtype=float), np.subtract(end_m, start_m)
-    radius_m = math.tan(half_angle_rad) * float(np.linalg.norm(way))
-    across = np.linalg.svd(way[None])[2][1:]  # two unit vectors across the way
+    start, along = np.asarray(start_m, dtype=float), np.subtract(end_m, start_m)
+    radius_m = math.tan(half_angle_rad) * float(np.linalg.norm(along))
+    across = np.linalg.svd(along[None])[2][1:]  # two unit vectors across it
     azimuth = np.linspace(0.0, math.tau, around, endpoint=False)
-    ring = start + way + radius_m * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1) @ across
+    ring = start + along + radius_m * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1) @ across
     i = np.arange(1, around + 1)
     return Mesh(np.vstack([start, ring]), np.stack([np.zeros_like(i), i, i % around + 1], axis=-1))

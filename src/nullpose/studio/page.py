@@ -1,4 +1,4 @@
-"""One browser's page: panel and scene on one side, the session on the other."""
+"""One browser's page: what a hand does changes the state, and every state is rendered."""
 
 from __future__ import annotations
 
@@ -6,33 +6,32 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from viser import ClientHandle
 
-from nullpose.errors import ScenarioError
-from nullpose.objectives import Quantity
+from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
+from nullpose.scenario.loading import scenario_from_text
+from nullpose.studio import exports
 from nullpose.studio.camera import aim, canvas_px
-from nullpose.studio.case import case_named
-from nullpose.studio.editor import Editor
-from nullpose.studio.edits import new_scenario
-from nullpose.studio.events import Event, Progress
-from nullpose.studio.exchange import Exchange
+from nullpose.studio.case import case_named, new_scenario
+from nullpose.studio.edits import entries_of, with_typed, without
 from nullpose.studio.look import DARK, LIGHT
-from nullpose.studio.overlay import overlay_html
 from nullpose.studio.panel import NO_CASE, Panel, by_hand
-from nullpose.studio.plot import power_plot_svg
-from nullpose.studio.readout import failure_html, readout_html
-from nullpose.studio.session import Session
+from nullpose.studio.picking import clicked
+from nullpose.studio.readout import failure_html
+from nullpose.studio.session import Session, opened
 from nullpose.studio.stage import Stage
-from nullpose.studio.view import Key, View
+from nullpose.studio.state import Key, State
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
-
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+_NOTICE_S = 8.0  # how long a notice stays
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -48,165 +47,62 @@ class Page:
     """
 
     def __init__(
-        self,
-        client: ClientHandle,
-        scenario: Scenario,
-        text: str = "",
-        *,
-        dark: bool = False,
+        self, client: ClientHandle, scenario: Scenario, text: str = "", *, dark: bool = False
     ) -> None:
-        self._client = client
-        self._lock = threading.RLock()
-        self._open = True
-        self._gesture = 0
-        self._slid_at = 0.0
+        self._client, self._look = client, DARK if dark else LIGHT
+        self._lock, self._is_open = threading.RLock(), True
+        self._gesture, self._slid_at = 0, 0.0
         self._late: threading.Timer | None = None
-        self._is_presented = False
-        self._aimed: tuple[int, bool] | None = None
-        self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
-        look = DARK if dark else LIGHT
-        self.session = Session(scenario, text, on_view=self._view_changed, on_event=self._told)
-        self.panel = Panel(client.gui, dark=dark)
-        self.stage = Stage(client.scene, self.session, look, self._dragged)
-        own = client, self.session, self.panel
-        self._editor = Editor(*own, self._change, self._refresh, lambda: self.stage.size_m)
-        self._exchange = Exchange(*own, self.stage, look, self._change)
+        self._aimed: tuple[int, bool] | None = None  # at which scene, and whether with its drone
+        self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
+        self._is_folded = False
+        state = opened(scenario, text)
+        self.session = Session(state, on_change=self._changed, on_event=lambda event: self.render())
+        self.panel = Panel(client.gui, self._typed, dark=dark)
+        self.stage = Stage(client.scene, self._look, self._dragged)
         self._listen()
         self.session.start()
+        self.render()
 
     def close(self) -> None:
         """End the session's thread, and draw nothing more."""
         with self._lock:
-            self._open = False
-            self._not_late()
+            self._is_open = False
+            self._end_wait()
         self.session.close()
 
-    def _listen(self) -> None:
-        panel, session = self.panel, self.session
-        controls: list[tuple[Any, Callable[[Any], object]]] = [
-            (panel.case, lambda label: self._change(lambda view: view.with_case(case_named(label)))),
-            (panel.compared, self._compare),
-            (panel.power, self._slid),
-            (panel.power_text, self._typed),
-            *((one, self._refresh) for one in (panel.map, panel.pattern, panel.freed)),
-        ]
-        buttons: list[tuple[Any, Callable[[], object]]] = [
-            (panel.undo, session.undo),
-            (panel.redo, session.redo),
-            (panel.aim, self.aim),
-            (panel.new, self._new),
-            (panel.present, self.present),
-        ]
-        for control, action in controls:
-            control.on_update(by_hand(action))
-        for button, press in buttons:
-            button.on_click(lambda event, press=press: press())
-        commands: list[tuple[str, Callable[[], object], Any, Any]] = [
-            ("Undo", session.undo, "Z", "cmd/ctrl"),
-            ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
-            ("Delete what is selected", self._editor.delete, "delete", None),
-            ("End adding, select nothing", lambda: self._editor.begin(""), "escape", None),
-            ("Begin or end presenting", self.present, "P", None),
-            ("End presenting", lambda: self.present(False), "escape", None),
-        ]
-        for label, act, key, modifier in commands:
-            command = self._client.gui.add_command(label, hotkey=key, modifier=modifier)
-            command.on_trigger(lambda event, act=act: act())
-        self._client.camera.on_update(self._looked)
+    def change(self, change: Callable[[State], State], gesture: str = "", name: str = "The change") -> bool:
+        """Change the state; False if it is refused, and then its faults are shown.
 
-    def _change(self, change: Callable[[View], View], gesture: str = "", name: str = "The change") -> bool:
-        """Return whether a change was made; if not, its faults are shown."""
+        Args:
+            change: from the state now to the new one.
+            gesture: a name that all steps of one gesture share, which are undone together.
+            name: of what may be refused.
+        """
         try:
-            self.session.change(change, gesture)
+            self.session.change(lambda state: replace(change(state), faults=""), gesture)
         except ScenarioError as error:
-            self.panel.faults.content = failure_html(error, name)
+            faults = failure_html(error, name)
+            self.session.change(lambda state: replace(state, faults=faults))
             return False
-        self.panel.faults.content = failure_html(None)
         return True
-
-    def _compare(self, label: str) -> None:
-        case = None if label == NO_CASE else case_named(label)
-        self._change(lambda view: view.with_compared(case))
-
-    def _typed(self, text: str) -> None:
-        self._change(lambda view: view.with_power_text(text), name="The jamming power")
-        with self._lock, self._client.atomic():
-            self.panel.show_power(self.session.view)
-            self.panel.power_text.value = self.session.view.power_text  # also if viser has it already
-
-    def _slid(self, values: tuple[float]) -> None:
-        now = time.monotonic()
-        self._gesture += now - self._slid_at > _GESTURE_S
-        self._slid_at = now
-        self._change(lambda view: view.with_power_db(float(values[0])), f"power {self._gesture}")
-
-    def _dragged(self, key: Key, position_m: NDArray[np.float64], phase: str) -> None:
-        if phase == "start":
-            self._gesture += 1
-            self.stage.ground.dragged = key
-        self._change(lambda view: view.moved(key, position_m), f"drag {self._gesture}", "The new place")
-        if phase == "end":
-            self.stage.ground.dragged = None
-            self._refresh()  # which puts a point back whose new place was refused
-
-    def _new(self) -> None:
-        self._change(lambda view: view.with_scenario(new_scenario(), ""))
 
     def aim(self) -> None:
         """Let the camera look at the whole of the scene."""
-        view, camera = self.session.view, self._client.camera
-        answer = self.session.current(view.case)
+        state, camera = self.session.state, self._client.camera
+        answer = state.current(state.case)
         with self._client.atomic():
-            aim(camera, view.scenario, answer.result.pose if answer else None)
-        self._aimed = view.opened, answer is not None
+            aim(camera, state.scenario, answer.result.pose if answer else None)
+        self._aimed, self.stage.eye_m = (state.opened, answer is not None), camera.position
         self._fit = canvas_px(camera), np.array(camera.position)
 
-    async def _looked(self, _: object) -> None:
-        """Aim again if only the canvas has another size, and turn the pattern towards the camera."""
-        camera = self._client.camera
-        if self._fit is not None:
-            is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
-            if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
-                self.aim()
-        self.stage.face(camera.position)
-
-    def present(self, begin: bool | None = None) -> None:
-        """Fold the panel, or unfold it.
-
-        Args:
-            begin: whether it is to be folded; None for the other of the two.
-        """
-        is_presented = self._is_presented
-        self._is_presented = not is_presented if begin is None else begin
-        if self._is_presented != is_presented:
-            panel = self._client.gui.main_panel
-            (panel.minimize if self._is_presented else panel.expand)()
-
-    def _told(self, event: Event) -> None:
-        if not isinstance(event, Progress):
-            self._refresh()
-            return
+    def render(self) -> None:
+        """Send the browser what differs between the state and what it shows."""
         with self._lock, self.session.still:
-            self._show_overlay()
-
-    def _show_overlay(self) -> None:
-        self.panel.overlay.content = overlay_html(self.session, self.stage.scale)
-
-    def _view_changed(self) -> None:
-        with self._lock:
-            if self.stage.ground.dragged is None:
-                self._refresh()
-            elif self._late is None and self._open:  # each step of a drag has one picture: with its answer
-                self._late = threading.Timer(_LATE_S, self._refresh)
-                self._late.daemon = True
-                self._late.start()
-
-    def _refresh(self, *_: object) -> None:
-        with self._lock, self.session.still:
-            self._not_late()
-            if not self._open:
+            self._end_wait()
+            if not self._is_open:
                 return
-            for part in (self._refresh_scene, self._refresh_panel):
+            for part in (self._render_scene, lambda: self.panel.render(self.session.history)):
                 try:
                     try:
                         self._send(part)
@@ -220,37 +116,161 @@ class Page:
             part()
         self._client.flush()  # at once, since viser gathers messages for a sixtieth of a second
 
-    def _not_late(self) -> None:
+    def _render_scene(self) -> None:
+        state = self.session.state
+        at_scene = self._aimed is not None and self._aimed[0] == state.opened
+        if not at_scene or (self._aimed != (state.opened, True) and state.current(state.case) is not None):
+            self.aim()  # first, since the pattern is open towards the camera
+        self.stage.render(state)
+        if state.is_presented != self._is_folded:
+            self._is_folded = state.is_presented
+            panel = self._client.gui.main_panel
+            (panel.minimize if state.is_presented else panel.expand)()
+
+    def _changed(self) -> None:
+        with self._lock:
+            if self.session.state.dragged is None:
+                self.render()
+            elif self._late is None and self._is_open:  # each step of a drag has one picture: with its answer
+                self._late = threading.Timer(_LATE_S, self.render)
+                self._late.daemon = True
+                self._late.start()
+
+    def _end_wait(self) -> None:
         if self._late is not None:
             self._late.cancel()
             self._late = None
 
-    def _refresh_scene(self) -> None:
-        panel = self.panel
-        view = self.session.view
-        if self._aimed != (view.opened, True):
-            self.aim()  # first, since the pattern is open towards the camera
-        chosen = {
-            "chosen_map": panel.map.value,
-            "selected": self._editor.selected,
-            "freed": panel.freed.value,
+    def _listen(self) -> None:
+        panel, session, client = self.panel, self.session, self._client
+        switches = ("map_name", "has_pattern", "lifts_points")
+        controls: dict[str, Callable[[Any], object]] = {
+            name: partial(self._switch, name) for name in switches
         }
-        self.stage.show(self._client.camera.position, **chosen, pattern=panel.pattern.value)
+        controls |= {
+            "case": lambda label: self.change(lambda state: state.with_case(case_named(label))),
+            "compared": self._compare,
+            "power": self._slid,
+            "power_text": self._power_typed,
+        }
+        buttons: dict[str, Callable[[], object]] = {
+            "undo": session.undo,
+            "redo": session.redo,
+            "delete": self._delete,
+            "new": lambda: self.change(lambda state: state.with_scenario(new_scenario(), "")),
+            "aim": self.aim,
+            "present": self._present,
+            "save": lambda: self._export("scenario.toml", exports.scenario_toml),
+            "pose": lambda: self._export("pose.json", exports.pose_json),
+            "figure": lambda: self._export("figure.png", exports.figure_png),
+            "picture": lambda: self._export("scene.png", self._picture),
+            "html": lambda: self._export("scene.html", self._html),
+        }
+        for name, action in controls.items():
+            getattr(panel, name).on_update(by_hand(action))
+        for name, press in buttons.items():
+            getattr(panel, name).on_click(lambda event, press=press: press())
+        panel.add.on_click(lambda event: self.take_tool(event.target.value))
+        panel.upload.on_upload(lambda event: self._load(event.target.value))
+        commands: list[tuple[str, Callable[[], object], str, Any]] = [
+            ("Undo", session.undo, "Z", "cmd/ctrl"),
+            ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
+            ("Delete what is selected", self._delete, "delete", None),
+            ("End adding and presenting, select nothing", self._escape, "escape", None),
+            ("Begin or end presenting", self._present, "P", None),
+        ]
+        for label, act, key, modifier in commands:
+            command = client.gui.add_command(label, hotkey=key, modifier=modifier)
+            command.on_trigger(lambda event, act=act: act())
+        client.camera.on_update(self._looked)
+        client.scene.on_click()(self._clicked)
 
-    def _refresh_panel(self) -> None:
-        session, view, panel = self.session, self.session.view, self.panel
-        panel.show(view)
-        self._editor.show(view)
-        answer = session.current(view.case)
-        panel.readout.content = readout_html(session)
-        self._show_overlay()
-        at_rest = self.stage.ground.dragged is None  # while a hand moves the plot is grey and stays as it is
-        panel.plot.content = power_plot_svg(
-            session.curve,
-            version=session.version,
-            power_db=view.power_db,
-            value=answer.shown_value if answer and at_rest else None,
-            unit=Quantity.of(view.scenario).unit,
-        )
-        panel.undo.disabled = not session.history.past
-        panel.redo.disabled = not session.history.future
+    def take_tool(self, tool: str) -> None:
+        """Take up a tool, or none, which selects nothing either.
+
+        Args:
+            tool: what is to be added; empty for nothing.
+        """
+        self.change(lambda state: replace(state, tool=tool, selected=None, corners_m=()))
+
+    def _escape(self) -> None:
+        self.take_tool("")
+        self._switch("is_presented", False)
+
+    def _present(self) -> None:
+        self.change(lambda state: replace(state, is_presented=not state.is_presented))
+
+    def _switch(self, name: str, value: Any) -> None:
+        self.change(lambda state: replace(state, **{name: value}))
+
+    def _compare(self, label: str) -> None:
+        case = None if label == NO_CASE else case_named(label)
+        self.change(lambda state: state.with_compared(case))
+
+    def _slid(self, values: tuple[float]) -> None:
+        now = time.monotonic()
+        self._gesture += now - self._slid_at > _GESTURE_S
+        self._slid_at = now
+        self.change(lambda state: state.with_power_db(float(values[0])), f"power {self._gesture}")
+
+    def _power_typed(self, text: str) -> None:
+        self.change(lambda state: state.with_power_text(text), name="The jamming power")
+        self.panel.power_text.value = self.session.state.power_text  # also if viser has it already
+
+    def _typed(self, path: str, text: str) -> None:
+        state = self.session.state
+        keys = (None, state.selected) if state.selected else (None,)
+        entries = [entry for key in keys for entry in entries_of(state, key) if entry.path == path]
+        self.change(lambda state: with_typed(state, entries, {path: text}), name="What was typed")
+
+    def _delete(self) -> None:
+        key = self.session.state.selected
+        if key is not None:
+            self.change(lambda state: without(state, key), name="Deleting")
+
+    async def _clicked(self, event: Any) -> None:  # in order, since it runs in the loop
+        eye_m, direction = np.array(event.ray_origin), np.array(event.ray_direction)
+        name = "The fence" if self.session.state.corners_m else "The new point"
+        self.change(lambda state: clicked(state, self.stage.size_m, eye_m, direction), name=name)
+
+    def _dragged(self, key: Key, position_m: NDArray[np.float64], phase: str) -> None:
+        if phase == "start":
+            self._gesture += 1
+            self._switch("dragged", key)
+        self.change(lambda state: state.moved(key, position_m), f"drag {self._gesture}", "The new place")
+        if phase == "end":
+            # rendered at rest, which puts a point back whose new place was refused
+            self.session.change(lambda state: replace(state, dragged=None))
+
+    async def _looked(self, _: object) -> None:
+        """Aim again if only the canvas has another size, and turn the pattern towards the camera."""
+        camera = self._client.camera
+        if self._fit is not None:
+            is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
+            if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
+                self.aim()
+        with self._lock:
+            self.stage.face(camera.position)
+
+    def _picture(self, state: State) -> bytes:
+        return exports.scene_png(state, self._client, self._look)
+
+    def _html(self, state: State) -> bytes:
+        return exports.scene_html(replace(state, selected=None), self._look, self._client.camera)
+
+    def _export(self, name: str, make: Callable[[State], bytes]) -> None:
+        try:
+            self._client.send_file_download(name, make(self.session.state), save_immediately=True)
+        except NullposeError as error:
+            self._notify("Not exported", str(error))
+
+    def _load(self, file: Any) -> None:
+        def loaded(state: State) -> State:
+            return state.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
+
+        if not self.change(loaded, name=file.name):  # viser has said by now that the file has arrived
+            words = "It arrived, but its faults are listed in the panel, and the scene is as it was."
+            self._notify(f"{file.name} was not taken", words)
+
+    def _notify(self, title: str, text: str) -> None:
+        self._client.add_notification(title, text, color="red", auto_close_seconds=_NOTICE_S)

@@ -1,53 +1,89 @@
-"""Where a click in the scene goes: to a point, to a no-fly zone, or to the ground."""
+"""Clicks in the scene: they select a point or a zone, or place what is added on the ground."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.studio.view import Key, View
+from nullpose.studio.edits import ADDED, with_added, with_fence
+from nullpose.studio.state import Key, State
+
+FENCE = "fence"
+"""The tool that draws a fence, whose corners are clicked one after the other."""
 
 _NEAR_RAD = 0.025  # a point is hit within so much: about a finger's breadth on a screen
 _TALL = 0.06  # of the scene's size: a point's mark with its label
-_MOST_SIZES = 20.0  # of the scene: what is further away is no ground to build on
+_MOST_SIZES = 20.0  # of the scene: farther away there is no ground to build on
+_CLOSE = 0.03  # of the scene's size: so near its first corner a click closes a fence
+_LEAST_CORNERS = 3
 
 
-def picked(view: View, size_m: float, eye_m: ArrayLike, way: ArrayLike) -> Key | None:
+def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> State:
+    """Return the state after a click in the scene.
+
+    Args:
+        state: before it; its tool decides what the click does.
+        size_m: of the scene as it is drawn, metres.
+        eye_m: (3,) where the camera is, metres.
+        direction: (3,) of the click.
+
+    Raises:
+        ScenarioError: the scenario would be faulty.
+    """
+    if not state.tool:
+        return replace(state, selected=picked(state, size_m, eye_m, direction))
+    place_m = ground_place_m(size_m, eye_m, direction)
+    if place_m is None:
+        return state
+    if state.tool != FENCE:
+        kind = ADDED[state.tool]
+        added = with_added(state, state.tool, place_m, size_m)
+        return replace(added, tool="", selected=(kind, len(added.members(kind)) - 1))
+    corners = state.corners_m
+    if len(corners) >= _LEAST_CORNERS and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
+        return replace(with_fence(state, corners), tool="", corners_m=())
+    east_m, north_m = place_m.tolist()
+    return replace(state, corners_m=(*corners, (east_m, north_m)))
+
+
+def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> Key | None:
     """Return the point that a click is at, or else the zone, or None.
 
     Args:
-        view: the view now.
+        state: with the scene.
         size_m: of the scene, from which the sizes of what is drawn follow.
         eye_m: (3,) where the camera is, metres.
-        way: (3,) the click's direction.
+        direction: (3,) of the click.
     """
-    points = dict(view.points())
-    marks = np.array([one.position_m for one in points.values()])[:, None, :]
+    points = dict(state.points())
+    marks = np.array([point.position_m for point in points.values()])[:, None, :]
     away = marks + np.linspace(0.0, _TALL * size_m, 5)[:, None] * [0.0, 0.0, 1.0] - np.asarray(eye_m)
-    ahead = np.asarray(way) / np.linalg.norm(way)
+    ahead = np.asarray(direction) / np.linalg.norm(direction)
     along = away @ ahead
     aside = np.linalg.norm(away - along[..., None] * ahead, axis=-1)
     off_rad = np.where(along > 0.0, np.arctan2(aside, along), np.pi).min(axis=1)
     if off_rad.min() <= _NEAR_RAD:
         return list(points)[int(np.argmin(off_rad))]
-    ground_m = ground_place_m(size_m, eye_m, way)
+    ground_m = ground_place_m(size_m, eye_m, direction)
     if ground_m is None:
         return None
-    for i, zone in enumerate(view.members("no_fly")):
+    for i, zone in enumerate(state.members("no_fly")):
         if zone.depth_m([*ground_m, np.clip(0.0, zone.floor_m, zone.ceiling_m)]) >= 0.0:
             return "no_fly", i
     return None
 
 
-def ground_place_m(size_m: float, eye_m: ArrayLike, way: ArrayLike) -> NDArray[np.float64] | None:
-    """Return where a click meets the ground, east and north, (2,); None if it goes past it.
+def ground_place_m(size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> NDArray[np.float64] | None:
+    """Intersect a click with the ground: east and north, (2,); None if it goes past it.
 
     Args:
         size_m: of the scene.
         eye_m: (3,) where the camera is, metres.
-        way: (3,) the click's direction.
+        direction: (3,) of the click.
     """
-    eye, ahead = np.asarray(eye_m, dtype=float), np.asarray(way, dtype=float)
+    eye, ahead = np.asarray(eye_m, dtype=float), np.asarray(direction, dtype=float)
     if eye[2] * ahead[2] >= 0.0:
         return None
     reach = -eye[2] / ahead[2]

@@ -12,9 +12,8 @@ from nullpose.report.geometry import null_angle_rad
 from nullpose.solver import Result
 from nullpose.solver.robust import GuardedPose
 from nullpose.studio.answer import Answer, signed
-from nullpose.studio.colours import css
-from nullpose.studio.look import DARK, LIGHT, either
-from nullpose.studio.session import Session
+from nullpose.studio.look import DARK, LIGHT, css, either
+from nullpose.studio.state import State
 
 _FAILED = "no pose"
 _TONES = {
@@ -40,34 +39,33 @@ largest smallest SINR over the nodes, and proves an upper bound for all other po
 
 
 def about_html() -> str:
-    """Return what a newcomer is looking at."""
+    """Explain the scene to a newcomer."""
     return f'<div data-np="about" style="{_STYLE};font-size:12.5px">{_ABOUT}</div>'
 
 
-def readout_html(session: Session) -> str:
+def readout_html(state: State) -> str:
     """Return the numbers of every case that is shown, greyed where they are not of the present scene.
 
     Args:
-        session: whose.
+        state: of the page.
     """
-    view = session.view
-    blocks = [_case_html(session, slot) for slot in range(len(view.cases))]
-    if view.compared is not None:
-        blocks.append(_difference_html(session))
-    return f'<div data-np="readout" data-version="{session.version}" style="{_STYLE}">{"".join(blocks)}</div>'
+    blocks = [_case_html(state, slot) for slot in range(len(state.cases))]
+    if state.compared is not None:
+        blocks.append(_difference_html(state))
+    return f'<div data-np="readout" data-version="{state.version}" style="{_STYLE}">{"".join(blocks)}</div>'
 
 
-def _case_html(session: Session, slot: int) -> str:
-    case = session.view.cases[slot]
-    answer, current, status = session.answer(case), session.current(case), session.status(case)
+def _case_html(state: State, slot: int) -> str:
+    case = state.cases[slot]
+    answer, current, status = state.answer(case), state.current(case), state.status(case)
     _, colour, mark = status_look(status)
-    own = either(*(css(look.slots[slot]) for look in (LIGHT, DARK)))
+    colour_of_slot = either(*(css(look.slots[slot]) for look in (LIGHT, DARK)))
     head = (
-        f'<div style="font-weight:600;color:{own}">{_letter(session, slot)}'
+        f'<div style="font-weight:600;color:{colour_of_slot}">{state.letter(slot)}'
         f"{escape(case.label)}</div>"
         f'<div data-np="status-{slot}" style="color:{colour};font-weight:600">{mark} {escape(status)}</div>'
     )
-    head += _note(case.left_out(session.view.scenario))
+    head += _note(case.left_out(state.scenario))
     if answer is None or status.startswith(_FAILED):
         return head
     shade = "" if answer is current else "opacity:.4;"
@@ -78,20 +76,16 @@ def _case_html(session: Session, slot: int) -> str:
 
 
 def status_look(status: str) -> tuple[str, str, str]:
-    """Return how a status begins, by which looks are told apart, its colour on white, and its mark.
+    """Return the look of a status: how it begins, its colour on white, and its mark.
 
     Args:
-        status: as the session tells it.
+        status: in words.
     """
     return next((start, *look) for start, look in _TONES.items() if status.startswith(start))
 
 
 def _note(text: str) -> str:
     return f'<div style="color:{_NOTE};font-size:12px">{escape(text)}</div>' if text else ""
-
-
-def _letter(session: Session, slot: int) -> str:
-    return f"{'AB'[slot]}: " if session.view.compared is not None else ""
 
 
 def _value(answer: Answer, slot: int) -> str:
@@ -108,14 +102,14 @@ def _nodes(answer: Answer) -> str:
         return _guaranteed_nodes(answer, answer.guarded)
     rows = []
     for link in answer.result.links:
-        own = f"{signed(link.sinr_db)} dB"
+        numbers = f"{signed(link.sinr_db)} dB"
         if link.margin_db is not None:
-            own += f", margin {signed(link.margin_db)} dB"
+            numbers += f", margin {signed(link.margin_db)} dB"
         if link.secrecy_rate_bps_hz is not None:
-            own += f", {link.secrecy_rate_bps_hz:.3f} bits/s/Hz"
+            numbers += f", {link.secrecy_rate_bps_hz:.3f} bits/s/Hz"
         weight, mark = _worst(answer, link.node)
         style = f"font-weight:{weight};white-space:nowrap"
-        rows.append(f'<span style="{style}">{escape(link.node)} {own}{mark}</span>')
+        rows.append(f'<span style="{style}">{escape(link.node)} {numbers}{mark}</span>')
     return f'<div style="display:flex;flex-wrap:wrap;gap:0 12px">{"".join(rows)}</div>'
 
 
@@ -156,11 +150,11 @@ def _pose(result: Result, slot: int) -> str:
     )
 
 
-def _difference_html(session: Session) -> str:
-    first, second = map(session.current, session.view.cases)
+def _difference_html(state: State) -> str:
+    first, second = map(state.current, state.cases)
     if first is None or second is None:
         return ""
-    if any(one.case.robust and one.guarded is None for one in (first, second)):
+    if any(answer.case.robust and answer.guarded is None for answer in (first, second)):
         return ""  # what it guarantees is not known yet
     unlike = ""
     if first.case.robust != second.case.robust:
@@ -191,25 +185,25 @@ def failure_html(error: ScenarioError | None, name: str = "") -> str:
     )
 
 
-def tool_html(told: str) -> str:
-    """Return what the next click on the ground does.
+def tool_html(words: str) -> str:
+    """Write what the next click on the ground does.
 
     Args:
-        told: a sentence; empty if it adds nothing.
+        words: a sentence; empty if it adds nothing.
     """
-    return f'<div data-np="tool" style="{_STYLE if told else ""};font-weight:600">{escape(told)}</div>'
+    return f'<div data-np="tool" style="{_STYLE if words else ""};font-weight:600">{escape(words)}</div>'
 
 
-def drone_text(session: Session, slot: int) -> str:
+def drone_text(state: State, slot: int) -> str:
     """Return a drone's label: its letter where two are compared, its value and how well it is known.
 
     Args:
-        session: whose.
+        state: of the page.
         slot: 0 for the chosen case, 1 for the compared one.
     """
-    case = session.view.cases[slot]
-    answer, value = session.current(case), ""
+    case = state.cases[slot]
+    answer, value = state.current(case), ""
     if answer is not None:
         unit = answer.result.objective.quantity.unit
         value = f"{signed(answer.shown_value)} {unit}, "
-    return f"{_letter(session, slot)}{value}{session.status(case)}"
+    return f"{state.letter(slot)}{value}{state.status(case)}"

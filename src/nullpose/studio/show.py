@@ -16,10 +16,10 @@ from nullpose.solver.robust import RobustDetails
 from nullpose.studio.answer import answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.exports import scene_html
-from nullpose.studio.field_map import MAPS, field_map
+from nullpose.studio.field_map import field_map
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.opening import require_viser
-from nullpose.studio.session import Session
+from nullpose.studio.state import State
 
 
 def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> Path | None:
@@ -63,16 +63,13 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
 
 
 def _page(result: Result, *, dark: bool) -> str:
-    """Return the scene of a result as HTML."""
+    """Write the scene of a result as HTML."""
     if hasattr(result.details, "weights"):
         raise UsageError("show: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM
     case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
-    session = Session(result.scenario, case=case)
-    try:
-        answer = with_errors(answer_of(session.version, case, result))
-        session.take(answer)
-        session.take(field_map(answer))
-        return scene_html(session, MAPS[1], look=DARK if dark else LIGHT).decode()
-    finally:
-        session.close()
+    state = State(scenario=result.scenario, case=case)
+    answer = with_errors(answer_of(state.version, case, result))
+    return scene_html(
+        state.with_event(answer).with_event(field_map(answer)), DARK if dark else LIGHT
+    ).decode()

@@ -49,20 +49,21 @@ def toml_like(text: str, scenario: Scenario) -> str:
     """
     with suppress(Exception):  # whatever the text is, the scenario can be saved
         plain = _FILES.sub("", text.removeprefix("\ufeff").replace("\r\n", "\n"))
-        found = _updated(plain, _stated(tables_of(plain), scenario.to_dict()), scenario.to_dict())
+        found = _updated(plain, _stated_values(tables_of(plain), scenario.to_dict()), scenario.to_dict())
         if Scenario.from_dict(tables_of(found)) == scenario:
             return found.replace("\n", "\r\n") if "\r\n" in text else found
     return scenario.to_toml()
 
 
-def _stated(raw: _Table, new: _Table) -> _Table:
+def _stated_values(raw: _Table, new: _Table) -> _Table:
     """Return the plain values of what a file states by itself, without the files that it names."""
     if "file" in raw.get("antenna", {}):
         raw["antenna"].setdefault("harmonics", [[-1.0]])  # in place of those in the file
     old = Scenario.from_dict({"nodes": new["nodes"]} | dict(located(raw))).to_dict()
-    if not all("lat_deg" in one for key in POINT_LISTS for one in new.get(key, [])):
-        for one in (one for key in POINT_LISTS for one in old.get(key, []) if "lat_deg" in one):
-            del one["position_m"]  # where a point is in metres, all state theirs
+    if not all("lat_deg" in point for key in POINT_LISTS for point in new.get(key, [])):
+        for point in (point for key in POINT_LISTS for point in old.get(key, [])):
+            if "lat_deg" in point:
+                del point["position_m"]  # where a point is in metres, all state theirs
     return old if "nodes" in raw else old | {"nodes": []}
 
 
@@ -70,16 +71,14 @@ def _updated(text: str, old: _Table, new: _Table) -> str:
     blocks = _blocks(f"{text}\n")
     for path in _PATHS:
         _update(blocks, path, _tables(old, path), _tables(new, path))
-    return (
-        "".join(f"{one.gap}{one.lead}{one.header}{one.body}" for one in blocks).rstrip("\n")
-        + text[len(text.rstrip("\n")) :]
-    )
+    updated = "".join(f"{block.gap}{block.lead}{block.header}{block.body}" for block in blocks)
+    return updated.rstrip("\n") + text[len(text.rstrip("\n")) :]
 
 
 def _blocks(text: str) -> list[_Block]:
     """Return the blocks of a file; the first has the keys above all headers, the last what ends the file."""
     texts = _HEADER.split(text)
-    bodies, gaps, leads = zip(*(_PARTS.findall(one)[0] for one in texts[::2]), strict=True)
+    bodies, gaps, leads = zip(*(_PARTS.findall(part)[0] for part in texts[::2]), strict=True)
     headers = ["", *texts[1::2], ""]
     paths = [re.sub(r"#.*|[^\w.]", "", header) for header in headers]
     return list(map(_Block, paths, ["", *gaps], ["", *leads], headers, [*bodies, ""]))
@@ -89,33 +88,33 @@ def _tables(values: Any, path: str) -> list[_Table]:
     """Return the tables of a path, none if there are none."""
     for key in path.split(".") if path else ():
         values = values.get(key, [])
-    return [one for one in (values if isinstance(values, list) else [values]) if isinstance(one, dict)]
+    return [table for table in (values if isinstance(values, list) else [values]) if isinstance(table, dict)]
 
 
 def _update(blocks: list[_Block], path: str, old: list[_Table], new: list[_Table]) -> None:
     """Bring the tables of one path up to date."""
-    own, stay = [block for block in blocks[:-1] if block.path == path], _staying(old, new)
-    if len(own) != len(old):
+    members, stay = [block for block in blocks[:-1] if block.path == path], _staying(old, new)
+    if len(members) != len(old):
         return  # they stand in a key of another table, and are edited with it
-    if 0 not in stay and stay and not any(block.lead for block in own[1:]):
-        own[min(stay)].lead = own[0].lead  # a comment above the first only is of all
-    for at, block in enumerate(own):
+    if 0 not in stay and stay and not any(block.lead for block in members[1:]):
+        members[min(stay)].lead = members[0].lead  # a comment above the first only is of all
+    for at, block in enumerate(members):
         if at in stay:  # a name that was given by the place does not go along to another place
             was = old[at] | ({} if stay[at] == at else {"name": ""})
             block.body = block.body if was == new[stay[at]] else _edited(block.body, was, new[stay[at]])
         else:
             block.gap = block.gap if "#" in block.gap else ""  # a comment that stands by itself stays
             block.lead = block.header = block.body = ""
-    for one in (one for place, one in enumerate(new) if place not in stay.values()):
-        before = [path] if own else _PATHS[: _PATHS.index(path) + 1]
+    for table in (table for place, table in enumerate(new) if place not in stay.values()):
+        before = [path] if members else _PATHS[: _PATHS.index(path) + 1]
         after = max(at for at, block in enumerate(blocks[:-1]) if block.path in before)
-        header = f"[[{path}]]\n" if "name" in one else f"[{path}]\n"
-        blocks.insert(after + 1, _Block(path, "\n", "", header, _edited("", {}, one)))
+        header = f"[[{path}]]\n" if "name" in table else f"[{path}]\n"
+        blocks.insert(after + 1, _Block(path, "\n", "", header, _edited("", {}, table)))
 
 
 def _staying(old: list[_Table], new: list[_Table]) -> dict[int, int]:
-    """Return where tables go that stay, by where they were: those of the same name, or renamed in place."""
-    before, after = ([one.get("name") for one in tables] for tables in (old, new))
+    """Map the tables that stay from old place to new: those of the same name, or renamed in place."""
+    before, after = ([table.get("name") for table in tables] for tables in (old, new))
     return {
         at: after.index(name) if name in after else at
         for at, name in enumerate(before)

@@ -12,20 +12,18 @@ from typing import TypeVar
 
 from nullpose.errors import NullposeError
 from nullpose.solver import announce_compiling
-from nullpose.studio.answer import Answer, with_errors
+from nullpose.studio.answer import Answer, Notice, Progress, with_errors
 from nullpose.studio.case import Case
-from nullpose.studio.events import Event, Notice, Progress
-from nullpose.studio.field_map import field_map
-from nullpose.studio.map_kernel import map_kernel_is_ready
+from nullpose.studio.field_map import field_map, map_kernel_is_ready
+from nullpose.studio.state import Event, State
 from nullpose.studio.steps import power_curves, proved_answers, quick_answers, target_gap
-from nullpose.studio.view import View
 
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
 _COMPILING = "compiling the solver, once, which takes about 20 s"
 
-_TOLD_S = 0.1  # between two tellings of how far a proof has come
+_PROGRESS_S = 0.1  # between two reports of a proof
 
 _E = TypeVar("_E", bound=Event)
 
@@ -50,24 +48,23 @@ class Worker:
     def __init__(self, publish: Callable[[Event], None], *, rest_s: float = REST_S) -> None:
         self._publish, self._rest_s = publish, rest_s
         self._changed = threading.Condition()
-        self._pending: tuple[int, View] | None = None
+        self._pending: State | None = None
         self._closed = False
         self._thread = threading.Thread(target=self._run, name="nullpose-studio-worker", daemon=True)
         self._thread.start()
 
-    def request(self, version: int, view: View) -> None:
-        """Ask for answers to a version of the scene; what runs for an older one is dropped.
+    def request(self, state: State) -> None:
+        """Ask for answers to a version of the scene; the work for an older one is dropped.
 
         Args:
-            version: of the scene; larger than any before.
-            view: the scene.
+            state: with the scene; its version is larger than any before.
         """
         with self._changed:
-            self._pending = version, view
+            self._pending = state
             self._changed.notify()
 
     def close(self, timeout_s: float = 5.0) -> bool:
-        """Return whether the thread has ended within a time.
+        """End the thread; True if it ended within a time.
 
         Args:
             timeout_s: the longest to wait, seconds.
@@ -85,37 +82,38 @@ class Worker:
                 self._changed.wait_for(self._is_superseded)
                 if self._closed or self._pending is None:
                     return
-                (version, view), self._pending = self._pending, None
+                state, self._pending = self._pending, None
             try:
-                compiling = Notice(version=version, case=None, words=_COMPILING)
+                compiling = Notice(version=state.version, case=None, words=_COMPILING)
                 with announce_compiling(partial(self._publish, compiling)):
-                    self._serve(version, view)
+                    self._serve(state)
             except _SupersededError:
                 continue
             except Exception:
                 _log.exception("the studio's worker met an unexpected fault")
 
-    def _serve(self, version: int, view: View) -> None:
-        for case in view.cases:
-            # told even if the hand has moved on since: else nothing would move while it does
-            self._tell_all(version, case, quick_answers(version, view, case), late=True)
+    def _serve(self, state: State) -> None:
+        for case in state.cases:
+            # published even if the hand has moved on since: else nothing would move while it does
+            self._publish_all(state, case, quick_answers(state, case), late=True)
         self._rest()
         best: Answer | None = None
-        for case in view.cases:
-            told = self._progress(version, view, case)
-            last = self._tell_all(version, case, proved_answers(version, view, case, told))
-            if last is not None:
-                last = self._tell_all(version, case, map(with_errors, [last]))
-            best = best or last
+        for case in state.cases:
+            proved = self._publish_all(state, case, proved_answers(state, case, self._progress(state, case)))
+            if proved is not None:
+                proved = self._publish_all(state, case, map(with_errors, [proved]))
+            best = best or proved
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
-        self._tell_all(version, view.case, power_curves(version, view, self._go_on))
+        self._publish_all(state, state.case, power_curves(state, self._go_on))
         if best is not None:
             while not map_kernel_is_ready():
                 self._rest()
-            self._tell_all(version, best.case, [field_map(best, self._go_on)])
+            self._publish_all(state, best.case, [field_map(best, self._go_on)])
 
-    def _tell_all(self, version: int, case: Case, events: Iterable[_E], *, late: bool = False) -> _E | None:
-        """Return the last of some events, all told, or the failure in their place; none if there was one."""
+    def _publish_all(
+        self, state: State, case: Case, events: Iterable[_E], *, late: bool = False
+    ) -> _E | None:
+        """Publish events and return the last; a failure is published in their place, and None returned."""
         last = None
         try:
             for last in events:
@@ -124,22 +122,23 @@ class Worker:
                 self._publish(last)
         except NullposeError as error:
             self._go_on()
-            self._publish(Notice(version=version, case=case, words=f"no pose: {error}"))
+            self._publish(Notice(version=state.version, case=case, words=f"no pose: {error}"))
             return None
         return last
 
-    def _progress(self, version: int, view: View, case: Case) -> Callable[[float, int], None]:
-        """Return what a proof calls now and then, which is told ten times a second at most."""
-        told_at, target = time.monotonic(), target_gap(view, case)
+    def _progress(self, state: State, case: Case) -> Callable[[float, int], None]:
+        """Return a callback for a proof, which publishes its progress ten times a second at most."""
+        published_at, target = time.monotonic(), target_gap(state, case)
 
-        def told(gap: float, boxes: int) -> None:
-            nonlocal told_at
+        def on_progress(gap: float, boxes: int) -> None:
+            nonlocal published_at
             self._go_on()
-            if target is not None and math.isfinite(gap) and time.monotonic() - told_at > _TOLD_S:
-                told_at = time.monotonic()
-                self._publish(Progress(version=version, case=case, gap=gap, target=target, boxes=boxes))
+            if target is not None and math.isfinite(gap) and time.monotonic() - published_at > _PROGRESS_S:
+                published_at = time.monotonic()
+                progress = Progress(version=state.version, case=case, gap=gap, target=target, boxes=boxes)
+                self._publish(progress)
 
-        return told
+        return on_progress
 
     def _is_superseded(self) -> bool:
         return self._closed or self._pending is not None

@@ -15,11 +15,11 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
 
-from nullpose import load
+from nullpose import Scenario, load
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.server import Studio, studio
 from nullpose.studio.session import Session
-from nullpose.studio.view import View
+from nullpose.studio.state import State
 
 PAPER = load(Path(__file__).parents[3] / "examples" / "paper.toml")
 PATIENCE_MS = 90_000
@@ -110,6 +110,13 @@ def running() -> Iterator[Studio]:
         yield one
 
 
+@pytest.fixture
+def alone(paper: Scenario) -> Iterator[Studio]:
+    """A studio that no other test uses."""
+    with studio(paper, port=0) as running:
+        yield running
+
+
 @pytest.fixture(scope="session")
 def open_page(browser: Browser, running: Studio) -> Open:
     """Opens a page of its own and waits for its first proof."""
@@ -140,10 +147,10 @@ def first_page(open_page: Open, running: Studio) -> tuple[Page, Session]:
 def session(first_page: tuple[Page, Session]) -> Session:
     """The server's side of the shared page, back at the paper's scene."""
     page, session = first_page
-    session.change(lambda view: View(scenario=PAPER, case=OPTIMUM))
+    session.change(lambda view: State(scenario=PAPER, case=OPTIMUM))
     page.bring_to_front()  # one behind another draws nothing, and waits of it never end
     page.wait_for_function(
-        f"+document.querySelector('[data-np=readout]').dataset.version == {session.version}"
+        f"+document.querySelector('[data-np=readout]').dataset.version == {session.state.version}"
     )
     page.wait_for_function(CERTIFIED)
     return session

@@ -25,27 +25,27 @@ from nullpose.studio.case import case_named
 from nullpose.studio.field_map import MAPS
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
-from nullpose.studio.view import View
+from nullpose.studio.state import State
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 KNOWN_DB = {20.0: -4.41, 30.0: -14.15, 40.0: -24.12}  # of field.toml's best pose, by the jamming power
 AFTER_A_SECOND = 1000.0
 
-Shown = Callable[[View], None]
+Shown = Callable[[State], None]
 
 
 @pytest.fixture
 def shown(page: Page, session: Session) -> Shown:
     """Shows a view on the shared page, waits for its numbers and its map, and looks at all of it."""
 
-    def show(view: View) -> None:
-        session.change(lambda _: view)
+    def show(view: State) -> None:
+        session.change(lambda state: state.with_scene_of(view))
         page.wait_for_function(
-            f"+document.querySelector('[data-np=readout]').dataset.version == {session.version}"
+            f"+document.querySelector('[data-np=readout]').dataset.version == {session.state.version}"
             " && !document.querySelector('[data-np=status-0]').innerText.includes('solving')"
         )
-        _until(page, lambda: session.field_map is not None)
+        _until(page, lambda: session.state.field_map is not None)
         page.get_by_role("tab", name="Map and view").click()
         page.get_by_role("button", name="Reset the camera").click()
         page.get_by_role("tab", name="Scene").click()
@@ -132,13 +132,13 @@ def test_a_scene_of_a_kilometre_is_drawn(
 ) -> None:
     """Its points and its map, on the page and in the exported file: the camera sees far enough."""
     scenario = _of_a_kilometre(paper)
-    shown(View(scenario=scenario))
+    shown(State(scenario=scenario))
     page.wait_for_timeout(2.0 * AFTER_A_SECOND)
     picture, camera = _pixels(page), ours._client.camera
     for node in scenario.nodes:
         assert _is_blue(_around(picture, camera, node.position_m, 10)).sum() > 10
     assert _is_orange(_around(picture, camera, scenario.jammers[0].position_m, 10)).sum() > 10
-    field = ours.session.field_map.footprint
+    field = ours.session.state.field_map.footprint
     inside = slice(len(field.east_m) // 4, -len(field.east_m) // 4, 3)
     ground = [(east, north, 0.0) for east in field.east_m[inside] for north in field.north_m[inside]]
     tints = [np.ptp(np.median(_around(picture, camera, one, 1), axis=0)) for one in ground]
@@ -162,7 +162,7 @@ def test_a_scene_of_a_kilometre_is_drawn(
 
 def test_the_plots_curves_leave_it_where_they_are_below_it(page: Page, shown: Shown) -> None:
     """Read by its axes the best pose's curve is what solve says, also where it is cut off."""
-    view = View(scenario=load(EXAMPLES / "field.toml"))
+    view = State(scenario=load(EXAMPLES / "field.toml"))
     shown(view)
     page.wait_for_selector("[data-np=plot][data-state=current]")
     plot = page.locator("[data-np=plot] > svg")
@@ -201,27 +201,12 @@ def test_the_plots_curves_leave_it_where_they_are_below_it(page: Page, shown: Sh
 
 
 @pytest.mark.usefixtures("best_map")
-def test_the_map_holds_the_drones_place_and_value(
-    page: Page, session: Session, shown: Shown, paper: Scenario
-) -> None:
-    """The sharp peak of a vertical antenna beside a strong jammer, in the map and in its colours' range."""
-    shown(View(scenario=paper, case=case_named("Vertical")).with_power_db(20.0))
-    value = float(page.locator("[data-np=value-0]").inner_text().replace(MINUS, "-"))
-    assert value == pytest.approx(-2.16, abs=0.006)
-    assert session.field_map is not None
-    assert session.field_map.best.best[0] == pytest.approx(value, abs=0.01)
-    _until(page, lambda: page.locator("[data-np=overlay-tick]").count() > 0)
-    low, high = _card_ends(page)
-    assert low <= value <= high
-
-
-@pytest.mark.usefixtures("best_map")
 @pytest.mark.parametrize("case", ["Optimum pose", "Vertical"])
 def test_a_link_has_the_legends_colour(
     page: Page, session: Session, ours: Any, shown: Shown, paper: Scenario, case: str
 ) -> None:
     """That of its SINR in the card's scale, along the part of it that nothing hides."""
-    shown(View(scenario=paper, case=case_named(case)))
+    shown(State(scenario=paper, case=case_named(case)))
     page.wait_for_timeout(AFTER_A_SECOND)
     low, high = _card_ends(page)
     assert page.locator("[data-np=overlay-links]").last.inner_text() == "lines to nodes: the same colours"
@@ -229,10 +214,10 @@ def test_a_link_has_the_legends_colour(
     stops = [[float(part) for part in rgb.split(",")] for rgb in re.findall(r"rgb\((.*?)\)", gradient)]
     _choose_map(page, "no map")  # the links are seen through the plane of this one
     page.wait_for_timeout(AFTER_A_SECOND)
-    answer = session.current(session.view.case)
+    answer = session.state.current(session.state.case)
     assert answer is not None
     picture, camera = _pixels(page), ours._client.camera
-    for link, node in zip(answer.result.links, session.view.scenario.nodes, strict=True):
+    for link, node in zip(answer.result.links, session.state.scenario.nodes, strict=True):
         share = np.clip((link.sinr_db - low) / (high - low), 0.0, 1.0)
         legend = [
             np.interp(share, np.linspace(0.0, 1.0, len(stops)), one) / 255 for one in np.transpose(stops)
@@ -242,38 +227,10 @@ def test_a_link_has_the_legends_colour(
         assert np.median(far) < 0.05, f"{link.node}: {far}"
 
 
-def test_a_robust_poses_worst_node_is_the_one_with_the_smallest_guarantee(page: Page, shown: Shown) -> None:
-    """By the numbers beside it, of which both kinds are shown; without the case the errors are left out."""
-    scenario = load(EXAMPLES / "robust.toml")
-    between = scenario.nodes[0].model_copy(update={"name": "S3", "position_m": (0.0, 25.0, 0.0)})
-    view = View(scenario=scenario.model_copy(update={"nodes": (*scenario.nodes, between)}))
-    shown(view)
-    assert "The errors of the file are left out" in page.locator("[data-np=readout]").inner_text()
-    shown(view.with_case(case_named("Robust pose")))
-    table = page.locator("[data-np=guaranteed]")
-    heads, *rows = (row.split("\t") for row in table.inner_text().replace(MINUS, "-").splitlines() if row)
-    assert heads[1:3] == ["without errors", "guaranteed"]
-    guaranteed = {row[0]: float(row[2]) for row in rows}
-    (worst,) = (row[0] for row in rows if "worst" in row[-1])
-    assert guaranteed[worst] == min(guaranteed.values())
-    assert all(float(row[1]) >= float(row[2]) for row in rows)
-    value = float(page.locator("[data-np=value-0]").inner_text().replace(MINUS, "-"))
-    assert guaranteed[worst] == pytest.approx(value, abs=0.006)
-
-
-@pytest.mark.usefixtures("best_map")
-def test_a_secrecy_map_has_a_span_of_its_own(page: Page, shown: Shown) -> None:
-    """And not the 6 dB of the others, in which all of it would have one colour."""
-    shown(View(scenario=load(EXAMPLES / "eavesdropper.toml")))
-    _until(page, lambda: "bits/s/Hz" in page.locator("[data-np=overlay-ends]").last.inner_text())
-    low, high = _card_ends(page)
-    assert 0.0 < high - low < 6.0
-
-
 def test_grid_and_airspace_grow_with_a_drag(ours: Any, shown: Shown, paper: Scenario) -> None:
     """A node that is moved off the ground that is drawn has ground below it again, and air above it."""
     place = np.array([0.0, 70.0, 0.0])
-    shown(View(scenario=paper).moved(("nodes", 1), place))
+    shown(State(scenario=paper).moved(("nodes", 1), place))
     drawn = ours._client.scene._handle_from_node_name
     for name in ("/ground/grid", "/airspace/edges"):
         points = drawn[name].points.reshape(-1, 3)
@@ -281,15 +238,9 @@ def test_grid_and_airspace_grow_with_a_drag(ours: Any, shown: Shown, paper: Scen
         assert np.all(points[:, :2].max(axis=0) > place[:2] + 5.0), name
 
 
-def test_an_array_is_said_not_to_be_shown(page: Page, shown: Shown) -> None:
-    """Its pose is that of one antenna."""
-    shown(View(scenario=load(EXAMPLES / "array.toml")))
-    assert "The array of the file is not shown" in page.locator("[data-np=readout]").inner_text()
-
-
 def test_a_file_that_names_others_is_refused_in_words(page: Page, session: Session) -> None:
     """It says what cannot be, and names no folder of this machine."""
-    version = session.version
+    version = session.state.version
     page.get_by_role("tab", name="Files").click()
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Load scenario").click()
@@ -299,7 +250,7 @@ def test_a_file_that_names_others_is_refused_in_words(page: Page, session: Sessi
     told = faults.inner_text()
     assert "nodes_from" in told
     assert "/" not in told.replace("and/or", "")
-    assert session.version == version
+    assert session.state.version == version
     page.locator(".mantine-Notification-root", has_text="geodetic.toml was not taken").wait_for()
 
 

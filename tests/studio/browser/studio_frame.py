@@ -21,13 +21,6 @@ DARK = "document.documentElement.dataset.mantineColorScheme == 'dark'"
 WIDE, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
 
 
-@pytest.fixture
-def alone(paper: Scenario) -> Iterator[Studio]:
-    """A studio that no other test uses."""
-    with studio(paper, port=0) as one:
-        yield one
-
-
 @contextmanager
 def _opened(browser: Browser, address: str, **more: Any) -> Iterator[Page]:
     """Opens an address in a browser of its own, up to the first proof."""
@@ -116,7 +109,7 @@ def test_a_page_loaded_again_shows_the_scene_of_the_start(
         page.wait_for_function(CERTIFIED)
         third = _after(alone, second)
         assert questions == ["beforeunload"]
-        assert third.session.view.scenario == paper
+        assert third.session.state.scenario == paper
         assert third.session.history.past == ()
         assert urlsplit(page.url).query == urlsplit(alone.address).query
 
@@ -128,7 +121,7 @@ def test_another_tab_begins_with_the_file(browser: Browser, alone: Studio, paper
         first.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)))
         with _opened(browser, alone.address):
             (second,) = (page for page in alone.pages.values() if page is not first)
-            assert second.session.view.scenario == paper
+            assert second.session.state.scenario == paper
 
 
 def test_a_dropped_connection_comes_back(browser: Browser, alone: Studio, paper: Scenario) -> None:
@@ -138,7 +131,7 @@ def test_a_dropped_connection_comes_back(browser: Browser, alone: Studio, paper:
         first.session.change(lambda view: view.moved(("nodes", 0), (12.0, 3.0, 0.0)))
         alone._server._websock_server.disconnect_all_clients()
         second = _after(alone, first)
-        assert second.session.view.scenario == paper
+        assert second.session.state.scenario == paper
         page.wait_for_selector("#np-overlay[data-state=connected]")
         page.wait_for_function(CERTIFIED)
         assert page.locator("[data-np=connection]").inner_text() == "connected"

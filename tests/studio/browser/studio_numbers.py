@@ -18,7 +18,7 @@ from nullpose.cli.app import app
 from nullpose.scenario import Scenario
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
-from nullpose.studio.view import View
+from nullpose.studio.state import State
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml") if path.stem != "study")
@@ -70,8 +70,8 @@ def test_the_page_has_the_numbers_of_the_command_line(
 ) -> None:
     """To the printed digits: value, bound, every node, pose and null; and the map's best to .01 dB."""
     scenario = load(EXAMPLES / f"{name}.toml", allow_outside=True)
-    session.change(lambda view: View(scenario=scenario))
-    version = session.version
+    session.change(lambda view: State(scenario=scenario))
+    version = session.state.version
     page.wait_for_function(
         f"+document.querySelector('[data-np=readout]').dataset.version == {version} && {CERTIFIED}"
     )
@@ -84,10 +84,10 @@ def test_the_page_has_the_numbers_of_the_command_line(
     card = page.locator("[data-np=overlay-value-0]").last.get_attribute("data-value")
     assert float(card or "nan") == value
     for _ in range(900):
-        if session.field_map is not None:
+        if session.state.field_map is not None:
             break
         page.wait_for_timeout(100)
-    assert session.field_map is not None
-    answer = session.current(session.view.case)
+    assert session.state.field_map is not None
+    answer = session.state.current(session.state.case)
     assert answer is not None
-    assert session.field_map.best.best[0] == pytest.approx(answer.shown_value, abs=0.01)
+    assert session.state.field_map.best.best[0] == pytest.approx(answer.shown_value, abs=0.01)

@@ -93,12 +93,12 @@ def test_the_slider_changes_the_value_to_the_solvers(page: Page, session: Sessio
     _settled(page, version)
     page.wait_for_timeout(1500)
     page.wait_for_function(CERTIFIED)
-    assert session.view.scenario.jammers[0].transmit_power_w > 5.0
-    assert _value(page) == pytest.approx(solve(session.view.scenario).objective.value, rel=1e-9)
+    assert session.state.scenario.jammers[0].transmit_power_w > 5.0
+    assert _value(page) == pytest.approx(solve(session.state.scenario).objective.value, rel=1e-9)
     version = _version(page)
     _type_power(page, "20")
     _settled(page, version)
-    scenario = session.view.scenario
+    scenario = session.state.scenario
     assert scenario.jammers[0].transmit_power_w == pytest.approx(100.0)
     assert _value(page) == pytest.approx(solve(scenario).objective.value, rel=1e-9)
     assert _value(page) != pytest.approx(before, rel=1e-3)
@@ -115,12 +115,12 @@ def test_a_typed_power_is_taken_with_enter(page: Page, session: Session) -> None
     assert _version(page) == version
     field.press("Enter")
     _settled(page, version)
-    assert session.view.power_db == pytest.approx(12.3456, abs=1e-9)
+    assert session.state.power_db == pytest.approx(12.3456, abs=1e-9)
     assert field.input_value() == "12.3456"
     version = _version(page)
     _type_power(page, "1e1")
     _settled(page, version)
-    assert session.view.power_db == pytest.approx(10.0, abs=1e-9)
+    assert session.state.power_db == pytest.approx(10.0, abs=1e-9)
     version = _version(page)
     _type_power(page, "12.3456")
     _settled(page, version)
@@ -143,7 +143,7 @@ def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running
     ours = next(iter(running.pages.values()))
     camera = ours._client.camera
     version = _version(page)
-    start = np.asarray(session.view.scenario.jammers[0].position_m)
+    start = np.asarray(session.state.scenario.jammers[0].position_m)
     page.wait_for_timeout(3000)
     size_m = ours.stage.size_m
     _click(page, ours, start + np.array([0.0, 0.0, 0.01 * size_m]))
@@ -161,10 +161,10 @@ def test_a_dragged_handle_moves_the_jammer(page: Page, session: Session, running
     _settled(page, version)
     page.wait_for_timeout(1500)
     page.wait_for_function(CERTIFIED)
-    moved = np.array(session.view.scenario.jammers[0].position_m)
+    moved = np.array(session.state.scenario.jammers[0].position_m)
     assert np.linalg.norm(moved - start) > 4.0
     assert moved[2] == start[2]
-    assert _value(page) == pytest.approx(solve(session.view.scenario).objective.value, rel=1e-9)
+    assert _value(page) == pytest.approx(solve(session.state.scenario).objective.value, rel=1e-9)
     page.keyboard.press("Escape")
 
 
@@ -183,7 +183,7 @@ def test_two_browsers_keep_their_own_state(page: Page, open_page: Open) -> None:
 
 def test_cases_are_chosen_and_compared(page: Page, session: Session) -> None:
     """A case from the list is solved as the solver does, and two are set beside each other."""
-    paper = session.view.scenario
+    paper = session.state.scenario
     version = _version(page)
     page.locator("input.mantine-Select-input:visible").nth(0).click()
     page.get_by_role("option", name="Vertical", exact=True).click()
@@ -201,7 +201,7 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     version = _version(page)
     _type_power(page, "10")
     _settled(page, version)
-    scenario = session.view.scenario
+    scenario = session.state.scenario
     page.get_by_role("tab", name="Files").click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Save scenario").click()
@@ -224,12 +224,12 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
     page.get_by_role("tab", name="Scene").click()
     page.get_by_role("button", name="Undo").click()
     _settled(page, version)
-    assert session.view.scenario != scenario
+    assert session.state.scenario != scenario
     version = _version(page)
     page.get_by_role("tab", name="Files").click()
     _upload(page, saved)
     _settled(page, version)
-    assert session.view.scenario == scenario
+    assert session.state.scenario == scenario
     assert page.locator("[data-np=faults]").inner_text() == ""
     version = _version(page)
     page.get_by_role("tab", name="Scene").click()
@@ -240,7 +240,7 @@ def test_files_go_out_and_come_back(page: Page, session: Session, tmp_path: Path
         page.get_by_role("button", name="Save scenario").click()
     download.value.save_as(saved)
     assert saved.read_text().startswith("# Mine.\n")
-    assert load(saved) == session.view.scenario != scenario
+    assert load(saved) == session.state.scenario != scenario
 
 
 def test_the_exported_scene_needs_no_server(page: Page, running: Studio, tmp_path: Path) -> None:
@@ -324,13 +324,6 @@ def test_a_picture_of_the_scene_is_exported(
     page.get_by_role("button", name="Export picture").click()
     page.locator(".mantine-Notification-root", has_text="a picture holds 1000 m").wait_for()
     camera.position = near_m
-
-
-def test_the_explanation_can_be_closed(page: Page) -> None:
-    """What am I looking at is there at first, and gone when it is closed."""
-    assert page.locator("[data-np=about]").is_visible()
-    page.get_by_role("button", name="Got it").click()
-    page.wait_for_selector("[data-np=about]", state="detached")
 
 
 def _upload(page: Page, path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,13 +40,6 @@ window.seen = new Set();
 """
 
 
-@pytest.fixture
-def alone(paper: Scenario) -> Iterator[Studio]:
-    """A studio that no other test uses."""
-    with studio(paper, port=0) as one:
-        yield one
-
-
 @contextmanager
 def _opened(browser: Browser, alone: Studio, **more: Any) -> Iterator[tuple[Page, Any]]:
     """Opens the studio in a browser of its own, up to the first proof, and yields both its sides."""
@@ -66,7 +60,7 @@ def _opened(browser: Browser, alone: Studio, **more: Any) -> Iterator[tuple[Page
 
 
 def _drone_is_in_sight(page: Page, ours: Any) -> bool:
-    answer = ours.session.answer(ours.session.view.case)
+    answer = ours.session.state.answer(ours.session.state.case)
     x, y, ahead = pixels(ours._client.camera, [answer.result.pose.position_m])[0]
     size = page.viewport_size
     card = page.locator("#np-overlay").bounding_box()
@@ -81,7 +75,7 @@ def test_a_touch_phone_shows_the_scene_first(browser: Browser, alone: Studio) ->
     with _opened(browser, alone, **PHONE) as (page, ours):
         readout, title = page.locator("[data-np=readout]"), page.get_by_text("nullpose studio")
         assert not readout.is_visible()
-        scenario, camera = ours.session.view.scenario, ours._client.camera
+        scenario, camera = ours.session.state.scenario, ours._client.camera
         assert (camera.image_width, camera.image_height) == (390, 844)
         points = pixels(camera, [point.position_m for point in (*scenario.nodes, *scenario.jammers)])
         assert np.all((points[:, :2] > [0.0, CARD_PX[1]]) & (points[:, :2] < [390.0, 844.0]))
@@ -117,8 +111,7 @@ def test_every_text_can_be_read(browser: Browser, alone: Studio, scheme: str) ->
     """A contrast of 4.5 to 1 in the panel, tab by tab, and on the card."""
     script = (Path(__file__).parent / "contrast.js").read_text(encoding="utf-8")
     with _opened(browser, alone, color_scheme=scheme, **DESK) as (page, ours):
-        ours._editor.selected = ("jammers", 0)
-        ours._refresh()
+        ours.change(lambda state: replace(state, selected=("jammers", 0)))
         for tab in ("Scene", "Edit", "Map and view", "Files"):
             page.get_by_role("tab", name=tab).click()
             page.wait_for_timeout(400)

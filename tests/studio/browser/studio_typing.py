@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ from nullpose.scenario import Node, NoFlyZone
 from nullpose.studio.edits import Entry, entries_of
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
-from nullpose.studio.view import Key, View
+from nullpose.studio.state import Key, State
 
 DELAYS_MS = (0, 5, 10, 20, 40)
 TRIES = ("36", "7", "12.5", "3.25", "40", "0.75", "18", "2", "29.5", "11", "36", "5.125", "23")
@@ -35,8 +36,7 @@ class Typist:
 
     def select(self, key: Key | None) -> None:
         """Show the values of a point or a zone, as a click on it does; those of the vehicle without one."""
-        self.ours._editor.selected = key
-        self.ours._refresh()
+        self.ours.change(lambda state: replace(state, selected=key))
         self.page.get_by_role("tab", name="Edit").click()
         self.page.wait_for_timeout(300)
 
@@ -63,15 +63,15 @@ class Typist:
 
     def entry(self, key: Key | None, label: str, scenario: Scenario | None = None) -> Entry:
         """Return what the server has under a label, of the scene now or of another."""
-        view = self.session.view if scenario is None else View(scenario=scenario)
+        view = self.session.state if scenario is None else State(scenario=scenario)
         return next(one for one in entries_of(view, key) if one.label == label)
 
     def agree(self, key: Key | None, label: str, text: str) -> None:
         """Wait for a typed value to be solved, and check field, scenario and solved scenario."""
-        case = self.session.view.case
+        case = self.session.state.case
         self.until(lambda: self.entry(key, label).text == text, f"{label}: {text} is not in the scenario")
-        self.until(lambda: self.session.current(case), f"{label}: {text} is not solved")
-        answer = self.session.current(case)
+        self.until(lambda: self.session.state.current(case), f"{label}: {text} is not solved")
+        answer = self.session.state.current(case)
         assert answer is not None
         assert self.entry(key, label, answer.result.scenario).text == text
         self.page.wait_for_timeout(150)
@@ -95,12 +95,12 @@ def test_a_power_is_solved_as_it_was_typed(typist: Typist, delay_ms: float) -> N
         typist.typed("power (W)", text, delay_ms)
         typist.agree(key, "power (W)", text)
     page.wait_for_function(
-        f"+document.querySelector('[data-np=readout]').dataset.version == {session.version} "
+        f"+document.querySelector('[data-np=readout]').dataset.version == {session.state.version} "
         "&& document.querySelector('[data-np=status-0]').innerText.includes('certified to')"
     )
     shown = float(page.locator("[data-np=value-0]").get_attribute("data-value") or "nan")
-    assert session.view.scenario.jammers[0].power_w == float(TRIES[-1])
-    assert shown == pytest.approx(solve(session.view.scenario).objective.value, rel=1e-9)
+    assert session.state.scenario.jammers[0].power_w == float(TRIES[-1])
+    assert shown == pytest.approx(solve(session.state.scenario).objective.value, rel=1e-9)
 
 
 _FIELDS: dict[Key | None, dict[str, str]] = {
@@ -153,15 +153,15 @@ def test_the_jamming_power_is_the_one_in_its_field(typist: Typist, delay_ms: flo
     texts = {"36": "36", "-12.3456789": "-12.345679", "1e1": "10", "\N{MINUS SIGN}7.5": "-7.5"}
     for text, taken in texts.items():
         typist.typed("typed (dB)", text, delay_ms)
-        typist.until(lambda taken=taken: session.view.power_text == taken, text)
+        typist.until(lambda taken=taken: session.state.power_text == taken, text)
         typist.until(lambda taken=taken: field.input_value() == taken, text)
-        assert session.view.power_db == pytest.approx(float(taken), abs=1e-9)
+        assert session.state.power_db == pytest.approx(float(taken), abs=1e-9)
     field.click()
     field.press("Control+A")
     field.press_sequentially("25", delay=delay_ms)
     page.mouse.click(500, 400)
-    typist.until(lambda: math.isclose(session.view.power_db, 25.0), "the field was left")
-    assert session.view.scenario.jammers[0].power_w == pytest.approx(10.0**2.5, rel=1e-9)
+    typist.until(lambda: math.isclose(session.state.power_db, 25.0), "the field was left")
+    assert session.state.scenario.jammers[0].power_w == pytest.approx(10.0**2.5, rel=1e-9)
 
 
 @pytest.mark.parametrize("text", ["abc", "36,5", "3 6", "", "nan", "-3", "36 W"])
@@ -170,8 +170,8 @@ def test_what_is_no_power_is_refused_in_words(typist: Typist, text: str) -> None
     session = typist.session
     typist.select(("jammers", 0))
     typist.typed("power (W)", "36", 0)
-    typist.until(lambda: session.view.scenario.jammers[0].power_w == 36.0, "36")
-    version = session.version
+    typist.until(lambda: session.state.scenario.jammers[0].power_w == 36.0, "36")
+    version = session.state.version
     field = typist.typed("power (W)", text or "Delete", 0) if text else _emptied(typist, "power (W)")
     typist.page.wait_for_function(f"{FAULTS}.includes('jammers[0]')")
     typist.until(lambda: field.input_value() == "36", "the power that holds is not put back")
@@ -179,8 +179,8 @@ def test_what_is_no_power_is_refused_in_words(typist: Typist, text: str) -> None
     if text != "-3":  # which is a number of decibels
         field = typist.typed("typed (dB)", text, 0) if text else _emptied(typist, "typed (dB)")
         typist.page.wait_for_function(f"{FAULTS}.includes('allowed: a number from')")
-        typist.until(lambda: field.input_value() == session.view.power_text, "it is not put back")
-    assert session.version == version
+        typist.until(lambda: field.input_value() == session.state.power_text, "it is not put back")
+    assert session.state.version == version
 
 
 def _emptied(typist: Typist, label: str) -> Locator:
@@ -194,16 +194,16 @@ def test_escape_puts_back_and_a_number_written_otherwise_is_written_as_it_holds(
     """Nothing of what was typed before Escape is taken later; +7.0e0 becomes 7."""
     page, session = typist.page, typist.session
     page.get_by_role("tab", name="Scene").click()
-    before = session.view.power_text
+    before = session.state.power_text
     field = typist.typed("typed (dB)", "17", 0, ends="Escape")
     typist.until(lambda: field.input_value() == before, "Escape has not put it back")
     field.press("Tab")
     page.wait_for_timeout(300)
-    assert (field.input_value(), session.view.power_text) == (before, before)
+    assert (field.input_value(), session.state.power_text) == (before, before)
     for _ in range(2):  # the second time nothing changes, and it is written back all the same
         typist.typed("typed (dB)", "+7.0e0", 0)
         typist.until(lambda: field.input_value() == "7", "it is not written back")
-        assert session.view.power_text == "7"
+        assert session.state.power_text == "7"
 
 
 def test_answers_and_changes_leave_what_is_being_typed(typist: Typist) -> None:

@@ -5,12 +5,12 @@ import pytest
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.studio.case import OPTIMUM, case_named
-from nullpose.studio.view import View
+from nullpose.studio.state import State
 
 
 def test_a_moved_point_moves_alone(paper: Scenario) -> None:
     """Moving the jammer changes its position and nothing else, and the first view stays as it was."""
-    view = View(scenario=paper)
+    view = State(scenario=paper)
     moved = view.moved(("jammers", 0), (1.0, 2.0, 3.0))
     assert moved.scenario.jammers[0].position_m == (1.0, 2.0, 3.0)
     assert moved.scenario.nodes == paper.nodes
@@ -20,20 +20,20 @@ def test_a_moved_point_moves_alone(paper: Scenario) -> None:
 
 def test_positions_are_kept_to_a_millimetre(paper: Scenario) -> None:
     """What a mouse gives beyond a millimetre is dropped, so that a saved file can be read."""
-    moved = View(scenario=paper).moved(("nodes", 1), (0.12345, 49.99961, 0.0))
+    moved = State(scenario=paper).moved(("nodes", 1), (0.12345, 49.99961, 0.0))
     assert moved.scenario.nodes[1].position_m == (0.123, 50.0, 0.0)
 
 
 def test_a_place_that_makes_no_scenario_is_refused(paper: Scenario) -> None:
     """A point that is put where the scenario is at fault raises with the path of the fault."""
     with pytest.raises(ScenarioError, match="position_m"):
-        View(scenario=paper).moved(("nodes", 0), (float("nan"), 0.0, 0.0))
+        State(scenario=paper).moved(("nodes", 0), (float("nan"), 0.0, 0.0))
 
 
 def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
     """The power set is the strongest jammer's over the strongest node's; ratios of jammers stay."""
     weak = paper.jammers[0].model_copy(update={"name": "W", "position_m": (30.0, 40.0, 0.0), "power_w": 0.1})
-    both = View(scenario=paper.model_copy(update={"jammers": (*paper.jammers, weak)}))
+    both = State(scenario=paper.model_copy(update={"jammers": (*paper.jammers, weak)}))
     assert both.power_db == pytest.approx(0.0)
     louder = both.with_power_db(20.0)
     assert louder.power_db == pytest.approx(20.0)
@@ -44,7 +44,7 @@ def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
 @pytest.mark.parametrize(("text", "power_db"), [("12.3456", 12.3456), (" 1e1 ", 10.0), ("\u221230", -30.0)])
 def test_a_typed_power_holds_as_typed(paper: Scenario, text: str, power_db: float) -> None:
     """What is typed in the range is the power to the last digit, and is shown so."""
-    view = View(scenario=paper).with_power_text(text)
+    view = State(scenario=paper).with_power_text(text)
     assert view.power_db == pytest.approx(power_db, abs=1e-9)
     assert view.power_text == f"{power_db:g}"
     assert view.with_power_text(view.power_text) is view
@@ -54,25 +54,25 @@ def test_a_typed_power_holds_as_typed(paper: Scenario, text: str, power_db: floa
 def test_a_typed_power_out_of_range_is_refused(paper: Scenario, text: str) -> None:
     """It is said what was given, what is allowed, and what holds."""
     with pytest.raises(ScenarioError, match=rf"given {text or 'nothing'}; .*-30 to 40.* stays at 0"):
-        View(scenario=paper).with_power_text(text)
+        State(scenario=paper).with_power_text(text)
 
 
 def test_a_power_beyond_the_slider_is_shown_as_it_is(paper: Scenario) -> None:
     """A file may state a power that the page does not offer."""
-    assert View(scenario=paper).with_power_db(-99.0).power_text == "-99"
+    assert State(scenario=paper).with_power_db(-99.0).power_text == "-99"
 
 
 def test_a_power_in_dbm_stays_in_dbm(paper: Scenario) -> None:
     """A jammer stated in dBm is scaled in dBm."""
     jammer = paper.jammers[0].model_copy(update={"power_w": None, "power_dbm": 30.0})
-    view = View(scenario=paper.model_copy(update={"jammers": (jammer,)})).with_power_db(10.0)
+    view = State(scenario=paper.model_copy(update={"jammers": (jammer,)})).with_power_db(10.0)
     assert view.scenario.jammers[0].power_dbm == 40.0
     assert view.power_db == pytest.approx(10.0, abs=1e-9)
 
 
 def test_without_jammers_there_is_no_power(paper: Scenario) -> None:
     """Nothing can be scaled where nothing jams."""
-    view = View(scenario=paper.model_copy(update={"jammers": ()}))
+    view = State(scenario=paper.model_copy(update={"jammers": ()}))
     assert view.power_db is None
     assert view.with_power_db(10.0) == view
 
@@ -80,7 +80,7 @@ def test_without_jammers_there_is_no_power(paper: Scenario) -> None:
 def test_another_scenario_keeps_the_cases_that_it_has(paper: Scenario, secret: Scenario) -> None:
     """A case without meaning for a loaded scenario gives way to one that has; a second case falls away."""
     gain, vertical = case_named("Maximum gain"), case_named("Vertical")
-    view = View(scenario=paper, case=gain, compared=vertical)
+    view = State(scenario=paper, case=gain, compared=vertical)
     assert view.with_scenario(paper) == view
     other = view.with_scenario(secret)
     assert other.case == OPTIMUM
@@ -90,13 +90,5 @@ def test_another_scenario_keeps_the_cases_that_it_has(paper: Scenario, secret: S
 def test_a_case_is_not_compared_with_itself(paper: Scenario) -> None:
     """Choosing the compared case as the first, or the first as the compared, compares nothing."""
     vertical = case_named("Vertical")
-    assert View(scenario=paper).with_compared(OPTIMUM).compared is None
-    assert View(scenario=paper).with_compared(vertical).with_case(vertical).compared is None
-
-
-def test_the_files_text_stays_with_its_scenario(paper: Scenario) -> None:
-    """Changes keep the text that comments are taken from; another file has its own."""
-    view = View(scenario=paper, text="# mine").moved(("nodes", 0), (1.0, 2.0, 3.0)).with_power_db(3.0)
-    assert view.text == "# mine"
-    assert view.with_scenario(paper, "# theirs").text == "# theirs"
-    assert view.with_scenario(paper).text == "# mine"
+    assert State(scenario=paper).with_compared(OPTIMUM).compared is None
+    assert State(scenario=paper).with_compared(vertical).with_case(vertical).compared is None

@@ -1,0 +1,315 @@
+"""The state of one page. Immutable: every change, of the scene or of a switch, makes another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.physics import from_db, to_db
+from nullpose.report.numbers import MINUS
+from nullpose.scenario import GroundPoint, Scenario
+from nullpose.studio.answer import Answer, Notice, PowerCurve, Progress, status_words
+from nullpose.studio.case import OPTIMUM, Case, cases_of
+from nullpose.studio.field_map import MAPS, FieldMap, Scale
+from nullpose.studio.toml_like import toml_like
+
+Kind = Literal["nodes", "jammers", "eavesdroppers", "no_fly"]
+"""A list of the scenario, the last one being that of its airspace."""
+Key = tuple[Kind, int]
+"""A ground point or a no-fly zone: which list of the scenario it is in, and where there."""
+Event = Answer | Notice | FieldMap | PowerCurve | Progress
+"""What a worker finds for a version of the scene."""
+
+KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
+_ROUND_M = 3  # digits of a metre that a dragged position keeps
+_ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
+_LINK_RANGE_DB = (-6.0, 12.0)  # of the links' colours before there is a map
+
+POWER_DB = (-30.0, 40.0)
+"""Range of the strongest jammer's power over the nodes' that a page offers, dB."""
+
+_E = TypeVar("_E", bound=Event)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """A scene, what is found for it, and how it is shown.
+
+    Args:
+        scenario: the scene.
+        case: how its pose is chosen.
+        compared: a second case to set beside it, or None.
+        text: of the file that the scenario is from, which may be out of date; empty without a file.
+        opened: how many other scenes were opened before this one.
+        version: of the scene; every change of the fields above makes another.
+        events: the latest found of each kind and case, of this version or an earlier one.
+        selected: the point or zone whose values are shown, or None.
+        dragged: the point that a hand moves now, or None.
+        tool: what the next click on the ground adds; empty for nothing.
+        corners_m: (n, 2) of a fence that is being drawn, metres.
+        map_name: the map that is shown, one of ``MAPS``, or any other text for none.
+        has_pattern: whether the radiation patterns are shown.
+        lifts_points: whether points can be dragged off their altitude.
+        is_presented: whether the panel is folded.
+        faults: what of the last change was refused, as HTML.
+    """
+
+    scenario: Scenario
+    case: Case = OPTIMUM
+    compared: Case | None = None
+    text: str = ""
+    opened: int = 0
+    version: int = 1
+    events: Mapping[tuple[type, Case | None], Event] = field(default_factory=dict)
+    selected: Key | None = None
+    dragged: Key | None = None
+    tool: str = ""
+    corners_m: tuple[tuple[float, float], ...] = ()
+    map_name: str = MAPS[1]
+    has_pattern: bool = True
+    lifts_points: bool = False
+    is_presented: bool = False
+    faults: str = ""
+
+    @property
+    def scene(self) -> tuple[object, ...]:
+        """What is solved, undone and saved; the other fields are only what is shown."""
+        return self.scenario, self.case, self.compared, self.text, self.opened
+
+    def with_scene_of(self, other: State) -> State:
+        """Return the state with another one's scene.
+
+        Args:
+            other: the other.
+        """
+        return replace(
+            self,
+            scenario=other.scenario,
+            case=other.case,
+            compared=other.compared,
+            text=other.text,
+            opened=other.opened,
+        )
+
+    def with_event(self, event: Event) -> State:
+        """Return the state with something that was found.
+
+        Args:
+            event: of any version; it replaces the one before of its kind and case.
+        """
+        events = {**self.events, (type(event), getattr(event, "case", None)): event}
+        if isinstance(event, Answer):
+            events.pop((Notice, None), None)
+        return replace(self, events=events)
+
+    def _last(self, kind: type[_E], case: Case | None = None) -> _E | None:
+        event = self.events.get((kind, case))
+        return event if isinstance(event, kind) else None
+
+    def _current(self, kind: type[_E], case: Case | None = None) -> _E | None:
+        event = self._last(kind, case)
+        return event if event is not None and event.version == self.version else None
+
+    def answer(self, case: Case) -> Answer | None:
+        """Return the latest answer for a case, of whatever version; see :meth:`current`."""
+        return self._last(Answer, case)
+
+    def current(self, case: Case) -> Answer | None:
+        """Return the answer for a case to the present version of the scene, or None."""
+        return self._current(Answer, case)
+
+    def progress(self, case: Case) -> Progress | None:
+        """Return the progress of a case's proof for the present version, or None."""
+        return self._current(Progress, case)
+
+    def status(self, case: Case) -> str:
+        """Say how far the solve of a case has come."""
+        answer = self.current(case)
+        compiling = self._last(Notice) if answer is None else None
+        notice = self._current(Notice, case) or compiling
+        return status_words(answer) if notice is None else notice.words
+
+    @property
+    def curve(self) -> PowerCurve | None:
+        """The latest power curve, of whatever version, or None."""
+        return self._last(PowerCurve)
+
+    @property
+    def field_map(self) -> FieldMap | None:
+        """The maps of the present version, or None."""
+        return self._current(FieldMap)
+
+    @property
+    def scale(self) -> Scale | None:
+        """The map that is shown with its colours, or None."""
+        maps = self.field_map
+        return None if maps is None else maps.scale(self.map_name)
+
+    @property
+    def link_range_db(self) -> tuple[float, float]:
+        """Ends of the links' colours, dB: those of the map of the best values."""
+        maps = self._last(FieldMap)
+        scale = None if maps is None else maps.scale(MAPS[0])
+        return scale.ends if scale is not None and scale.field.unit == "dB" else _LINK_RANGE_DB
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """The cases to solve, the chosen one first."""
+        return (self.case,) if self.compared is None else (self.case, self.compared)
+
+    def letter(self, slot: int) -> str:
+        """Return the letter of one of two cases, "A: " or "B: "; empty for one case.
+
+        Args:
+            slot: 0 for the chosen case, 1 for the compared one.
+        """
+        return "" if self.compared is None else f"{'AB'[slot]}: "
+
+    def points(self) -> Iterator[tuple[Key, GroundPoint]]:
+        """Yield every ground point with its key."""
+        for kind in KINDS[:-1]:
+            for index, point in enumerate(self.members(kind)):
+                yield (kind, index), point
+
+    def members(self, kind: Kind) -> tuple[Any, ...]:
+        """Return a list of the scenario.
+
+        Args:
+            kind: which.
+        """
+        return tuple(getattr(self.scenario.airspace if kind == "no_fly" else self.scenario, kind))
+
+    def with_members(self, kind: Kind, members: Iterable[Any]) -> State:
+        """Return the state with another list in the scenario.
+
+        Args:
+            kind: which.
+            members: the points or zones that it is to hold.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        update: dict[str, Any] = {kind: tuple(members)}
+        if kind == "no_fly":
+            update = {"airspace": self.scenario.airspace.model_copy(update=update)}
+        return self.with_scenario(self.scenario.model_copy(update=update))
+
+    def moved(self, key: Key, position_m: ArrayLike) -> State:
+        """Return the state with one ground point elsewhere, to a millimetre.
+
+        Args:
+            key: which point.
+            position_m: (3,) metres.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        kind, index = key
+        east, north, up = np.round(np.asarray(position_m, dtype=float), _ROUND_M).tolist()
+        points = list(self.members(kind))
+        points[index] = points[index].model_copy(update={"position_m": (east, north, up)})
+        return self.with_members(kind, points)
+
+    @property
+    def power_db(self) -> float | None:
+        """Power of the strongest jammer over that of the strongest transmitter to be heard, dB.
+
+        None without jammers, or if either has no power.
+        """
+        heard = self.scenario.nodes if self.scenario.transmitter is None else (self.scenario.transmitter,)
+        reference_w = max(source.transmit_power_w for source in heard)
+        strongest_w = max((jammer.transmit_power_w for jammer in self.scenario.jammers), default=0.0)
+        if strongest_w <= 0.0 or reference_w <= 0.0:
+            return None
+        return float(to_db(strongest_w / reference_w))
+
+    def with_power_db(self, power_db: float) -> State:
+        """Return the state with all jammers' powers scaled alike, so that the strongest has this one.
+
+        Args:
+            power_db: power of the strongest jammer over that of the strongest transmitter, dB.
+
+        Raises:
+            ScenarioError: the scenario would be faulty.
+        """
+        now_db = self.power_db
+        if now_db is None or math.isclose(now_db, power_db, abs_tol=1e-9):
+            return self
+        by_db = power_db - now_db
+        powers = (  # each in the unit that it is stated in
+            {"power_w": float(f"{jammer.transmit_power_w * float(from_db(by_db)):.12g}")}
+            if jammer.power_dbm is None
+            else {"power_dbm": float(f"{jammer.power_dbm + by_db:.12g}")}
+            for jammer in self.scenario.jammers
+        )
+        jammers = tuple(
+            jammer.model_copy(update=power)
+            for jammer, power in zip(self.scenario.jammers, powers, strict=True)
+        )
+        return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
+
+    @property
+    def power_text(self) -> str:
+        """The power of the strongest jammer in dB as a text, to a millionth; empty without one."""
+        return "" if self.power_db is None else f"{round(self.power_db, _ROUND_DB) + 0.0:.9g}"
+
+    def with_power_text(self, text: str) -> State:
+        """Return the state with the jamming power that was typed; see :meth:`with_power_db`.
+
+        Args:
+            text: a number of decibels, in the range that a page offers.
+
+        Raises:
+            ScenarioError: it is no number, or out of that range.
+        """
+        typed, (low_db, high_db) = text.strip().replace(MINUS, "-"), POWER_DB
+        if typed == self.power_text:
+            return self
+        with suppress(ValueError):
+            power_db = round(float(typed), _ROUND_DB)
+            if low_db <= power_db <= high_db:
+                return self.with_power_db(power_db)
+        allowed = f"allowed: a number from {low_db:g} to {high_db:g}, as in 12.5 or 1e1"
+        words = f"given {typed or 'nothing'}; {allowed}; it stays at {self.power_text or 'none'}"
+        raise ScenarioError([Fault("jamming power, dB", words)])
+
+    def with_scenario(self, scenario: Scenario, text: str | None = None) -> State:
+        """Return the state of another scenario, the cases kept where they have a meaning for it.
+
+        Args:
+            scenario: the new one.
+            text: of the file that it is from, which makes it another scene; None for a change of this one.
+        """
+        allowed = cases_of(scenario)
+        case = self.case if self.case in allowed else allowed[0]
+        compared = self.compared if self.compared in allowed and self.compared != case else None
+        state = replace(self, scenario=scenario, case=case, compared=compared)
+        return state if text is None else replace(state, text=text, opened=self.opened + 1)
+
+    @property
+    def written(self) -> State:
+        """The state with the text of its file, if it has one, brought up to date."""
+        return replace(self, text=self.text and toml_like(self.text, self.scenario))
+
+    def with_case(self, case: Case) -> State:
+        """Return the state with another case chosen.
+
+        Args:
+            case: one that has a meaning for the scenario.
+        """
+        return replace(self, case=case, compared=None if self.compared == case else self.compared)
+
+    def with_compared(self, case: Case | None) -> State:
+        """Return the state with another case set beside the chosen one, or none.
+
+        Args:
+            case: the second case; the chosen one counts as none.
+        """
+        return replace(self, compared=None if case == self.case else case)

@@ -1,0 +1,151 @@
+"""The card that stays on the page."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nullpose import solve
+from nullpose.report.numbers import MINUS
+from nullpose.scenario import Scenario
+from nullpose.solver import Result
+from nullpose.studio.answer import Notice, Progress, answer_of
+from nullpose.studio.card import bar_html, card_html, gap_words, proof_html
+from nullpose.studio.case import OPTIMUM, case_named
+from nullpose.studio.field_map import MAPS, FieldMap
+from nullpose.studio.readout import readout_html
+from nullpose.studio.state import State
+from nullpose.study.value_map import Field
+
+
+@pytest.fixture(scope="module")
+def result() -> Iterator[Result]:
+    """The proved result of the paper's scene."""
+    return solve(_PAPER)
+
+
+@pytest.fixture
+def proved(result: Result) -> State:
+    """A state with a proved answer."""
+    return State(scenario=_PAPER).with_event(answer_of(1, OPTIMUM, result))
+
+
+def _mapped(state: State, lowest: float, highest: float, map_name: str = MAPS[0]) -> State:
+    """Return a state with maps of values between two ends."""
+    grid, values = np.linspace(0.0, 1.0, 3), np.linspace(lowest, highest, 9).reshape(3, 3)
+    best = Field(
+        east_m=grid, north_m=grid, altitude_m=8.0, values=values, unit="dB", title="best <SINR>", name="best"
+    )
+    maps = FieldMap(version=state.version, best=best, footprint=best)
+    return replace(state.with_event(maps), map_name=map_name)
+
+
+def test_it_says_what_the_panel_says(proved: State) -> None:
+    """The same value with its unit, bound, status and rigour."""
+    answer = proved.current(OPTIMUM)
+    assert answer is not None
+    html, bound = card_html(proved), answer.result.objective.upper_bound
+    assert bound is not None
+    value = f"{answer.shown_value:z.4f}".replace("-", MINUS)
+    assert f">{value} dB<" in html
+    assert f"upper bound {answer.result.objective.quantity.in_unit(bound):z.4f} dB" in html
+    assert "certified to 1e-6, verifiable" in html
+    for name in ("data-value", "data-version"):
+        (on_card,) = set(re.findall(f'{name}="([^"]+)"', html))
+        assert f'{name}="{on_card}"' in readout_html(proved)
+
+
+def test_numbers_of_an_older_scene_are_grey(proved: State) -> None:
+    """Until there is an answer to the present one."""
+    assert "np-old" not in card_html(proved)
+    older = replace(proved, version=2)
+    assert "np-old" in card_html(older)
+    assert "solving" in card_html(older)
+
+
+def test_while_the_solver_is_compiled_it_says_so() -> None:
+    """There is no number then."""
+    compiling = Notice(version=1, case=None, words="compiling the solver")
+    html = card_html(State(scenario=_PAPER).with_event(compiling))
+    assert "compiling the solver" in html
+    assert "data-value" not in html
+
+
+def test_two_cases_are_both_there(proved: State) -> None:
+    """Each with its letter."""
+    vertical = case_named("Vertical")
+    state = proved.with_compared(vertical)
+    state = state.with_event(answer_of(1, vertical, solve(_PAPER, vertical.scheme)))
+    html = card_html(state)
+    assert re.findall(r'class="np-label">(\w: [^<]+)<', html) == [f"A: {OPTIMUM.label}", "B: Vertical"]
+    assert len(re.findall("data-value=", html)) == 2
+
+
+def test_the_value_is_marked_at_its_place_on_the_scale(proved: State) -> None:
+    """On the map of the values; not on that of another quantity, nor beyond the ends, nor of a guarantee."""
+    answer = proved.current(OPTIMUM)
+    assert answer is not None
+    state = _mapped(proved, -8.0, 2.0)
+    assert state.scale is not None
+    low, high = state.scale.ends
+    share = 100.0 * (answer.shown_value - low) / (high - low)
+    html = card_html(state)
+    assert f'data-np="overlay-tick" style="left:{share:.1f}%"' in html
+    assert "best &lt;SINR&gt;" in html
+    assert f"<span>{low:g}</span><span>{high:g} dB</span>".replace("-", MINUS) in html
+    assert "lines to nodes: the same colours<" in html
+    other = card_html(_mapped(proved, -8.0, 2.0, MAPS[1]))
+    assert f"lines to nodes: the same colours from {low:g} to {high:g} dB<".replace("-", MINUS) in other
+    robust = case_named("Robust pose")
+    guaranteed = _mapped(replace(proved, case=robust).with_event(replace(answer, case=robust)), -50.0, 50.0)
+    for unmarked in (other, card_html(_mapped(proved, 20.0, 30.0)), card_html(guaranteed)):
+        assert "overlay-tick" not in unmarked
+
+
+def _width(bar: str) -> float:
+    """Return how much of the bar is open, per cent."""
+    found = re.search(r"width:([0-9.]+)%", bar)
+    assert found is not None
+    return float(found.group(1))
+
+
+def test_the_bar_closes_as_the_gap_falls_to_the_one_aimed_at() -> None:
+    """It is open without a bound and at 100 %, half open half way on the log scale, and all but closed."""
+    widths = [_width(bar_html("", gap, 1e-6, "")) for gap in (np.inf, 1.0, 1e-3, 1e-6, 1e-8)]
+    assert widths[:2] == [100.0, 100.0]
+    assert widths[2] == pytest.approx(51.0)
+    assert widths[3] == widths[4] == 2.0
+
+
+def test_the_bar_follows_the_proof_of_the_present_scene(result: Result) -> None:
+    """Open for what a search finds; then the gap and boxes that the solver reports; closed when proved."""
+    state = State(scenario=_PAPER).with_event(answer_of(1, OPTIMUM, solve(_PAPER, certify=False)))
+    assert _width(proof_html(state)) == 100.0
+    state = state.with_event(Progress(version=1, case=OPTIMUM, gap=0.12, target=1e-4, boxes=12345))
+    assert "Gap 12 % so far: 12,345 boxes examined" in proof_html(state)
+    assert 50.0 < _width(proof_html(state)) < 100.0
+    state = state.with_event(answer_of(1, OPTIMUM, result))
+    assert _width(proof_html(state)) == 2.0
+    assert f"Gap 1e-6: proved in {result.stats.boxes:,} boxes" in proof_html(state)
+    assert _width(proof_html(replace(state, version=2))) == 100.0
+
+
+@pytest.mark.parametrize(("gap", "words"), [(1.0, "100 %"), (0.034, "3.4 %"), (2e-5, "2e-5")])
+def test_gaps_are_in_per_cent_or_small_numbers(gap: float, words: str) -> None:
+    """Small ones as the status has them."""
+    assert gap_words(gap) == words
+
+
+_PAPER = Scenario.from_dict(
+    {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [
+            {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
+            {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0},
+        ],
+        "jammers": [{"position_m": [17.0, 15.0, 4.0], "power_w": 1.0}],
+    }
+)
