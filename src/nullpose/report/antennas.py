@@ -5,25 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from nullpose.objectives import Quantity
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, rows, table
 from nullpose.report.numbers import bound_text, capitalised, less_or_more, with_unit
 from nullpose.report.results import pose_cells
-from nullpose.study import AntennaComparison
+from nullpose.study import ResultTable
 
 
-def antennas_view(comparison: AntennaComparison) -> View:
+def antennas_view(comparison: ResultTable) -> View:
     """Set the values with the paper's and the stated antennas, both poses side by side, and the answer."""
-    scenario, quantity = comparison.scenario, Quantity.of(comparison.scenario)
-    promised, possible = comparison.promised, comparison.possible
+    row = {row.name: row for row in comparison.rows}
+    promised, possible = row["promised"], row["possible"]
+    scenario, quantity = possible.scenario, possible.objective.quantity
     values = {
         "1 best pose for the paper's antennas": promised.objective.value,
-        "2 pose 1 with the stated antennas": comparison.received,
+        "2 pose 1 with the stated antennas": row["received"].objective.value,
     }
     if scenario.antenna is not None and scenario.antenna_record.leak > 0.0:
-        values["  as 2, isotropic ground antennas"] = comparison.with_null
-        values["  as 2, perfect null of the drone's antenna"] = comparison.with_ground
+        values["  as 2, isotropic ground antennas"] = row["with_null"].objective.value
+        values["  as 2, perfect null of the drone's antenna"] = row["with_ground"].objective.value
     values["3 best pose for the stated antennas"] = possible.objective.value
     numbers = [quantity.in_unit(value) for value in values.values()]
     none = [None] * (len(numbers) - 2)
@@ -50,11 +50,11 @@ def antennas_view(comparison: AntennaComparison) -> View:
     )
 
 
-def answer(comparison: AntennaComparison) -> str:
+def answer(comparison: ResultTable) -> str:
     """Say in two sentences what the stated antennas cost and what the best pose for them recovers."""
-    quantity = Quantity.of(comparison.scenario)
-    values = (comparison.promised.objective.value, comparison.received, comparison.possible.objective.value)
-    promised, received, possible = map(quantity.in_unit, values)
+    objectives = [comparison.of(name)[0].objective for name in ("promised", "received", "possible")]
+    quantity = objectives[0].quantity
+    promised, received, possible = (quantity.in_unit(objective.value) for objective in objectives)
     pose, other = "The best pose for the paper's antennas", "The best pose for the stated antennas"
     if not math.isfinite(received):
         return (

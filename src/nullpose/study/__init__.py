@@ -1,6 +1,6 @@
 """Many solves and the table that they fill: a setting swept, vehicles or antennas compared."""
 
-from nullpose.study.antenna_comparison import AntennaComparison, compare_antennas
+from nullpose.study.antenna_comparison import compare_antennas
 from nullpose.study.case import AIRFRAME_CASES, Case, cases_of
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
@@ -12,7 +12,6 @@ from nullpose.study.vehicles import compare_airframes, difference, least_suffici
 
 __all__ = [
     "AIRFRAME_CASES",
-    "AntennaComparison",
     "Case",
     "Evaluation",
     "Field",

@@ -1,61 +1,22 @@
-"""What the antennas of a scenario change: the paper's best pose flown with them, and the best for them."""
+"""Antennas compared: the paper's best pose flown with a scenario's antennas, and the best pose for these."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
 from types import MappingProxyType
 from typing import Any, Unpack
 
 from nullpose.errors import UsageError
-from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Antenna, Scenario
-from nullpose.solver import Result, solve
+from nullpose.solver import solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.provenance import provenance
+from nullpose.study.case import Case
+from nullpose.study.evaluation import evaluated
+from nullpose.study.table import ResultRow, ResultTable
 
 _POINTS = ("nodes", "jammers", "eavesdroppers")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AntennaComparison:
-    """The same scene with the paper's antennas and with those that it states.
-
-    Args:
-        scenario: as stated.
-        promised: the best pose for the paper's antennas, and its value with them.
-        received: what that pose gives with the antennas stated: a power ratio, or bits/s/Hz.
-        with_ground: what it gives with the ground's antennas stated and the drone's null perfect.
-        with_null: what it gives with the drone's antenna stated and the paper's on the ground.
-        possible: the best pose for the antennas stated.
-        provenance: versions, seed and settings.
-    """
-
-    scenario: Scenario
-    promised: Result
-    received: float
-    with_ground: float
-    with_null: float
-    possible: Result
-    provenance: Mapping[str, Any]
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether Ctrl-C ended a proof."""
-        return self.promised.interrupted or self.possible.interrupted
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the comparison as plain data, the scenario as stated once."""
-        told = {"promised": self.promised, "possible": self.possible}
-        quantity = Quantity.of(self.scenario)
-        values = {"received": self.received, "with_ground": self.with_ground, "with_null": self.with_null}
-        return {
-            "scenario": self.scenario.to_dict(),
-            **{name: _without_scenario(result) for name, result in told.items()},
-            **{name: {"value": value, "unit": quantity.unit} for name, value in values.items()},
-            "provenance": dict(self.provenance),
-        }
 
 
 def compare_antennas(
@@ -63,8 +24,12 @@ def compare_antennas(
     *,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
-) -> AntennaComparison:
-    """Return what the antennas that a scenario states cost, and what the best pose for them gets back.
+) -> ResultTable:
+    """Solve a scenario with the paper's antennas and with its own, and fly the first pose with the latter.
+
+    The rows are ``promised``, the best pose for the paper's antennas with these; ``received``, that pose with
+    the scenario's antennas; ``with_ground`` and ``with_null``, that pose with those on the ground alone and
+    with the drone's alone; ``possible``, the best pose for the scenario's antennas.
 
     Args:
         scenario: states another antenna than the paper's, on the drone or on the ground.
@@ -75,7 +40,7 @@ def compare_antennas(
         UsageError: every antenna is the paper's; a bad seed or limit.
         SolveError: no pose reaches every node.
     """
-    asked = SolveOptions(**options).of(scenario)
+    solve_options = SolveOptions(**options).of(scenario)
     if not scenario.states_antennas:
         raise UsageError(
             "antenna: every antenna is the paper's, a dipole with a perfect null on the drone and isotropic "
@@ -84,22 +49,24 @@ def compare_antennas(
     promised = solve(with_antennas(scenario, drone=False, ground=False), **options)
     if on_progress is not None:
         on_progress(1, 2)
-    possible = solve(scenario, **options | {"certify": asked.certify and not promised.interrupted})
+    possible = solve(scenario, **options | {"certify": solve_options.certify and not promised.interrupted})
     if on_progress is not None:
         on_progress(2, 2)
-    return AntennaComparison(
-        scenario=scenario,
-        promised=promised,
-        received=_value(scenario, promised.pose),
-        with_ground=_value(with_antennas(scenario, drone=False, ground=True), promised.pose),
-        with_null=_value(with_antennas(scenario, drone=True, ground=False), promised.pose),
-        possible=possible,
-        provenance=MappingProxyType(provenance(asked.seed) | asked.settings),
-    )
+    flown = {
+        "received": scenario,
+        "with_ground": with_antennas(scenario, drone=False, ground=True),
+        "with_null": with_antennas(scenario, drone=True, ground=False),
+    }
+    results = {"promised": promised}
+    results |= {name: evaluated(promised, scene, promised.pose) for name, scene in flown.items()}
+    results["possible"] = possible
+    rows = (ResultRow.of(math.nan, result, Case(name=name, label=name)) for name, result in results.items())
+    settings = MappingProxyType(provenance(solve_options.seed) | solve_options.settings)
+    return ResultTable("", tuple(rows), scenario=scenario, provenance=settings)
 
 
 def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
-    """Return a scenario with the antennas that it states, or with the paper's of the same gain.
+    """Keep the antennas of a scenario, or put in the paper's of the same gain.
 
     Args:
         scenario: as stated.
@@ -110,11 +77,3 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
     for kind in () if ground else _POINTS:
         changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)
-
-
-def _value(scenario: Scenario, pose: Pose) -> float:
-    return Quantity.of(scenario).least(evaluate(scenario, pose))
-
-
-def _without_scenario(result: Result) -> dict[str, Any]:
-    return {key: value for key, value in result.to_dict().items() if key != "scenario"}

@@ -1,4 +1,4 @@
-"""Poses of one's own, held against the bound that no pose exceeds."""
+"""Given poses, compared with the bound that no pose exceeds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TILT_RAD = 1e-9  # rounding of a stated tilt
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GivenDetails:
-    """What is told of a pose that was given.
+    """How a given pose compares with the best one.
 
     Args:
         best: the result that it is held against.
@@ -38,7 +38,7 @@ class GivenDetails:
         """Return it as plain data.
 
         Args:
-            objective: of the pose, told elsewhere.
+            objective: of the pose; it has a key of its own.
         """
         best = {"objective": self.best.objective.to_dict(), "pose": self.best.pose.to_dict()}
         return {"below_bound": self.below_bound, "not_allowed": list(self.not_allowed), "best": best}
@@ -68,7 +68,7 @@ class Evaluation:
         """Return the evaluation as plain data, the scenario once for all poses."""
         once = ("scenario", "provenance", "best")
         poses = [
-            {key: value for key, value in one.to_dict().items() if key not in once} for one in self.results
+            {key: value for key, value in pose.to_dict().items() if key not in once} for pose in self.results
         ]
         best = self.best.to_dict()
         return {
@@ -80,11 +80,11 @@ class Evaluation:
 
 
 def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
-    """Return what poses give, each with the bound of a result.
+    """Evaluate poses, each with the bound of a result.
 
     Args:
         best: of a solve of the optimum pose, whose bound holds for every pose that the vehicle may take.
-        poses: any; one that the vehicle may not take is told as such, without a bound.
+        poses: any; one that the vehicle may not take has no bound.
 
     Raises:
         UsageError: a pose is at a ground point, where the model has no value; or the result is of an array.
@@ -105,33 +105,39 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
     return Evaluation(best=best, results=results)
 
 
-def _against(best: Result, pose: Pose) -> Result:
-    scenario, quantity = best.scenario, Quantity.of(best.scenario)
-    not_allowed, bound = tuple(pose_faults(scenario, pose)), best.objective.upper_bound
-    links = evaluate(scenario, pose)
-    value = quantity.least(links)
-    if not_allowed or bound is None:
-        objective, below = objective_of(scenario, value, None), None
-    else:
-        ratio_bound = 2.0**bound if quantity.is_rate else bound
-        objective = objective_of(scenario, value, ratio_bound, best.rigour)
-        below = quantity.in_unit(bound) - quantity.in_unit(value)
-    place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
-    told = [f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed]
-    told += [] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]
-    told += [f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m"]
+def evaluated(result: Result, scenario: Scenario, pose: Pose) -> Result:
+    """Evaluate a pose in a scenario, without a bound; what says how it was found is that of a result."""
+    links = tuple(evaluate(scenario, pose))
+    objective = objective_of(scenario, Quantity.of(scenario).least(links), None)
     return replace(
-        best,
+        result,
+        scenario=scenario,
         scheme="given",
         status=Status.GIVEN,
         objective=objective,
         pose=pose,
         links=links,
         reason="",
-        note="\n".join(told),
+        note="",
         proofs=(),
-        details=GivenDetails(best=best, below_bound=below, not_allowed=not_allowed),
     )
+
+
+def _against(best: Result, pose: Pose) -> Result:
+    scenario, quantity = best.scenario, Quantity.of(best.scenario)
+    not_allowed, bound = tuple(pose_faults(scenario, pose)), best.objective.upper_bound
+    result, below = evaluated(best, scenario, pose), None
+    if not not_allowed and bound is not None:
+        value = result.objective.value
+        ratio_bound = 2.0**bound if quantity.is_rate else bound
+        result = replace(result, objective=objective_of(scenario, value, ratio_bound, best.rigour))
+        below = quantity.in_unit(bound) - quantity.in_unit(value)
+    place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
+    notes = [f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed]
+    notes += [] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]
+    notes += [f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m"]
+    details = GivenDetails(best=best, below_bound=below, not_allowed=not_allowed)
+    return replace(result, note="\n".join(notes), details=details)
 
 
 def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:
