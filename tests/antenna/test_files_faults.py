@@ -77,7 +77,7 @@ FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
     "no such format": (GAINS, str, {"file_format": "ffe"}, "got the format 'ffe', must be one of nec"),
     "short csv": (FIELDS, cut(1000), {}, "angles are 0, 5, 10 ... 65 degrees, must go from 0 to 180"),
     "short nec": ("nec", cut(1000), {}, "azimuths are 0, 5, 10 .* must go from 0 to 360 .* cut short"),
-    "short nec head": ("nec", cut(6), {}, "there is no row of theta, phi, three gains"),
+    "short nec head": ("nec", cut(6), {}, "there is no table of gains or fields in it"),
     "no field": ("nec", lambda text: text.replace("E-0", "E-900"), {}, "line 4: the table has no field but"),
     "no nec table": ("nec", swap("RADIATION PATTERNS", "X"), {"file_format": "nec"}, "looks like none of"),
     "short ffd": ("ffd", cut(1000), {}, "line 1000: 2701 rows are announced and 996 lines follow"),
@@ -249,8 +249,45 @@ def test_faults_of_two_cuts(msi: Callable[..., str], tmp_path: Path, change: Cha
         read_pattern(path)
 
 
-def test_an_estimate_is_no_way_round_other_refusals(tmp_path: Path) -> None:
-    """Only two cuts are estimated: what misleads in a whole table is refused all the same."""
+def test_cuts_of_a_tilted_beam_are_named(msi: Callable[..., str], tmp_path: Path) -> None:
+    """Where the cuts do not cross, a tilt is told from angles that are measured from the zenith."""
+    path, at = tmp_path / "pattern.msi", np.radians(np.arange(360.0))
+    for tilt_deg, words in ((10, "the vertical one at 10: ask for cuts without"), (90, "from the zenith")):
+        off = at - np.radians(tilt_deg)
+        down_db = 40.0 * np.sin(off) ** 2 + np.sin(off / 2.0) ** 2
+        path.write_text(msi(10.0 * np.sin(at / 2.0) ** 2, down_db, "9 dBi"), encoding="utf-8")
+        with pytest.raises(ScenarioError, match=f"ahead, where its cuts cross.*{words}"):
+            read_pattern(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("-1.4\n-1.5\n-1.5\n-1.6\n", "it has the marks of no known format"),
+        ("theta_deg,\tphi_deg,\tgain\n0,\t0,\t1\n", "got the header .* must have theta_deg,phi_deg and"),
+        (
+            "theta_deg,phi_deg,gain_dbi\n" + "".join(f"{at},0,0\n" for at in range(-180, 181, 10)),
+            "it has one cut, at phi = 0 degrees",
+        ),
+    ],
+    ids=["a list of numbers", "tabs after commas", "one cut"],
+)
+def test_files_as_they_are_found(tmp_path: Path, text: str, message: str) -> None:
+    """The reason names what the file is, and not what it looks like at first."""
+    path = tmp_path / "found.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message):
+        read_pattern(path)
+
+
+def test_an_estimate_is_no_way_round_other_refusals(msi: Callable[..., str], tmp_path: Path) -> None:
+    """Only two cuts are estimated, and not those whose gain no antenna has."""
+    at = np.radians(np.arange(360.0))
+    path = tmp_path / "hot.msi"
+    cuts = 3.0 * np.sin(at / 2.0) ** 2, 3.0 * np.sin(at / 2.0) ** 2
+    path.write_text(msi(*cuts, "9 dBi"), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="more than it is fed"):
+        read_pattern(path, estimate=True)
     path = tmp_path / "pattern.csv"
     path.write_text(csv(lambda t, p: 3.0), encoding="utf-8")
     with pytest.raises(ScenarioError, match="more than it is fed"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nullpose.antenna.harmonics import Harmonics, directions, fit, highest_degree
+from nullpose.antenna.harmonics import Harmonics, directions, fit
 from nullpose.antenna.table import PatternTable
 
 THETA, PHI = np.arange(0.0, 181.0, 5.0), np.arange(0.0, 360.0, 5.0)
@@ -55,9 +55,3 @@ def test_mean_square_and_mean() -> None:
     gain = harmonics.on_grid(np.arccos(nodes), np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False))
     assert np.mean(gain, axis=1) @ weights / 2.0 == pytest.approx(harmonics.cosine[0, 0], abs=1e-12)
     assert np.mean(gain**2, axis=1) @ weights / 2.0 == pytest.approx(harmonics.spectrum.sum(), rel=1e-12)
-
-
-def test_a_coarse_grid_supports_less() -> None:
-    """The widest step decides, in either angle."""
-    wide = PatternTable(theta_deg=THETA, phi_deg=PHI[::4], gain=np.ones((len(THETA), len(PHI) // 4)))
-    assert highest_degree(wide) < highest_degree(table_of(any_harmonics(1)))

@@ -7,6 +7,7 @@ import pytest
 
 from nullpose.antenna.files import read_pattern
 from nullpose.antenna.summary import summary_of
+from nullpose.errors import ScenarioError
 
 # Peak (dBi), ripple round the equator and depth of the deepest null (dB), on grids of 1 degree.
 KNOWN = {
@@ -33,5 +34,19 @@ def test_known_patterns(data: Path, name: str) -> None:
 def test_the_short_dipole_is_the_formula(data: Path) -> None:
     """The gain of the dipole alone is 1.5 sin^2 but for its length, a tenth of a wavelength."""
     table = read_pattern(data / "alone_short_5deg.out.gz")
-    known = 1.5 * np.sin(np.radians(table.theta_deg[1:-1]))[:, None] ** 2
-    assert np.max(np.abs(10.0 * np.log10(table.gain[1:-1] / known))) < 0.1
+    formula = 1.5 * np.sin(np.radians(table.theta_deg[1:-1]))[:, None] ** 2
+    assert np.max(np.abs(10.0 * np.log10(table.gain[1:-1] / formula))) < 0.1
+
+
+def test_a_table_of_averages_alone_is_passed_over(written: dict[str, str], tmp_path: Path) -> None:
+    """What an RP card asks for beside the pattern does not block it."""
+    whole = read_pattern(_saved(tmp_path, written["nec"]))
+    averages = "\n  ----- RADIATION PATTERNS -----\n\n AVERAGE POWER GAIN= 1.0\n 0.00000E+00  ANTENNA.NEC\n"
+    np.testing.assert_array_equal(read_pattern(_saved(tmp_path, written["nec"] + averages)).gain, whole.gain)
+    with pytest.raises(ScenarioError, match="no table of gains"):
+        read_pattern(_saved(tmp_path, averages))
+
+
+def _saved(folder: Path, text: str) -> Path:
+    (path := folder / "pattern.out").write_text(text, encoding="utf-8")
+    return path

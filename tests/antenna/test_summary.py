@@ -1,7 +1,6 @@
 """What a pattern amounts to."""
 
 import dataclasses
-import json
 
 import numpy as np
 import pytest
@@ -53,12 +52,6 @@ def test_at_a_pole_the_azimuth_is_0() -> None:
     assert (summary.peak_deg, summary.polarisation) == ((0.0, 0.0), "linear along theta")
 
 
-def test_gains_alone_tell_no_polarisation() -> None:
-    """It is said not to be known."""
-    summary = summary_of(table_of(lambda t, p: 1.0 + 0.0 * t))
-    assert (summary.polarisation, summary.axial_ratio_db, summary.null_db) == ("not known", None, 0.0)
-
-
 @pytest.mark.parametrize("degree", [0, 2, 5, 9])
 def test_degree(degree: int) -> None:
     """The degree that solvers use is that of a polynomial of the cosine, and its errors are 0."""
@@ -89,11 +82,3 @@ def test_the_step_and_the_frequency_tell_a_size() -> None:
     fields = table_of(None, lambda t, p: (np.sin(t), 0.0 * t), frequency_hz=2.4e9)
     assert summary_of(fields).largest_m == pytest.approx(36.0 / (2.0 * np.pi) * wave_m)
     assert summary_of(dataclasses.replace(gains, frequency_hz=None)).largest_m is None
-
-
-def test_plain_data() -> None:
-    """It is what JSON can hold, without the table's numbers."""
-    told = summary_of(table_of(lambda t, p: 1.0 + 0.0 * t, source="x.csv (csv)", notes=("a",))).to_dict()
-    assert json.loads(json.dumps(told))["source"] == "x.csv (csv)"
-    assert "table" not in told
-    assert told["step_rad"] == pytest.approx(np.radians(5.0))

@@ -31,20 +31,6 @@ def test_every_attitude_puts_the_dipole_in_the_band(tilt: float, mount: float, s
     assert (axes[:, 2] ** 2 <= high + 1e-12).all()
 
 
-@given(tilt=tilts, mount=mounts)
-def test_both_ends_of_the_band_are_reached(tilt: float, mount: float) -> None:
-    """Leaning the dipole straight down, and straight up, comes to the two ends of the band."""
-
-    def vertical_squared(angle_deg: float) -> float:
-        return math.cos(math.radians(angle_deg)) ** 2
-
-    upright = vertical_squared(mount - min(tilt, mount))
-    flat = vertical_squared(mount + min(tilt, 90.0 - mount))
-    low, high = Airframe(tilt_max_deg=tilt, mount_deg=mount).axis_band
-    assert low == pytest.approx(flat, abs=1e-15)
-    assert high == pytest.approx(upright, abs=1e-15)
-
-
 @pytest.mark.parametrize(
     ("airframe", "band"),
     [

@@ -5,15 +5,6 @@ import pytest
 
 from nullpose.scenario import Airspace, NoFlyZone
 
-
-def test_unbounded_sides_are_infinite() -> None:
-    """Without x_m and y_m the box is a slab; the keep-out radius is 1 m unless stated."""
-    airspace = Airspace(altitude_m=(8.0, 30.0))
-    np.testing.assert_array_equal(airspace.lower_m, [-np.inf, -np.inf, 8.0])
-    np.testing.assert_array_equal(airspace.upper_m, [np.inf, np.inf, 30.0])
-    assert airspace.keep_out_m == 1.0
-
-
 FENCED = Airspace(
     altitude_m=(8.0, 30.0),
     x_m=(-50.0, 50.0),
@@ -63,13 +54,6 @@ def test_allows_is_vectorised_and_agrees_with_the_clearance() -> None:
     step = rng.normal(0.0, 3.0, positions.shape)
     change = np.abs(FENCED.clearance_m(positions + step) - clearance)
     assert (change <= np.linalg.norm(step, axis=-1) + 1e-9).all()
-
-
-def test_zones_are_named_by_their_place() -> None:
-    """Zones without a name are Z1, Z2 and so on; an airspace without zones does not mention them."""
-    assert [zone.name for zone in FENCED.no_fly] == ["Z1", "mast"]
-    assert Airspace.from_dict(FENCED.to_dict()) == FENCED
-    assert Airspace(altitude_m=(8.0, 30.0)).to_dict() == {"altitude_m": [8.0, 30.0], "keep_out_m": 1.0}
 
 
 def test_zones_out_of_reach_of_ranges_and_fence_change_nothing() -> None:

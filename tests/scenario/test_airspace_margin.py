@@ -174,14 +174,6 @@ def test_a_closed_pocket_is_forbidden() -> None:
     assert not Airspace(altitude_m=ALTITUDE_M, margin_m=2.0, **zones).allows([0.0, 0.0, 20.0])
 
 
-def test_no_room_is_refused() -> None:
-    """Zones that fill the airspace only with their margin leave none."""
-    zones = [{"x_m": [-60.0, -2.0], "y_m": [-60.0, 60.0]}, {"x_m": [2.0, 60.0], "y_m": [-60.0, 60.0]}]
-    assert scene(geofence_m=FENCE, no_fly=zones, margin_m=1.5)
-    with pytest.raises(ScenarioError, match=r"no room for the vehicle.*margin_m"):
-        scene(geofence_m=FENCE, no_fly=zones, margin_m=4.0)
-
-
 def test_clearances_change_no_faster_than_positions() -> None:
     """With a margin the clearance is still one that a search can rely on."""
     rng = np.random.default_rng(3)

@@ -112,26 +112,6 @@ def test_a_file_outside_the_folder_is_refused(tmp_path: Path) -> None:
     assert load(path, allow_outside=True).antenna_record.harmonics.degree > 4
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "place"),
-    [
-        ("frequency_hz", '"2.4 GHz"', "antenna.frequency_hz"),
-        ("normalise", '"largest"', "antenna.normalise"),
-        ("null_depth_db", "30.0", "antenna.null_depth_db"),
-        ("kind", '"patern"', "antenna.kind"),
-    ],
-)
-def test_another_key_at_fault_is_told_alone(tmp_path: Path, key: str, value: str, place: str) -> None:
-    """A fault beside the file's name is one message, and the file is not read."""
-    path = tmp_path / "scenario.toml"
-    kind = "" if key == "kind" else 'kind = "pattern"\n'
-    text = Path("examples/paper.toml").read_text()
-    path.write_text(f'{text}\n[antenna]\n{kind}file = "absent.out"\n{key} = {value}\n')
-    with pytest.raises(ScenarioError) as caught:
-        load(path)
-    assert [fault.path for fault in caught.value.faults] == [place]
-
-
 def cuts(across_db: float) -> str:
     """Return two cuts, of which the horizontal one changes by so many dB."""
     losses = [across_db * (1.0 - math.cos(math.radians(at))) / 2.0 for at in range(360)]

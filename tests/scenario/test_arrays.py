@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nullpose
-from nullpose import NullposeError, Scenario, ScenarioError, UsageError
+from nullpose import Scenario, ScenarioError, UsageError
 
 PAPER = Scenario.from_file(Path(__file__).parents[2] / "examples" / "paper.toml")
 NODES_M = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]])
@@ -54,24 +54,6 @@ def test_a_wrong_shape_is_told_as_a_shape(given: dict, told: str) -> None:
     """The message has the shape that was given, the one that is allowed, and what to try."""
     with pytest.raises(UsageError, match=told):
         Scenario.from_arrays(**{"nodes_m": NODES_M, "noise_w": 1e-3, "altitude_m": (8, 30)} | given)
-
-
-def test_a_wrong_value_is_told_with_its_place() -> None:
-    """What is wrong with a number is told as of a file."""
-    with pytest.raises(ScenarioError, match=r"nodes\[1\]\.power_w"):
-        Scenario.from_arrays(NODES_M, node_power_w=[1.0, -1.0], noise_w=1e-3, altitude_m=(8, 30))
-
-
-@pytest.mark.parametrize(
-    "verb", [nullpose.solve, nullpose.compare, lambda s: nullpose.sweep(s, "a.b", [1.0])]
-)
-def test_a_path_is_no_scenario(verb: object) -> None:
-    """A path in place of a scenario is a TypeError that says how to read it."""
-    with pytest.raises(TypeError, match=r"Scenario.from_file\('examples/paper\.toml'\)") as caught:
-        verb("examples/paper.toml")  # type: ignore[operator]
-    assert isinstance(caught.value, NullposeError)
-    with pytest.raises(TypeError, match=r"got a table; must be a Scenario; try Scenario\.from_dict"):
-        verb({})  # type: ignore[operator]
 
 
 def test_a_carrier_takes_the_place_of_the_papers_path_gain() -> None:

@@ -16,14 +16,6 @@ def stated(paper: Callable, **keys: object) -> Scenario:
     return Scenario.from_dict(data)
 
 
-def test_all_are_isotropic_unless_stated(paper: Callable) -> None:
-    """Without the key there is nothing to be told of antennas, neither in numbers nor in the file."""
-    scenario = stated(paper, antenna="isotropic")
-    assert scenario == paper()
-    assert scenario.node_antennas is scenario.jammer_antennas is scenario.eavesdropper_antennas is None
-    assert "antenna" not in scenario.to_toml()
-
-
 def test_axes_are_upright_or_as_stated(paper: Callable) -> None:
     """A dipole is upright; an axis of any length is brought to unit length; others have none."""
     upright, leaning = (

@@ -92,15 +92,6 @@ def test_csv_by_latitude(mark: str, tmp_path: Path) -> None:
     assert scenario.node_names == ("a, b", "S2")
 
 
-def test_csv_in_metres(tmp_path: Path) -> None:
-    """Columns x_m, y_m, z_m need no origin; each node may use its own unit of power, and others' keys."""
-    text = "z_m,x_m,y_m,power_w,power_dbm,weight\n1,2,3,4,,\n5,6,7,,30,2\n"
-    scenario = load(written(tmp_path, "Nodes.CSV", text, SCENARIO))
-    assert scenario.node_positions_m.tolist() == [[2.0, 3.0, 1.0], [6.0, 7.0, 5.0]]
-    assert scenario.node_powers_w.tolist() == pytest.approx([4.0, 1.0])
-    assert [node.weight for node in scenario.nodes] == [None, 2.0]
-
-
 def test_the_same_nodes_whichever_the_file(tmp_path: Path) -> None:
     """GeoJSON, CSV and tables in the scenario file itself make equal scenarios."""
     tables = "".join(
@@ -120,18 +111,6 @@ def test_the_same_nodes_whichever_the_file(tmp_path: Path) -> None:
         load(written(tmp_path, "n.json", collection(*features))),
     ]
     assert scenarios[0] == scenarios[1] == scenarios[2]
-
-
-def test_the_file_is_looked_for_beside_the_scenario(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The name is relative to the scenario's folder, whatever the working folder, and may be absolute."""
-    inner = tmp_path / "inner"
-    inner.mkdir()
-    monkeypatch.chdir(inner)
-    (tmp_path / "lists").mkdir()
-    path = written(tmp_path, "lists/nodes.csv", LOCAL + "a,1,2,3,4\n", SCENARIO)
-    assert load(path).node_names == ("a",)
-    path.write_text(SCENARIO.replace("FILE", str(tmp_path / "lists" / "nodes.csv")), encoding="utf-8")
-    assert load(path).node_names == ("a",)
 
 
 GEOJSON_CASES = [
@@ -286,14 +265,6 @@ def test_files_that_are_none(file: str, content: str | None, path: str, words: s
     (fault,) = faults_of(tmp_path, file, content)
     assert fault.path == path
     assert words in fault.message
-
-
-@pytest.mark.parametrize("value", ["3", "[]", "true", '{a = "b"}'])
-def test_the_name_is_a_text(value: str, tmp_path: Path) -> None:
-    """Anything but a text is refused by what it is."""
-    (fault,) = faults_of(tmp_path, "", None, SCENARIO.replace('"FILE"', value))
-    assert fault.path == "nodes_from"
-    assert "must be the name of a file of nodes" in fault.message
 
 
 def test_nodes_in_both_places(tmp_path: Path) -> None:

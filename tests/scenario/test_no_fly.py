@@ -11,7 +11,6 @@ from nullpose.scenario import NoFlyZone
 
 SEEDS = st.integers(0, 2**32 - 1)
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
-ROUND = NoFlyZone(polygon_m=6.0 * np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1), altitude_m=(10.0, 20.0))
 BOX = NoFlyZone(x_m=(-2.0, 3.0), y_m=(1.0, 5.0), altitude_m=(10.0, 20.0))
 
 

@@ -39,16 +39,6 @@ def test_stars_are_accepted_and_run_counter_clockwise(seed: int, count: int) -> 
         np.testing.assert_array_equal(outline, vertices)
 
 
-@given(SEEDS, st.integers(4, 9))
-def test_two_vertices_exchanged_cross(seed: int, count: int) -> None:
-    """Exchanging two neighbouring vertices of a convex polygon makes its border cross itself."""
-    angles = np.sort(np.random.default_rng(seed).choice(60, count, replace=False)) * np.pi / 30.0
-    vertices = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    accepted(vertices)
-    with pytest.raises(ScenarioError, match="crosses or touches itself"):
-        accepted(vertices[[1, 0, *range(2, count)]])
-
-
 @given(SEEDS, st.integers(3, 9))
 def test_depth_agrees_with_another_test_and_with_a_walk_along_the_border(seed: int, count: int) -> None:
     """The sign is that of an independent point-in-polygon test; the size that of the nearest border point."""

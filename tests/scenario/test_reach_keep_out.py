@@ -27,19 +27,6 @@ def box(*ranges: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
 UNIT = box((0, 1), (0, 1), (0, 1))
 
 
-def test_surface_of_a_ball_is_outside() -> None:
-    """A distance of exactly the keep-out radius is enough."""
-    assert has_room(*box((3, 3), (0, 0), (4, 4)), np.zeros((1, 3)), 5.0)
-    assert not has_room(*box((3, 3), (0, 0), (4, 4)), np.zeros((1, 3)), 5.001)
-
-
-@pytest.mark.parametrize(("radius", "expected"), [(0.55, True), (0.57, False)])
-def test_room_left_on_an_edge_only(radius: float, expected: bool) -> None:
-    """Two balls at the ends of a segment leave its middle until they meet there."""
-    centres = np.array([[0.0, 0.25, 0.0], [1.0, 0.25, 0.0]])
-    assert has_room(*box((0, 1), (0, 0), (0, 0)), centres, radius) is expected
-
-
 @pytest.mark.parametrize(("radius", "expected"), [(ROOT_THIRD - 0.002, True), (ROOT_THIRD + 0.002, False)])
 def test_room_left_inside_a_face_only(radius: float, expected: bool) -> None:
     """Discs on a triangular lattice leave a hole until the radius is the side over the square root of 3."""

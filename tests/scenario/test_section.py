@@ -31,12 +31,6 @@ def test_each_table_refuses_faults_by_itself(
         assert [fault.path for fault in caught.value.faults] == [path]
 
 
-def test_user_text_is_repeated_as_it_is() -> None:
-    """Braces and percent signs in what was given are no placeholders."""
-    with pytest.raises(ScenarioError, match=r'the text "\{message\} %s \{0\}"'):
-        Jammer(position_m="{message} %s {0}", power_w=1.0)
-
-
 def test_either_stated_power_is_in_watts() -> None:
     """The transmit power is in W whichever unit was stated."""
     assert Node(position_m=(0, 0, 0), power_w=2).transmit_power_w == 2.0

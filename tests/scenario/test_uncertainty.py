@@ -26,15 +26,6 @@ def test_without_uncertainty_the_set_is_a_point(kind: object) -> None:
             point.uncertainty_matrix_m[0, 0] = 1.0
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_radius_is_a_ball(kind: object) -> None:
-    """A ball is the same whichever way it is stated."""
-    ball, ellipsoid = kind(uncertainty_m=2.5), kind(uncertainty_m=[2.5, 2.5, 2.5])
-    np.testing.assert_array_equal(ball.uncertainty_matrix_m, 2.5 * np.eye(3))
-    np.testing.assert_array_equal(ellipsoid.uncertainty_matrix_m, ball.uncertainty_matrix_m)
-    assert ball.uncertainty_reach_m == ellipsoid.uncertainty_reach_m == 2.5
-
-
 @given(a=axes, b=axes, c=axes, roll=angles, pitch=angles, yaw=angles)
 def test_an_ellipsoid_turns_as_a_body_does(
     a: float, b: float, c: float, roll: float, pitch: float, yaw: float

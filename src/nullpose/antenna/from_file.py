@@ -60,14 +60,11 @@ def _read_profile(path: Path, _: Mapping[str, Any]) -> dict[str, Any]:
 def _read_pattern(path: Path, table: Mapping[str, Any]) -> dict[str, Any]:
     from nullpose.antenna.files import read_pattern
     from nullpose.antenna.files.block import refuse
-    from nullpose.antenna.files.checks import require_fit
 
     is_estimate = table.get("two_cuts") is not None
     pattern = read_pattern(path, table.get("format"), table.get("frequency_hz"), estimate=is_estimate)
     if is_estimate and not pattern.caveat:
         refuse("two_cuts has no meaning: the file tells the whole pattern; remove the key")
-    if is_estimate:
-        require_fit(pattern)
     frequency = {} if pattern.frequency_hz is None else {"frequency_hz": pattern.frequency_hz}
     return {**frequency, "harmonics": table_harmonics(pattern).rows()}
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import RawTable, refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.units import EARTHLY_RANGES
 
@@ -33,7 +33,7 @@ Ground = Mapping[str, float | None]
 """The origin's ground by the keys of a zone's altitudes, metres; None where the origin does not state it."""
 
 
-def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[dict[str, Any], list[str]]:
+def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[RawTable, list[str]]:
     """Read a feature's altitudes by the key of a zone, with remarks on what is not read.
 
     Keys of a zone come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Flight levels are
@@ -113,7 +113,7 @@ def _end(place: str, value: Any, unit: Any, datum: Any) -> _End | None:
     return _End(value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0)
 
 
-def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> dict[str, Any]:
+def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> RawTable:
     """Return both ends over one thing; the ground is a lower end for every upper one."""
     if low and low[:2] == (0.0, "altitude_m"):
         low = None
@@ -160,7 +160,7 @@ def _heights_m(feature: Feature) -> Floats:
     return np.asarray(heights_m[np.isfinite(heights_m)])
 
 
-def _between(feature: Feature, heights_m: Floats) -> dict[str, Any]:
+def _between(feature: Feature, heights_m: Floats) -> RawTable:
     """Return the altitudes between roof and floor, or from the ground up to what is extruded."""
     low_m, high_m = heights_m.min(initial=np.inf), heights_m.max(initial=-np.inf)
     is_extruded = feature.properties.get("extrude") in (1, True)

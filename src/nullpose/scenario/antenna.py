@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import ONLY_LOCAL, Place
+from nullpose.scenario.faults import ONLY_LOCAL, Place, Raw, RawTable
 from nullpose.scenario.rules import Choice, Count, ListOf
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels, Wavelengths
@@ -132,7 +132,7 @@ class Antenna(Section):
         return kind.make(**{key: getattr(self, key) for key in kind.keys})
 
 
-def with_harmonics(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
+def with_harmonics(table: Raw, path: Path) -> RawTable:
     """Fill in a raw table what its file holds; leave it as it is where another of its keys is at fault.
 
     Args:

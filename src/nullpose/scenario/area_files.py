@@ -11,7 +11,7 @@ import numpy as np
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.areas import Area, Areas, areas_of, corners_of
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import Raw, RawTable, refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
@@ -27,9 +27,7 @@ _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
-def with_zones(
-    airspace: Mapping[str, Any], features: Sequence[Feature], origin: object
-) -> tuple[dict[str, Any], Areas]:
+def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> tuple[RawTable, Areas]:
     """Add the zones of a file to a raw airspace after its own, with their account.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
@@ -46,7 +44,7 @@ def with_zones(
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
     reach = _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
     areas = areas_of(features, reach, _ground_m(origin), names)
-    bounds: dict[str, Any] = {}
+    bounds: RawTable = {}
     words = ""
     for half_m in _HALVES_M:
         if place is None or areas.corners <= MOST_CORNERS:
@@ -62,9 +60,7 @@ def with_zones(
     return {**airspace, **bounds, "no_fly": [*listed, *zones]}, areas
 
 
-def with_fence(
-    airspace: Mapping[str, Any], features: Sequence[Feature], origin: object
-) -> tuple[dict[str, Any], Areas]:
+def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> tuple[RawTable, Areas]:
     """Give a raw airspace the fence of a file, with its account.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
@@ -92,9 +88,7 @@ def with_fence(
     return fenced | dict(_altitudes(airspace, areas.areas[0], ground_m)), areas
 
 
-def _altitudes(
-    airspace: Mapping[str, Any], fence: Area, ground_m: Ground
-) -> Iterator[tuple[str, list[float]]]:
+def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:
     """Yield the airspace's ranges of altitudes within those of its fence."""
     for key, over in product(RANGES, fence.limits):
         ends_m, limits_m = _ends(airspace.get(key)), _ends(fence.limits[over])
@@ -126,7 +120,7 @@ def _place(origin: Any) -> Floats | None:
         return None  # which the scenario is refused for
 
 
-def _box_m(airspace: Mapping[str, Any], half_m: float, place: Floats) -> Floats:
+def _box_m(airspace: Raw, half_m: float, place: Floats) -> Floats:
     """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
     ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
     fence = airspace.get("geofence_m")

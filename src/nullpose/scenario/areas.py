@@ -15,7 +15,7 @@ import numpy as np
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import EXCHANGED, refusal
+from nullpose.scenario.faults import EXCHANGED, RawTable, refusal
 from nullpose.scenario.geo_file import NAMES, Feature
 
 if TYPE_CHECKING:
@@ -51,12 +51,12 @@ class Area:
     name: str
     polygons: list[Polygon]
     cylinders: list[tuple[float, float, Any]]
-    limits: dict[str, Any] = field(default_factory=dict)
+    limits: RawTable = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
 
-    def zones(self) -> Iterator[dict[str, Any]]:
+    def zones(self) -> Iterator[RawTable]:
         """Yield raw no-fly zones, holes filled."""
-        shapes: list[dict[str, Any]] = [
+        shapes: list[RawTable] = [
             *({"polygon_lat_lon_deg": corners_of(polygon.exterior)} for polygon in self.polygons),
             *({"centre_lat_lon_deg": [lat, lon], "radius_m": size} for lon, lat, size in self.cylinders),
         ]

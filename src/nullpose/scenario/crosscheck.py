@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.objectives import RECORDS
-from nullpose.scenario.faults import ONLY_LOCAL, Place, path_of
+from nullpose.scenario.faults import ONLY_LOCAL, Place, Raw, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
@@ -26,7 +26,7 @@ SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
 
 
-def scenario_faults(scenario: Scenario, raw: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
+def scenario_faults(scenario: Scenario, raw: Raw) -> Iterator[tuple[Place, str]]:
     """Yield the faults between the values of a scenario, each with its place.
 
     Two nodes or jammers may be as close as they like, within the keep-out radius too, but not at the

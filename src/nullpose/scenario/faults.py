@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -12,6 +12,11 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.wording import described, printable
+
+RawTable: TypeAlias = dict[str, Any]
+"""A table as a file states it, before it is judged."""
+Raw: TypeAlias = Mapping[str, Any]
+"""The same, which is only read."""
 
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""

@@ -10,7 +10,7 @@ import json
 import re
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
@@ -21,12 +21,14 @@ import numpy as np
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import parse_json
-from nullpose.scenario.faults import EXCHANGED, refusal
+from nullpose.scenario.faults import EXCHANGED, Raw, refusal
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
+
+    from shapely.geometry.base import BaseGeometry
 
 # What reads files is imported where one is read: most scenarios name none.
 
@@ -64,8 +66,8 @@ class Feature:
     """
 
     place: str
-    geometry: Any
-    properties: Mapping[str, Any]
+    geometry: BaseGeometry | None
+    properties: Raw
 
 
 def features_of(content: bytes, path: Path) -> list[Feature]:
@@ -158,7 +160,7 @@ def _of(value: Any, key: str) -> Any:
     return value.get(key) if isinstance(value, dict) else None
 
 
-def _shape(geometry: Any, place: str) -> Any:
+def _shape(geometry: object, place: str) -> BaseGeometry | None:
     """Return a GeoJSON geometry as shapely's."""
     import shapely
     from shapely.geometry import shape
@@ -182,7 +184,7 @@ def _shape(geometry: Any, place: str) -> Any:
     return _on_earth(found, place)
 
 
-def _on_earth(shape: Any, place: str) -> Any:
+def _on_earth(shape: BaseGeometry, place: str) -> BaseGeometry:
     """Return a geometry whose coordinates are longitudes, which may go on beyond 180, and latitudes."""
     import shapely
 
@@ -313,7 +315,7 @@ def _cell(value: Any, is_name: bool) -> Any:
     return None if value is None or value != value else value
 
 
-def _shape_of_wkb(shape: Any, place: str) -> Any:
+def _shape_of_wkb(shape: bytes | None, place: str) -> BaseGeometry | None:
     import shapely
 
     try:

@@ -7,14 +7,13 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path, PurePath
-from typing import Any
 
 import numpy as np
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
-from nullpose.scenario.faults import ONLY_LOCAL, refusal
+from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.node_files import ListedNode, fault_in_file, nodes_of_csv, nodes_of_features
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
@@ -78,7 +77,7 @@ def load(
 
 def _overridden_tables(
     path: Path, overrides: Iterable[str | Override]
-) -> tuple[dict[str, Any], list[str | Override]]:
+) -> tuple[RawTable, list[str | Override]]:
     """Read a file's tables, with those changes that decide which files are read and what of them counts.
 
     Returns:
@@ -94,7 +93,7 @@ def _overridden_tables(
     return overridden(tables, early), [change for change in late if change not in early]
 
 
-def _named_files(tables: Mapping[str, Any]) -> dict[str, Any]:
+def _named_files(tables: Raw) -> RawTable:
     """Pick the names of the files of nodes, fence and zones, by key."""
     airspace = tables.get("airspace")
     airspace = airspace if isinstance(airspace, Mapping) else {}
@@ -164,7 +163,7 @@ class _NamedFiles:
         self._folder, self._allow_outside, self._on_note = folder, allow_outside, on_note
         self._origins: dict[str, str] = {}  # of fence and zones, by their place in the scenario
 
-    def scenario(self, tables: dict[str, Any]) -> Scenario:
+    def scenario(self, tables: RawTable) -> Scenario:
         """Read the scenario of raw tables.
 
         Raises:
@@ -199,7 +198,7 @@ class _NamedFiles:
     def _features(self, path: Path, kind: FileKind, key: str) -> list[Feature]:
         return features_of(file_content(path, kind, self._folder, key, MOST_BYTES), path)
 
-    def _with_antenna(self, tables: dict[str, Any]) -> dict[str, Any]:
+    def _with_antenna(self, tables: RawTable) -> RawTable:
         """Fill in what the file of an antenna holds."""
         antenna = tables.get("antenna")
         file = antenna.get("file") if isinstance(antenna, dict) else None
@@ -211,7 +210,7 @@ class _NamedFiles:
         except ScenarioError as error:
             raise _of_file(f"antenna.file: {file}", error) from None
 
-    def _with_areas(self, tables: dict[str, Any]) -> dict[str, Any]:
+    def _with_areas(self, tables: RawTable) -> RawTable:
         """Fill in the fence and the zones of other files; what is at fault is refused with the rest."""
         airspace = tables.get("airspace")
         if not isinstance(airspace, dict) or not isinstance(airspace.get("no_fly", []), list):
@@ -222,7 +221,7 @@ class _NamedFiles:
             airspace = self._with_area_file(airspace, _ZONES_KEY, tables.get("origin"))
         return tables | {"airspace": airspace}
 
-    def _with_area_file(self, airspace: Mapping[str, Any], key: str, origin: object) -> dict[str, Any]:
+    def _with_area_file(self, airspace: Raw, key: str, origin: object) -> RawTable:
         file, label = airspace[key], f"airspace.{key}: {airspace[key]}"
         rest = {other: value for other, value in airspace.items() if other != key}
         try:
@@ -242,7 +241,7 @@ class _NamedFiles:
         }
         return filled
 
-    def _with_nodes(self, tables: dict[str, Any]) -> Scenario:
+    def _with_nodes(self, tables: RawTable) -> Scenario:
         """Read the scenario whose nodes another file lists; faults name the place in either file."""
         file = tables[_NODES_KEY]
         nodes: Sequence[ListedNode] = ()

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.areas import counted, name_of, parts_of, unique
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import Raw, RawTable, refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
@@ -166,7 +166,7 @@ def nodes_of_features(features: Sequence[Feature]) -> tuple[list[ListedNode], li
     return nodes, [f"nodes: {len(nodes)}; {'; '.join(words)}"] if words else []
 
 
-def _values(feature: Feature, unread: set[str]) -> dict[str, Any]:
+def _values(feature: Feature, unread: set[str]) -> RawTable:
     """Pick the properties that are keys of a node or look like one; add the others to those unread."""
     keys = set(Node.model_fields)
     likely = {key for key in feature.properties if key in keys or get_close_matches(key, keys, 1, _TYPO)}
@@ -174,7 +174,7 @@ def _values(feature: Feature, unread: set[str]) -> dict[str, Any]:
     return {key: feature.properties[key] for key in likely - {"name", "Name"}}
 
 
-def _node_of_point(feature: Feature, point: Point, values: Mapping[str, Any]) -> ListedNode:
+def _node_of_point(feature: Feature, point: Point, values: Raw) -> ListedNode:
     where, coordinates = feature.place, ".geometry.coordinates"
     key, height_m = "alt_m", point.z if point.has_z and math.isfinite(point.z) else None
     if where.startswith("Placemark"):  # KML clamps a point without a mode to the ground

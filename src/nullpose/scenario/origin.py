@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError
 from nullpose.errors import UsageError
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
-from nullpose.scenario.faults import EXCHANGED
+from nullpose.scenario.faults import EXCHANGED, RawTable
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
@@ -36,7 +36,7 @@ POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
 """The keys of a scenario's points."""
 EARTHLY_KEYS = ("lat_deg", "lon_deg", *ALTITUDE_KEYS, *EARTHLY_CORNERS, *EARTHLY_RANGES)
 """The keys whose meaning in metres follows from the origin."""
-_PLACEHOLDERS: dict[str, Any] = {  # of what cannot be told; such a scenario is refused for that
+_PLACEHOLDERS: RawTable = {  # of what cannot be told; such a scenario is refused for that
     "position_m": [0.0, 0.0, 0.0],
     "centre_m": [0.0, 0.0],
     "altitude_m": [1.0, 2.0],
@@ -193,7 +193,7 @@ def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Fl
         swapped: whether latitudes and longitudes are to be exchanged.
     """
     *_, base_m = origin.geodetic
-    found: dict[str, Any] = {}
+    found: RawTable = {}
 
     def enu_m(places: Any, height_m: float) -> Floats:
         flat = np.asarray(places, dtype=np.float64)

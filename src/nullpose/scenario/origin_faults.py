@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.scenario.faults import EXCHANGED, Place, path_of
+from nullpose.scenario.faults import EXCHANGED, Place, Raw, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.origin import (
     EARTHLY_KEYS,
@@ -25,7 +25,7 @@ _OVER = {"alt_m": "over the ellipsoid", "alt_msl_m": "over the sea"}
 
 
 def origin_faults(
-    origin: Origin | None, tables: Mapping[Place, Any], raw: Mapping[str, Any]
+    origin: Origin | None, tables: Mapping[Place, Any], raw: Raw
 ) -> Iterator[tuple[Place, str]]:
     """Yield the faults between the origin and the points and areas of a scenario, each with its place.
 
@@ -86,7 +86,7 @@ def _unknown_altitudes(
 
 
 def _far(
-    origin: Origin, tables: Mapping[Place, Any], metres: Mapping[Place, Mapping[str, Any]]
+    origin: Origin, tables: Mapping[Place, Any], metres: Mapping[Place, Raw]
 ) -> Iterator[tuple[Place, str]]:
     """Yield, once for all places that are too far from the origin, whether exchanged they would not be."""
     far_m: dict[Place, float] = {}
@@ -111,7 +111,7 @@ def _far(
 def _apart(
     tables: Mapping[Place, Any],
     earthly: Mapping[Place, Sequence[str]],
-    metres: Mapping[Place, Mapping[str, Any]],
+    metres: Mapping[Place, Raw],
 ) -> Iterator[tuple[Place, str]]:
     """Yield what is stated in metres and on the Earth, and not at one place."""
     for place, values in metres.items():
@@ -126,7 +126,7 @@ def _apart(
                 )
 
 
-def _mixed(points: Mapping[Place, GroundPoint], raw: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
+def _mixed(points: Mapping[Place, GroundPoint], raw: Raw) -> Iterator[tuple[Place, str]]:
     """Yield the first point that is stated in another way than the first of all.
 
     A point that has both, as in files that are written from scenarios, goes with either.

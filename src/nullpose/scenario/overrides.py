@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from typing import Any
 from pydantic_core import to_jsonable_python
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.faults import path_of, refusal
+from nullpose.scenario.faults import Raw, RawTable, path_of, refusal
 from nullpose.scenario.origin import EARTHLY_KEYS, POINT_LISTS, metric_key
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
@@ -99,7 +99,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     return changed
 
 
-def overridden(tables: Mapping[str, Any], overrides: Sequence[str | Override]) -> dict[str, Any]:
+def overridden(tables: Raw, overrides: Sequence[str | Override]) -> RawTable:
     """Return the tables of a scenario file with the given values in place of its own, not validated.
 
     Args:
@@ -115,7 +115,7 @@ def overridden(tables: Mapping[str, Any], overrides: Sequence[str | Override]) -
     return data
 
 
-def _applied(overrides: Sequence[str | Override], data: dict[str, Any]) -> list[Fault]:
+def _applied(overrides: Sequence[str | Override], data: RawTable) -> list[Fault]:
     """Set the values in a raw scenario; returns the faults of those that cannot be set."""
     faults: list[Fault] = []
     for override in overrides:
@@ -130,7 +130,7 @@ def _source(overrides: Sequence[str | Override]) -> str:
     return f"override {listed([str(override).strip() or '(blank)' for override in overrides])}"
 
 
-def _apply(override: Override, data: dict[str, Any]) -> None:
+def _apply(override: Override, data: RawTable) -> None:
     """Set one value of a raw scenario, and drops what it replaces."""
     path = override.path
     if not _PATH.fullmatch(path):

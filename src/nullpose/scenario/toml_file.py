@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from nullpose.files import MOST_BYTES, read_bytes
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import RawTable, refusal
 from nullpose.scenario.wording import nearest
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
@@ -47,7 +47,7 @@ class FileKind:
 SCENARIO_FILE = FileKind("a scenario file", "scenario.toml")
 
 
-def tables_of(text: str) -> dict[str, Any]:
+def tables_of(text: str) -> RawTable:
     """Read the tables of a TOML text.
 
     Raises:

@@ -143,6 +143,8 @@ def gridded(block: Block, source: str) -> PatternTable:
     theta, phi = np.round(block.theta_deg, 3), np.round(block.phi_deg, 3)
     beyond = (np.abs(theta) > 180.0) | (np.abs(phi) > 360.0)
     _refuse_row(block, beyond, "is beyond the sphere; polar angles go from 0 to 180, azimuths from 0 to 360")
+    if len(phi) and np.ptp(phi) == 0.0:
+        refuse(f"it has one cut, at phi = {phi[0]:g} degrees; export the whole sphere, all azimuths")
     back = theta < 0.0  # the same direction seen the other way round, where both unit vectors turn over
     thetas, rows = np.unique(np.abs(theta), return_inverse=True)
     phis, columns = np.unique(np.round(phi + 180.0 * back, 3) % 360.0, return_inverse=True)

@@ -83,6 +83,6 @@ def profile_of(lines: Lines) -> tuple[FloatArray, FloatArray]:
 def _table(lines: Lines) -> tuple[list[str], FloatArray]:
     """Return a table's header, without quotes and blanks, in lower case, and its numbers, (n, columns)."""
     text = lines[0][1]
-    separator = next((mark for mark in "\t;" if mark in text), ",")
+    separator = next((mark for mark in ",;\t" if mark in text), ",")
     header = [re.sub(r"[\s\"]", "", name).lower() for name in text.split(separator)]
     return header, numbers(lines[1:], len(header), ",".join(header), separator)

@@ -14,6 +14,7 @@ _KEYS = ("GAIN", "FREQUENCY", *_CUTS)
 _OMNI_DB = 1.5  # peak to peak of the horizontal cut
 _CROSSING_DB = 1.0
 _WEAK_DB = 20.0  # below the peak; what is weaker may differ
+_LIKE_ZENITH_DEG = 30.0  # a beam is taken for one measured from the zenith so near to straight down
 _WIDEST_DEG = 10.0  # between two rows of a cut
 _NEGATIVE_DB = 0.05
 _CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
@@ -27,8 +28,9 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     """Yield the profile of an antenna that is the same all round, or an estimate of another one's pattern.
 
     Losses are positive; the vertical angle grows downwards from ahead, and behind is 180 degrees. The
-    estimate is the sum of losses ``L(theta, phi) = H(phi) + w V(theta, ahead) + (1 - w) max(0, V(theta,
-    behind) - V(90, behind))`` with ``w = (1 + cos phi) / 2``: both cuts are met if nothing is lost ahead.
+    estimate is the sum of losses ``L(theta, phi) = H(phi) + w (V(theta, ahead) - V(90, ahead)) + (1 - w)
+    (V(theta, behind) - V(90, behind))`` with ``w = (1 + cos phi) / 2``, which meets both cuts where they
+    cross; it is no less than H(phi) or the mean of both V(theta) with the weights w and 1 - w.
 
     Source: 3GPP TR 38.901, table 7.3-1, for the sum. The weights, which join both halves smoothly, are ours.
 
@@ -48,13 +50,19 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         if name not in keys:
             refuse(f"the cut {name} is missing; both must be there. Is the file cut short?")
     across, down = (_loss_db(lines, keys, name) for name in _CUTS)
+    peaks_deg = [int(np.argmin(cut)) for cut in (across, down)]
+    advice = (
+        f"The horizontal cut is strongest at {peaks_deg[0]} degrees and the vertical one at {peaks_deg[1]}: "
+        "ask for cuts without the beam's tilt, which cross ahead at the horizon"
+    )
+    if abs(peaks_deg[1] % 180 - 90) < _LIKE_ZENITH_DEG:
+        advice = "Is the vertical angle measured from the zenith? It must be 0 ahead and 90 below"
     for at_deg, where in ((0, "ahead"), (180, "behind")):
         both_db = across[at_deg], down[at_deg]
         if min(both_db) < _WEAK_DB and abs(both_db[0] - both_db[1]) > _CROSSING_DB:
             refuse(
                 f"{where}, where its cuts cross, the horizontal one has a loss of {both_db[0]:g} dB and the "
-                f"vertical one {both_db[1]:g} dB; must be the same. Is the vertical angle measured from the "
-                "zenith? It must be 0 ahead and 90 below"
+                f"vertical one {both_db[1]:g} dB; must be the same. {advice}"
             )
     at, text = keys.get("GAIN", (0, ""))
     amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
@@ -74,8 +82,9 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         )
     else:
         ahead = 0.5 + 0.5 * np.cos(np.radians(phi))
-        behind_db = np.maximum(0.0, back_db - down[180])
-        gain = from_db(-(across[-phi % 360] + ahead * front_db + (1.0 - ahead) * behind_db))
+        round_db, down_db = across[-phi % 360], ahead * front_db + (1.0 - ahead) * back_db
+        sum_db = round_db + down_db - ahead * down[0] - (1.0 - ahead) * down[180]
+        gain = from_db(-np.maximum(sum_db, np.minimum(round_db, down_db)))
         gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
         caveat = _CAVEAT.format(ripple_db)
         notes.append(_CLOCKWISE)

@@ -36,7 +36,10 @@ def read_nec(lines: Lines) -> Iterator[Block]:
             frequency_hz = 1e6 * float(numbers([(line, found[1])], 1, "a frequency in MHz")[0, 0])
         if "RADIATION PATTERNS" not in text:
             continue
-        start = next((i for i in range(at + 1, min(at + _HEADINGS, len(lines))) if _is_row(lines[i][1])), at)
+        below = range(at + 1, min(at + _HEADINGS, len(lines)))
+        start = next((i for i in below if _is_row(lines[i][1])), None)
+        if start is None:
+            continue  # averages alone
         end = next((i for i in range(start, len(lines)) if not _is_row(lines[i][1])), len(lines))
         rows = [(number, _SENSE.sub(" ", row)) for number, row in lines[start:end]]
         values = numbers(rows, 11, _ROW)
@@ -60,4 +63,4 @@ def read_nec(lines: Lines) -> Iterator[Block]:
 
 
 def _is_row(text: str) -> bool:
-    return re.match(r"\s*-?\.?\d", text) is not None
+    return re.match(r"\s*-?\.?\d\S*\s+-?\.?\d", text) is not None

@@ -30,11 +30,13 @@ _NO_POWER = "The file has no power: its fields are scaled to an average of 1, wh
 _OTHERS = "Other tables at this frequency do not cover the sphere; they are not read."
 _TWO_CUTS = 'write two_cuts = "sum-of-losses" in [antenna] to solve with the estimate'
 
+_THREE = r"[ \t]*(?:[-+\d.eE]+[ \t]+){2}[-+\d.eE]+[ \t]*"  # numbers, on a line
+
 FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
     "nec": (r"RADIATION PATTERNS|NUMERICAL ELECTROMAGNETICS CODE|STRUCTURE SPECIFICATION", read_nec),
     "ffs": (r"^//.*Re\(E_Theta\)", read_ffs),
     "cst": (r"\A\s*Theta\s*\[.*Abs\(", read_cst),
-    "ffd": (r"\A(?:[ \t]*[-+\d.eE]+){3}[ \t]*\n(?:[ \t]*[-+\d.eE]+){3}[ \t]*$", read_ffd),
+    "ffd": (rf"\A{_THREE}\n{_THREE}$", read_ffd),
     "csv": (r"\A[^\n]*theta[^\n]*[,;\t]|\A[^\n]*[,;\t][^\n]*theta", read_csv),
     "msi": (r"^\s*(?:HORIZONTAL|VERTICAL)\s+\d+\s*$", read_msi),
 }
@@ -64,11 +66,12 @@ def read_pattern(
         lines = _lines(Path(source))
         name = _format_of("\n".join(text for _, text in lines), file_format)
         table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(source).name} ({name})")
-        if not table.caveat:
-            require_antenna(table := _scaled(table))
-            require_rows(table, require_fit(table))
-        elif not estimate:
+        if table.caveat and not estimate:
             refuse(f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+        require_antenna(table := _scaled(table))
+        harmonics = require_fit(table)
+        if not table.caveat:
+            require_rows(table, harmonics)
         return table
     except ScenarioError as error:
         raise ScenarioError(error.faults, source) from None
