@@ -15,7 +15,8 @@ from nullpose.report.comparison import Comparison
 from nullpose.report.figures.bars import draw_airframe_bars, draw_cases
 from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.poses import draw_dipole
-from nullpose.report.figures.scene import ALONE, Stage, draw_panel
+from nullpose.report.figures.scene import draw_panel
+from nullpose.report.figures.stage import ALONE, Stage
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result

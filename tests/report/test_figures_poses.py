@@ -9,7 +9,7 @@ from matplotlib.image import imread
 from nullpose import Pose, load, solve
 from nullpose.errors import UsageError
 from nullpose.report.figures.poses import draw_pose
-from nullpose.report.figures.scene import ALONE, Stage
+from nullpose.report.figures.stage import ALONE, Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure_file
 from nullpose.report.geometry import outline_m
 

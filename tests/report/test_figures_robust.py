@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from nullpose import Scenario, load
 from nullpose.report.figures.poses import draw_robust
-from nullpose.report.figures.scene import draw_set, set_box_m
+from nullpose.report.figures.scene import draw_set
+from nullpose.report.figures.stage import set_box_m
 from nullpose.solver import Result, solve
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "robust.toml"

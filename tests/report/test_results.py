@@ -9,8 +9,9 @@ from rich.console import Console, RenderableType
 
 from nullpose import Result, Scenario, solve
 from nullpose.report.comparison import compare_all, comparison_view
+from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_words
-from nullpose.report.results import binding_nodes, result_view
+from nullpose.report.results import result_view
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:

@@ -8,7 +8,8 @@ from rich.console import Console, RenderableType
 
 from nullpose import Scenario, load, solve
 from nullpose.report.comparison import compare_all, comparison_view
-from nullpose.report.results import binding_nodes, result_view
+from nullpose.report.links import binding_nodes
+from nullpose.report.results import result_view
 from nullpose.report.scenario import scenario_view, summarise
 from nullpose.report.sweep import sweep_view
 from nullpose.scenario import apply_overrides

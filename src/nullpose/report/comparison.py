@@ -12,8 +12,9 @@ from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, beside, document, grouped, head, table
 from nullpose.report.geometry import null_angle_rad
+from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_text
-from nullpose.report.results import binding_nodes, pose_cells, work_words
+from nullpose.report.results import pose_cells, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer, Scenario
 from nullpose.solver import Result, compare

@@ -15,7 +15,7 @@ from nullpose.files import json_text, write_text
 from nullpose.physics import Pose, pose_frames
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
-from nullpose.report.results import binding_nodes
+from nullpose.report.links import binding_nodes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solver import Result

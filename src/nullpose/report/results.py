@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 
 from nullpose.physics import (
     FramePose,
     Pose,
-    antenna_gain,
-    eavesdropper_snr,
-    link_gain,
     pose_frames,
-    received_power_w,
-    to_db,
 )
 from nullpose.report.document import View, beside, cell, document, head, pairs, rows, table
-from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
+from nullpose.report.geometry import azimuth_rad, tilt_rad
+from nullpose.report.links import gain_columns, links_table, nulls_table
 from nullpose.report.numbers import bound_text, bound_words, capitalised, value_words, with_unit
 from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
@@ -26,19 +22,8 @@ from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.study import Evaluation
 from nullpose.study.evaluation import GivenDetails
 
-BINDING_RTOL = 1e-6
-"""Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
-
 _UPRIGHT_RAD = 1e-9  # an axis closer to the vertical than this has no azimuth worth a number
-_NULLED_DB = -150.0  # what is below it is rounding of the angle
 _SHOWN = 40  # rows of a longer list are thinned out on the screen
-
-
-def binding_nodes(result: Result) -> frozenset[str]:
-    """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``."""
-    quantity = result.objective.quantity
-    most = quantity.least(result.links) * (1.0 + BINDING_RTOL)
-    return frozenset(link.node for link in result.links if quantity.at(link) <= most)
 
 
 def work_words(starts: int, boxes: int) -> str:
@@ -73,8 +58,8 @@ def result_view(result: Result) -> View:
     return document(
         _head(result, capitalised(result.label), requirement_words(result), result.note, _agreement(result)),
         pairs("", [*_pose_rows(pose), *antenna, *frame_rows(scenario, pose)]),
-        _links_table(result, _gain_columns(scenario, pose) if array is None else {}),
-        _nulls_table(scenario, pose) if array is None else None,
+        links_table(result, gain_columns(scenario, pose) if array is None else {}),
+        nulls_table(scenario, pose) if array is None else None,
         note if scenario.jammers and result.objective.quantity.is_rate else None,
         sensitivity_view(result),
     )
@@ -216,64 +201,3 @@ def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
         ("quaternion wxyz", f"{_in_brackets(frames.enu.quaternion_wxyz)} in ENU, body FLU"),
         ("", f"{_in_brackets(frames.ned.quaternion_wxyz)} in NED, body FRD"),
     ]
-
-
-def _gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | None]]:
-    """Write the gain of the drone's antenna towards each node, and with the node's antenna if it has one."""
-    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
-    gains = {"antenna gain (dB)": antenna_gain(*at, scenario.antenna_record)}
-    if scenario.node_antennas is not None:
-        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
-        gains["with the ground's (dB)"] = both
-    return {
-        name: [f"{x:z.2f}" for x in scenario.antenna_gain_dbi + to_db(gain)] for name, gain in gains.items()
-    }
-
-
-def _links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> View | None:
-    """Set a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
-    scenario, quantity, links = result.scenario, result.objective.quantity, result.links
-    binding = binding_nodes(result)
-    counted: dict[str, Sequence[str | None]] = {}
-    if quantity.noun != quantity.ratio:
-        numbers = [quantity.in_unit(quantity.at(link)) for link in links]
-        counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
-        counted[f"required {quantity.ratio} (dB)"] = [
-            cell(node.min_sinr_db, ".6g") for node in scenario.nodes
-        ]
-        counted["weight"] = [cell(node.weight, ".6g") for node in scenario.nodes]
-    if quantity.is_rate:
-        counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
-    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.node_positions_m]
-    columns: dict[str, Sequence[str | None]] = {
-        "node": [link.node for link in links],
-        **counted,
-        f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
-        quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],
-        "distance (m)": [f"{distance:.2f}" for distance in distances_m],
-        **more,
-        "": ["worst" if link.node in binding else "" for link in links],
-    }
-    return table("Links", rows(columns), bold=binding, left=[""])
-
-
-def _nulls_table(scenario: Scenario, pose: Pose) -> View | None:
-    """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
-    noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
-    names, orientation = scenario.eavesdropper_names, pose.orientation(scenario.antenna_record)
-    if scenario.eavesdroppers:
-        ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
-    else:
-        noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
-        names, powers_w = scenario.jammer_names, scenario.jammer_powers_w
-        link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
-        antennas = (scenario.antenna_record, scenario.jammer_antennas)
-        ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
-    angles_deg = [math.degrees(null_angle_rad(pose, point_m)) for point_m in points]
-    columns = {
-        noun: names,
-        f"axis to {noun} (deg)": [f"{angle_deg:.4f}" for angle_deg in angles_deg],
-        "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points],
-        heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
-    }
-    return table(f"{noun.capitalize()}s", rows(columns))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import MINUS, rounded_up
-from nullpose.report.results import binding_nodes
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solver import Result, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails

@@ -14,7 +14,8 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from nullpose.physics import Pose
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.scene import SURFACE, Stage, draw_panel
+from nullpose.report.figures.scene import draw_panel
+from nullpose.report.figures.stage import SURFACE, Stage
 from nullpose.report.figures.style import house_style, inches
 
 _PLAN_INCH = 3.4  # width of a plan on a screen

@@ -12,7 +12,8 @@ from matplotlib.ticker import MaxNLocator
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.scene import ALONE, AXIS, DRONE, FORBIDDEN, KINDS, Stage, limits_m, write_name
+from nullpose.report.figures.scene import write_name
+from nullpose.report.figures.stage import ALONE, AXIS, DRONE, FORBIDDEN, KINDS, Stage, limits_m
 from nullpose.report.figures.style import GREY, house_style, inches
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.solver import Result

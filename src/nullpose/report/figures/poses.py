@@ -19,7 +19,8 @@ from nullpose.physics.array import placed_elements
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.panels import draw_panels
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
-from nullpose.report.figures.scene import ALONE, AXIS, DRONE, PAIR, PANELS, SURFACE, Stage, draw_line
+from nullpose.report.figures.scene import draw_line
+from nullpose.report.figures.stage import ALONE, AXIS, DRONE, PAIR, PANELS, SURFACE, Stage
 from nullpose.report.figures.style import INK
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.numbers import MINUS, with_unit

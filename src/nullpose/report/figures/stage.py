@@ -1,0 +1,130 @@
+"""What a figure of a scene has to show, from where it is seen, and how far it reaches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from nullpose.physics import Pose
+from nullpose.physics.types import FloatArray
+from nullpose.report.geometry import outline_m
+from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
+
+# Lengths drawn, as shares of the scene's extent.
+_MARGIN = 0.12  # free ground around the scene
+_FAR = 3.0  # zones that reach farther from the scene's middle are left out
+_LEAST_M = 1.0
+AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
+DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
+FORBIDDEN = "#b36b00"
+KINDS = {
+    "node": ("#0a6f3c", "s", 3.0),
+    "jammer": ("#d40000", "X", 6.0),
+    "eavesdropper": ("#9a4fb0", "D", 6.0),
+}
+"""Colour, marker and drawing order of points."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """How a figure looks: its size, its camera, and lengths as shares of the scene's extent.
+
+    Args:
+        inches: width of each panel, height of the figure.
+        edges: where panels end and begin, as shares of the height.
+        elevation_deg: how high the camera stands.
+        pattern: radius drawn where the gain is largest; a pattern has no size of its own.
+        azimuth_deg: where the camera stands, from x (east) towards y (north).
+        zoom: how much of its place a scene fills.
+        pad_pt: more space between numbers and names of the level axes, points.
+    """
+
+    inches: tuple[float, float]
+    edges: tuple[float, float]
+    elevation_deg: float
+    pattern: float
+    azimuth_deg: float = -32.0
+    zoom: float = 1.12
+    pad_pt: float = 0.0
+
+    @property
+    def camera(self) -> FloatArray:
+        """Direction towards the camera, shape ``(3,)``."""
+        elevation, azimuth = math.radians(self.elevation_deg), math.radians(self.azimuth_deg)
+        flat = math.cos(elevation)
+        return np.array([flat * math.cos(azimuth), flat * math.sin(azimuth), math.sin(elevation)])
+
+
+PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), elevation_deg=20.0, pattern=0.15)
+PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11, zoom=1.02)
+ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), elevation_deg=38.0, pattern=0.11)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """What a figure has to show, and how.
+
+    Args:
+        scenario: the scene.
+        poses: one for each panel; all show the same space.
+        view: size, camera and lengths.
+        uncertain: whether sets are drawn that jammers and eavesdroppers may be anywhere in.
+    """
+
+    scenario: Scenario
+    poses: tuple[Pose, ...]
+    view: View
+    uncertain: bool = False
+
+    @property
+    def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
+        """All points with their kinds, those that a null is for before the nodes."""
+        scene = self.scenario
+        kinds: dict[str, Sequence[Node | Jammer | Eavesdropper]]
+        kinds = {"jammer": scene.jammers, "eavesdropper": scene.eavesdroppers, "node": scene.nodes}
+        return [(kind, point) for kind, points in kinds.items() for point in points]
+
+    @property
+    def places_m(self) -> FloatArray:
+        """All points and positions, (n, 3), metres."""
+        points_m = [point.position_m for _, point in self.points]
+        return np.array([*points_m, *(pose.position_m for pose in self.poses)])
+
+    @property
+    def extent_m(self) -> float:
+        """How wide the scene is, of which all drawn lengths are shares, metres."""
+        return max(_LEAST_M, float(np.max(np.ptp(self.places_m[:, :2], axis=0))))
+
+    @property
+    def zones(self) -> list[tuple[NoFlyZone | None, FloatArray]]:
+        """The fence (None) and the no-fly zones with their corners, those left out that reach far away."""
+        airspace, places_m = self.scenario.airspace, self.places_m[:, :2]
+        middle_m, far_m = 0.5 * (places_m.min(axis=0) + places_m.max(axis=0)), _FAR * self.extent_m
+        outlines: list[tuple[NoFlyZone | None, FloatArray]]
+        outlines = [(zone, outline_m(zone)) for zone in airspace.no_fly]
+        if airspace.geofence_m is not None:
+            outlines.append((None, airspace.geofence_outline_m))
+        return [outline for outline in outlines if np.all(np.abs(outline[1] - middle_m) <= far_m)]
+
+
+def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
+    """Compute the low and the high corner of the space drawn, each (3,), metres."""
+    extent_m, points = stage.extent_m, stage.places_m
+    hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
+    points = np.vstack([points, *map(set_box_m, hidden)])
+    positions = np.array([pose.position_m[:2] for pose in stage.poses])
+    around = ((points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern))  # the latter for the pattern
+    flat = [middle + side * reach * extent_m for middle, reach in around for side in (-1.0, 1.0)]
+    flat += [corners_m for _, corners_m in stage.zones]
+    low, high = np.vstack(flat).min(axis=0), np.vstack(flat).max(axis=0)
+    top_m = max(pose.position_m[2] for pose in stage.poses) + 1.3 * stage.view.pattern * extent_m
+    return np.append(low, min(0.0, points[:, 2].min())), np.append(high, top_m)
+
+
+def set_box_m(point: Jammer | Eavesdropper) -> FloatArray:
+    """Compute the corners of the box around the set that a point may be anywhere in, ``(2, 3)``, metres."""
+    half_m = np.linalg.norm(point.uncertainty_matrix_m, axis=1)
+    return np.asarray(np.asarray(point.position_m) + np.stack([-half_m, half_m]))

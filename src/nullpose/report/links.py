@@ -1,0 +1,85 @@
+"""Tables of a result's links: with the nodes, and with jammers or eavesdroppers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, link_gain, received_power_w, to_db
+from nullpose.report.document import View, cell, rows, table
+from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.scenario import Scenario
+from nullpose.solver import Result
+
+BINDING_RTOL = 1e-6
+"""Nodes whose number is within this of the smallest all bind, as they do on a kink of the max-min."""
+
+_NULLED_DB = -150.0  # what is below it is rounding of the angle
+
+
+def binding_nodes(result: Result) -> frozenset[str]:
+    """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``."""
+    quantity = result.objective.quantity
+    most = quantity.least(result.links) * (1.0 + BINDING_RTOL)
+    return frozenset(link.node for link in result.links if quantity.at(link) <= most)
+
+
+def gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | None]]:
+    """Write the gain of the drone's antenna towards each node, and with the node's antenna if it has one."""
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
+    gains = {"antenna gain (dB)": antenna_gain(*at, scenario.antenna_record)}
+    if scenario.node_antennas is not None:
+        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
+        gains["with the ground's (dB)"] = both
+    return {
+        name: [f"{x:z.2f}" for x in scenario.antenna_gain_dbi + to_db(gain)] for name, gain in gains.items()
+    }
+
+
+def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> View | None:
+    """Set a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
+    scenario, quantity, links = result.scenario, result.objective.quantity, result.links
+    binding = binding_nodes(result)
+    counted: dict[str, Sequence[str | None]] = {}
+    if quantity.noun != quantity.ratio:
+        numbers = [quantity.in_unit(quantity.at(link)) for link in links]
+        counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
+        counted[f"required {quantity.ratio} (dB)"] = [
+            cell(node.min_sinr_db, ".6g") for node in scenario.nodes
+        ]
+        counted["weight"] = [cell(node.weight, ".6g") for node in scenario.nodes]
+    if quantity.is_rate:
+        counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
+    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.node_positions_m]
+    columns: dict[str, Sequence[str | None]] = {
+        "node": [link.node for link in links],
+        **counted,
+        f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
+        quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],
+        "distance (m)": [f"{distance:.2f}" for distance in distances_m],
+        **more,
+        "": ["worst" if link.node in binding else "" for link in links],
+    }
+    return table("Links", rows(columns), bold=binding, left=[""])
+
+
+def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
+    """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
+    noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
+    names, orientation = scenario.eavesdropper_names, pose.orientation(scenario.antenna_record)
+    if scenario.eavesdroppers:
+        ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
+    else:
+        noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
+        names, powers_w = scenario.jammer_names, scenario.jammer_powers_w
+        link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
+        antennas = (scenario.antenna_record, scenario.jammer_antennas)
+        ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
+    angles_deg = [math.degrees(null_angle_rad(pose, point_m)) for point_m in points]
+    columns = {
+        noun: names,
+        f"axis to {noun} (deg)": [f"{angle_deg:.4f}" for angle_deg in angles_deg],
+        "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points],
+        heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
+    }
+    return table(f"{noun.capitalize()}s", rows(columns))
