@@ -4,8 +4,7 @@ from nullpose.study.antenna_comparison import compare_antennas
 from nullpose.study.case import AIRFRAME_CASES, Case, cases_of
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
-from nullpose.study.spacing import spaced
-from nullpose.study.sweep import SweepPlan, plan_sweep, sweep
+from nullpose.study.sweep import SweepPlan, plan_sweep, spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import Field, value_map
 from nullpose.study.vehicles import compare_airframes, difference, least_sufficient, share, suffices

@@ -47,7 +47,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
         freer: results of one scheme at points where every pose is as good or better.
         options: with the gap that is asked for.
     """
-    began, asked = time.perf_counter(), options.of(scenario)
+    began, solve_options = time.perf_counter(), options.of(scenario)
     bounds = [(result.objective.upper_bound, result) for result in freer]
     proved = [(bound, result) for bound, result in bounds if bound is not None]
     if not proved:
@@ -61,7 +61,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     value = quantity.least(links)
     ratio_bound = 2.0**bound if quantity.is_rate else bound
     objective = objective_of(scenario, value, ratio_bound, Rigour.FLOATING_POINT)
-    status, _ = status_of(objective, asked.target, "not solved by itself")
+    status, _ = status_of(objective, solve_options.target, "not solved by itself")
     if status is not Status.CERTIFIED:
         return None
     return replace(

@@ -52,8 +52,8 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
         earthly = "x_m" not in header and ("lat_deg" in header or "lon_deg" in header)
         columns = (*(("lat_deg", "lon_deg", altitude) if earthly else _LOCAL), *_ANGLES)
         absent = [name for name in columns[:-1] if name not in header]
-        told = "there is no column {}, must be " + listed(columns)
-        faults = [Fault("line 1", told.format(name)) for name in absent]
+        message = "there is no column {}, must be " + listed(columns)
+        faults = [Fault("line 1", message.format(name)) for name in absent]
         if earthly and origin is None:
             faults.append(Fault("line 1", _NO_ORIGIN))
         numbers = [] if faults else [_numbers(row, rows.line_num, columns, faults, origin) for row in rows]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,14 +10,17 @@ from itertools import product
 from types import MappingProxyType
 from typing import Unpack
 
+import numpy as np
+
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.solver import Result, SolveKeywords, SolveOptions, solve
 from nullpose.study.case import Case
 from nullpose.study.neighbours import freedom, from_freer
-from nullpose.study.spacing import spaced
 from nullpose.study.table import ResultRow, ResultTable
+
+_DIGITS = 12  # significant digits kept, so that a decade lands on 0.01 and not on 0.009999999999999998
 
 
 def sweep(
@@ -115,7 +119,7 @@ def _scenarios_along(
 
 
 def _not_applicable_along(scenarios: Sequence[tuple[float, Scenario]], scheme: Scheme) -> str:
-    """Return why a scheme has no meaning at some value, and at which; empty if it has at all of them."""
+    """Give the reason for which a scheme has no meaning at a value; empty if it has at all of them."""
     reasons = {value: reason for value, varied in scenarios if (reason := scheme.not_applicable(varied))}
     value, reason = next(iter(reasons.items()), (0.0, ""))
     return reason if len(reasons) in (0, len(scenarios)) else f"{reason} (at {value:g})"
@@ -127,6 +131,37 @@ def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
     others = len(found) - 1
     more = f" and {others} other value{'s' * (others > 1)}" if others else ""
     return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
+
+
+def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tuple[float, ...]:
+    """Return evenly spaced values, both ends included.
+
+    Evenly in the value, or in its logarithm (a constant ratio from one to the next).
+
+    Args:
+        start: the first value, finite; positive if ``log``.
+        stop: the last value, finite and other than ``start``; positive if ``log``.
+        points: how many, at least 2.
+        log: space the logarithms evenly.
+
+    Raises:
+        UsageError: any of these does not hold; the message lists all that do not.
+    """
+    needed = "a finite number above 0" if log else "a finite number"
+    faults = [
+        f"{name}: {value:g} given; {'a logarithmic' if log else 'a'} sweep needs {needed}"
+        for name, value in (("from", start), ("to", stop))
+        if not math.isfinite(value) or (log and value <= 0.0)
+    ]
+    if start == stop:
+        faults.append(f"to: {stop:g} given, the same as from; a sweep needs two different ends")
+    if points < 2:
+        faults.append(f"points: {points} given; a sweep needs at least 2")
+    if faults:
+        count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
+        raise UsageError("\n  ".join([f"range of the sweep: {count}", *faults]))
+    values = (np.geomspace if log else np.linspace)(start, stop, points)
+    return (start, *(float(f"{value:.{_DIGITS}g}") for value in values[1:-1]), stop)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +183,7 @@ class SweepPlan:
     options: SolveKeywords
 
     def run(self, on_progress: Callable[[int, int], None] | None = None) -> ResultTable:
-        """Return what the sweep finds.
+        """Run the sweep.
 
         Args:
             on_progress: called after each solve with how many are done and how many there are.

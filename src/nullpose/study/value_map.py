@@ -135,7 +135,7 @@ def value_map(
     cells: int = CELLS,
     go_on: Callable[[], None] = lambda: None,
 ) -> Field:
-    """Return what each position of a plane gives with the best axis of a result's case there.
+    """Map the value at each position of a plane with the best axis of a result's case there.
 
     The points of the grid are evenly apart, and the drone is at one of them: where the plane is at its
     altitude, the map has the result's value there. Of a case that fixes the axis that axis is taken; with
@@ -197,8 +197,8 @@ def require_map(scenario: Scenario, altitude_m: float | None, cells: int) -> Non
     """
     low, high = scenario.airspace.altitude_m
     if altitude_m is not None and not low <= altitude_m <= high:
-        told = f"given {altitude_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m"
-        raise UsageError(f"altitude: {told}")
+        words = f"given {altitude_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m"
+        raise UsageError(f"altitude: {words}")
     if not 2 <= cells <= _MOST_CELLS:
         raise UsageError(f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side")
     if scenario.array is not None:
@@ -245,9 +245,9 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
         return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
     fields = scheme.record.fields(scenario, result.null_jammer)
-    given = [field for field in (fields or {}).values() if not field.is_free]
-    if given:
-        each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in given]
+    fixed = [field for field in (fields or {}).values() if not field.is_free]
+    if fixed:
+        each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in fixed]
         return np.asarray(np.max(each, axis=0))
     is_rate = result.objective.quantity.is_rate
     if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate:
@@ -270,7 +270,7 @@ def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[],
 
 
 def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> FloatArray:
-    """Return how well the nodes are served, the jammers ignored."""
+    """Compute the smallest received power over its requirement, the jammers ignored."""
     nodes = scenario.node_positions_m
     loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
     gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
@@ -294,6 +294,6 @@ def _ranked_axes(
     chosen = np.empty_like(positions_m)
     for start in range(0, len(positions_m), _CHUNK):
         go_on()
-        some = slice(start, start + _CHUNK)
-        chosen[some] = axes[np.argmax(rank(scenario, positions_m[some, None, :], axes), axis=1)]
+        chunk = slice(start, start + _CHUNK)
+        chosen[chunk] = axes[np.argmax(rank(scenario, positions_m[chunk, None, :], axes), axis=1)]
     return chosen

@@ -51,15 +51,17 @@ def compare_airframes(
         >>> nullpose.study.least_sufficient(found).name
         'tilt-10'
     """
-    asked = SolveOptions(**options).of(scenario)
-    options["gap"] = asked.target
+    solve_options = SolveOptions(**options).of(scenario)
+    options["gap"] = solve_options.target
     rows: list[ResultRow] = []
     left_out: dict[str, str] = {}
     vehicles = cases_of(scenario) if cases is None else cases
     for done, case in enumerate(vehicles, start=1):
         is_interrupted = any(row.interrupted for row in rows)
         try:
-            result = solve(case.on(scenario), **options | {"certify": asked.certify and not is_interrupted})
+            result = solve(
+                case.on(scenario), **options | {"certify": solve_options.certify and not is_interrupted}
+            )
         except SolveError as error:
             if case.name == OMNIDIRECTIONAL:
                 raise
@@ -71,7 +73,7 @@ def compare_airframes(
             rows.append(ResultRow.of(math.nan, result, case, kept))
         if on_progress is not None:
             on_progress(done, len(vehicles))
-    settings = MappingProxyType(provenance(asked.seed) | asked.settings)
+    settings = MappingProxyType(provenance(solve_options.seed) | solve_options.settings)
     return ResultTable("", tuple(rows), MappingProxyType(left_out), scenario, settings)
 
 

@@ -198,7 +198,7 @@ class StudyCase(Section):
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the fault that something is asked of a proof where there is none."""
         if self.mount_scenes is not None and self.airframe is None:
             yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'

@@ -66,13 +66,13 @@ class Distribution(Section):
             generator: where chance comes from.
             count: how many.
         """
-        ((kind, given),) = self.to_dict().items()
+        ((kind, numbers),) = self.to_dict().items()
         if kind == "fixed":
-            return np.full(count, given)
+            return np.full(count, numbers)
         if kind == "normal":
-            mean, deviation = given
+            mean, deviation = numbers
             return np.asarray(mean + deviation * generator.standard_normal(count))
-        return _OF_SHARES[kind](generator.random(count), np.array(given))
+        return _OF_SHARES[kind](generator.random(count), np.array(numbers))
 
 
 def _log_uniform(shares: FloatArray, ends: FloatArray) -> FloatArray:
@@ -110,14 +110,16 @@ class Drawn(Rule):
 
     def judge(self, value: Distribution) -> Distribution:
         """Returns the distribution, or raises the fault that it draws what is not allowed."""
-        ((key, given),) = value.to_dict().items()
-        message = self._normal_fault(given[1]) if key == "normal" else self._fault(key, np.atleast_1d(given))
+        ((key, numbers),) = value.to_dict().items()
+        message = (
+            self._normal_fault(numbers[1]) if key == "normal" else self._fault(key, np.atleast_1d(numbers))
+        )
         if message:
             raise collected("", [((key,), message)])
         return value
 
     def _fault(self, key: str, numbers: FloatArray) -> str:
-        """Return what is wrong with the numbers between which all that are drawn lie; empty if nothing is."""
+        """Describe the fault of the numbers that bound all drawn ones; empty without a fault."""
         wrong = [each for each in numbers.tolist() if not self.quantity.low <= each <= self.quantity.high]
         if key in ("uniform", "log_uniform") and not numbers[0] < numbers[1]:
             return f"got {numbers.tolist()}, must be two numbers, the lower first"

@@ -75,7 +75,7 @@ def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
 
 
 def quantity_of(spec: StudySpec) -> Quantity:
-    """Return what a study makes as large as it can be: the margin, if the nodes of any scene have one.
+    """Choose the quantity that a study maximises: the margin, if the nodes of any scene have one.
 
     Args:
         spec: the study.
@@ -84,7 +84,7 @@ def quantity_of(spec: StudySpec) -> Quantity:
     for index in range(min(spec.n_scenes, max(spec.scene.size, _TRIED))):
         with suppress(ScenarioError):  # a scene that cannot be drawn has rows that say so
             found.add(Quantity.of(draws.at(index, 0)))
-    quantities = [one for record in RECORDS.values() for one in record.quantities]
+    quantities = [quantity for record in RECORDS.values() for quantity in record.quantities]
     return max(found or quantities[:1], key=quantities.index)
 
 
@@ -130,7 +130,7 @@ class Draws:
 
 
 def _of_point(spec: StudySpec, values: Mapping[str, float]) -> _Swept:
-    """Return what is drawn at a combination of swept values, and what is set in the scene after that.
+    """Split a combination of swept values into the keys of drawn points and settings of the scene.
 
     A path may mean a key of what draws, as in ``nodes.count``, or one of a scene.
     """

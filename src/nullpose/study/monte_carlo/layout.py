@@ -50,7 +50,7 @@ class _CountRange(Ascending):
 
 
 def _drawn(kind: Any) -> Drawn:
-    """Return what reads a quantity that is fixed or drawn, given the type of one that is fixed."""
+    """Make the reader of a quantity that is fixed or drawn from the type of a fixed one."""
     return Drawn(next(each for each in kind.__metadata__ if isinstance(each, Quantity)))
 
 
@@ -161,20 +161,20 @@ class Points(Section):
         examples=["M"],
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between the layout and the keys that place its points."""
         if self.layout is None:
             return
         may = {*_NEEDED[self.layout]}
-        given = [key for key in _PLACING if getattr(self, key) is not None]
+        present = [key for key in _PLACING if getattr(self, key) is not None]
         for key in _NEEDED[self.layout]:
-            if key not in given:
+            if key not in present:
                 meant = (type(self).model_fields[key].description or "").rstrip(".")
                 yield (key,), f'missing; layout "{self.layout}" needs it: {meant}'
         if self.layout in _IN_A_REGION:
             may |= {*_REGIONS[0], *_REGIONS[1]}
-            yield from (((), message) for message in Ways(_REGIONS).faults(given))
-        for key in given:
+            yield from (((), message) for message in Ways(_REGIONS).faults(present))
+        for key in present:
             if key not in may:
                 yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
 
@@ -188,16 +188,16 @@ class Points(Section):
             replaced: the scene's points, in whose place these are drawn; there may be none.
         """
         keys = [key for key in type(self).model_fields if key not in ("layout", "name", *_PLACING)]
-        stated = {key: [getattr(self, key)] for key in keys if getattr(self, key) is not None}
-        others = {other for key in stated for ways in self.ways for other in ways.others(key)}
-        dropped = {*_PLACE, *others, *(detail for key in stated for detail in _DETAILS.get(key, ()))}
+        drawn = {key: [getattr(self, key)] for key in keys if getattr(self, key) is not None}
+        others = {other for key in drawn for ways in self.ways for other in ways.others(key)}
+        dropped = {*_PLACE, *others, *(detail for key in drawn for detail in _DETAILS.get(key, ()))}
         kept = {"height_m": [point.position_m[2] for point in replaced] or [0.0]} | {
             key: [getattr(point, key) for point in replaced]
             for key in (type(replaced[0]).model_fields if replaced else ())
         }
         return {
             key: list(dict.fromkeys(values)) for key, values in kept.items() if key not in dropped
-        } | stated
+        } | drawn
 
     @property
     def may_be_several(self) -> bool:

@@ -73,7 +73,7 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
         try:
             held.append(load(inside(folder, name, allow_outside), allow_outside=allow_outside).to_dict())
         except ScenarioError as error:
-            # Whatever else is faulty is told too; a stand-in keeps that free of what only follows.
+            # Other faults are reported too; a stand-in keeps that free of what only follows.
             held.append(_STAND_IN)
             paths = [f"{name}: {fault.path}" if fault.path else name for fault in error.faults]
             faults += map(Fault, paths, [fault.message for fault in error.faults])
@@ -114,18 +114,18 @@ def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> tuple[F
 
 def _sweep_faults(draws: Draws, spec: StudySpec, index: int) -> list[Fault]:
     """Return the faults that the values of each path lead to, each once."""
-    told: dict[tuple[str, str], Fault] = {}
+    faults_by_path: dict[tuple[str, str], Fault] = {}
     for path, values in spec.sweep:
         step = max(1, len(values) // _TRIED_VALUES)
         for value in dict.fromkeys((*values[::step], values[-1])):
             for fault in _faults_at(draws, index, {path: value}):
                 message = f"{fault.message} (at {value:g})"
-                told.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
-    return list(told.values())
+                faults_by_path.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
+    return list(faults_by_path.values())
 
 
 def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
-    """Return why cases have no meaning in some scenes."""
+    """List the reasons for which cases have no meaning in scenes."""
     found = {
         place: list(filter(None, (_meaningless(case, scene) for scene in scenes)))
         for place, case in enumerate(spec.cases)
@@ -134,7 +134,7 @@ def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
 
 
 def _meaningless(case: StudyCase, scene: Scenario) -> str:
-    """Return why a case has no meaning in a scene; empty if it has."""
+    """Give the reason for which a case has no meaning in a scene; empty if it has."""
     try:
         vehicle = case.on(scene)
         if case.robust and not vehicle.is_uncertain:

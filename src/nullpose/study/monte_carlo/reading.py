@@ -156,7 +156,7 @@ class StudyStatus:
 
 
 def study_status(out: str | os.PathLike[str]) -> StudyStatus:
-    """Return how far the study in a folder is.
+    """Count the scenes and rows of the study in a folder.
 
     Args:
         out: the folder.

@@ -111,7 +111,7 @@ def read_counts(path: Path) -> tuple[int, int, float]:
 
     try:
         footer = pq.read_metadata(path)
-        stated = footer.metadata or {}
-        return footer.num_rows, int(stated[b"failed"]), float(stated[b"seconds"])
+        counts = footer.metadata or {}
+        return footer.num_rows, int(counts[b"failed"]), float(counts[b"seconds"])
     except (OSError, KeyError, pa.ArrowException) as error:
         raise ValueError(str(error)) from None

@@ -86,15 +86,15 @@ class SceneBase(Section):
         """Returns the raw table with the positions of points that are stated by latitude and longitude."""
         return located(data)
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns what is missing, or stated twice."""
-        own = [key for key in _TABLES if stated.get(key)]
+        tables = [key for key in _TABLES if raw.get(key)]
         if self.file or self.files or self.scenarios:
             message = "given together with a file, which states it; remove one, or state it in the file"
-            yield from (((key,), message) for key in own)
+            yield from (((key,), message) for key in tables)
             return
         for key in ("airspace", "receiver"):
-            if key not in own:
+            if key not in tables:
                 yield (key,), f"missing; add a table headed [scene.{key}], or name a scenario file (file)"
 
     @property
@@ -103,7 +103,7 @@ class SceneBase(Section):
         return max(1, len(self.scenarios))
 
     def whole(self, index: int) -> Scenario | SceneBase:
-        """Return what states a scene: one of the files, or this table.
+        """Choose the source of a scene: one of the files, or this table.
 
         Args:
             index: the scene.
@@ -111,7 +111,7 @@ class SceneBase(Section):
         return self.scenarios[index % self.size] if self.scenarios else self
 
     def kept(self, index: int, drawn: Collection[str]) -> dict[str, Any]:
-        """Return what a scene keeps when points are drawn, validated already, as the values of a scenario.
+        """Collect the values that a scene keeps when points are drawn, validated already.
 
         Points that stay are stated in metres alone: all points of a scenario are stated in one way.
 

@@ -36,7 +36,7 @@ _PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
 
 
 def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: StudyCase) -> Row:
-    """Return what a case gives in a scene; a failure is a row with a reason.
+    """Solve a case in a scene; a failure is a row with a reason.
 
     Args:
         spec: the study.
@@ -50,12 +50,12 @@ def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: S
     """
     began = time.perf_counter()
     try:
-        known = _solved(case, case.on(scene), _options_of(spec, case))
+        columns = _solved(case, case.on(scene), _options_of(spec, case))
     except Exception as error:  # whatever goes wrong in one scene is no reason to lose the others
-        known = {"status": FAILED, "reason": reason_of(error)}
-    if known["reason"] == INTERRUPT:
+        columns = {"status": FAILED, "reason": reason_of(error)}
+    if columns["reason"] == INTERRUPT:
         raise KeyboardInterrupt
-    return row_of(index, point, case.name, seconds=time.perf_counter() - began, **known)
+    return row_of(index, point, case.name, seconds=time.perf_counter() - began, **columns)
 
 
 def reason_of(error: Exception) -> str:
@@ -69,7 +69,7 @@ def reason_of(error: Exception) -> str:
 
 
 def _options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
-    """Return what a solve of a case is asked for.
+    """Collect the options of a solve of a case.
 
     Args:
         spec: the study.
@@ -153,36 +153,36 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
     rows = (
         row
         for cases in alike.values()
-        for own, some in vehicles.items()
-        for row in _rows(spec, cases, own, some)
+        for airframe, scenes_alike in vehicles.items()
+        for row in _rows(spec, cases, airframe, scenes_alike)
     )
     return {(row["scene"], row["point"], row["case"]): row for row in rows}
 
 
 def _rows(
-    spec: StudySpec, cases: Sequence[StudyCase], own: Airframe | None, scenes: Mapping[At, Scenario]
+    spec: StudySpec, cases: Sequence[StudyCase], airframe: Airframe | None, scenes: Mapping[At, Scenario]
 ) -> Iterator[Row]:
     """Yield the rows of cases with the same target and limits in scenes with the same vehicle."""
     began, places = time.perf_counter(), list(scenes.items())
     try:
         many = solve_many(
             list(scenes.values()),
-            airframes=[case.airframe or own for case in cases],
+            airframes=[case.airframe or airframe for case in cases],
             **_options_of(spec, cases[0]),
         )
     except Exception:  # one of them is at fault: the others are not lost, nor solved in another way
         middle = len(places) // 2
-        for some in (places[:middle], places[middle:]) if middle else ():
-            yield from _rows(spec, cases, own, dict(some))
+        for half in (places[:middle], places[middle:]) if middle else ():
+            yield from _rows(spec, cases, airframe, dict(half))
         return
     seconds = (time.perf_counter() - began) / (len(scenes) * len(cases))
     for number, (at, scene) in enumerate(places):
         for column, case in enumerate(cases):
-            columns = _known(many, (number, column), scene, case.airframe or own)
+            columns = _columns_of(many, (number, column), scene, case.airframe or airframe)
             yield row_of(*at, case.name, seconds=seconds, **columns)
 
 
-def _known(
+def _columns_of(
     many: ManySolutions, at: tuple[int, int], scene: Scenario, airframe: Airframe | None
 ) -> dict[str, Any]:
     status, reason = many.status[at], str(many.reason[at])

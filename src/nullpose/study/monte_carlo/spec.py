@@ -98,7 +98,7 @@ class StudySpec(Section):
         examples=[{"jammers.M.power_w": [0.1, 1.0, 10.0]}],
     )
 
-    def faults(self, stated: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Returns the faults between the parts of the spec, those that are None being at fault."""
         if self.scenes is None and self.scene is not None and not self.scene.files:
             yield ("scenes",), "missing; it must be given: how many scenes"
@@ -152,8 +152,8 @@ class StudySpec(Section):
     @property
     def drawn(self) -> dict[str, Points]:
         """What is drawn, by kind, in the order in which it is drawn."""
-        given = ((kind, getattr(self, kind)) for kind in POINT_LISTS)
-        return {kind: points for kind, points in given if points is not None}
+        points_by_kind = ((kind, getattr(self, kind)) for kind in POINT_LISTS)
+        return {kind: points for kind, points in points_by_kind if points is not None}
 
     @cached_property
     def digest(self) -> str:

@@ -12,7 +12,7 @@ from nullpose.errors import UsageError
 from nullpose.scenario.faults import Place, collected, path_of, rejection
 from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.wording import described, listed, plain, unknown
-from nullpose.study.spacing import spaced
+from nullpose.study.sweep import spaced
 
 MOST_POINTS = 1_000_000  # combinations of swept values
 
@@ -35,9 +35,9 @@ class _Axes(Rule):
             raise rejection(f"got {described(value)}, must be a table headed [sweep]")
         axes: list[Axis] = []
         faults: list[tuple[Place, str]] = []
-        for path, given in _paths(value):
+        for path, raw in _paths(value):
             try:
-                axes.append((path, _values(plain(given))))
+                axes.append((path, _values(plain(raw))))
             except (PydanticCustomError, UsageError) as error:
                 faults.append(((path,), str(error).replace("\n  ", "; ")))
         if faults:
@@ -52,31 +52,31 @@ SweepAxes = Annotated[tuple[Axis, ...], _Axes()]  # paths, each with the values 
 
 
 def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str, object]]:
-    """Yield each path with what is given for it; one without quotes has come as tables within tables."""
-    for key, given in table.items():
-        if isinstance(given, Mapping) and given and not set(given) & set(_KEYS) and len(at) < _DEEPEST:
-            yield from _paths(given, (*at, str(key)))
+    """Yield each path with its values; one without quotes has come as tables within tables."""
+    for key, raw in table.items():
+        if isinstance(raw, Mapping) and raw and not set(raw) & set(_KEYS) and len(at) < _DEEPEST:
+            yield from _paths(raw, (*at, str(key)))
         else:
-            yield (path_of((*at, str(key))) if at else str(key)), given
+            yield (path_of((*at, str(key))) if at else str(key)), raw
 
 
-def _values(given: object) -> tuple[float, ...]:
+def _values(raw: object) -> tuple[float, ...]:
     """Return the values that a list or a table of from, to, points and spacing states."""
-    if isinstance(given, list | tuple) and len(given) > 0:
-        values = tuple(_VALUE.read(value) for value in given)
+    if isinstance(raw, list | tuple) and len(raw) > 0:
+        values = tuple(_VALUE.read(value) for value in raw)
         if len(set(values)) < len(values):
             raise rejection("a value is given twice; keep one")
         return values
-    if not isinstance(given, Mapping):
+    if not isinstance(raw, Mapping):
         raise rejection(
-            f"got {described(given)}, must be a list of numbers or a table such as "
+            f"got {described(raw)}, must be a list of numbers or a table such as "
             '{ from = 0.1, to = 100, points = 4, spacing = "log" }'
         )
-    for key in given:
+    for key in raw:
         if key not in _KEYS:
             raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
-    missing = [key for key in ("from", "to", "points") if key not in given]
+    missing = [key for key in ("from", "to", "points") if key not in raw]
     if missing:
         raise rejection(f"{listed(missing)} missing; a table here has from, to, points and perhaps spacing")
-    start, stop, points, spacing = (rule.read(given.get(key, "linear")) for key, rule in _KEYS.items())
+    start, stop, points, spacing = (rule.read(raw.get(key, "linear")) for key, rule in _KEYS.items())
     return spaced(start, stop, points, log=spacing == "log")
