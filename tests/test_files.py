@@ -155,7 +155,7 @@ def test_reading_is_bounded(tmp_path: Path) -> None:
     ],
 )
 def test_json_is_read_in_bounds(text: str, place: str, words: str) -> None:
-    """What says a thing twice, or would take too much memory, is refused with its place."""
+    """What says a thing twice, or is nested without end, is refused."""
     with pytest.raises(ScenarioError) as caught:
         parse_json(text)
     (fault,) = caught.value.faults

@@ -93,8 +93,6 @@ def test_scalars_lists_and_places_in_lists() -> None:
     [
         ("receiver.noise_dbm=-90", "noise_dbm", "noise_w"),
         ("receiver.frequency_hz=1e9", "frequency_hz", "reference_gain_db"),
-        ("receiver.noise_w=2", "noise_w", "noise_dbm"),
-        ("receiver.reference_gain_db=2", "reference_gain_db", "frequency_hz"),
     ],
 )
 def test_setting_one_of_a_pair_drops_the_other(override: str, kept: str, dropped: str) -> None:
@@ -161,21 +159,12 @@ def test_names_that_need_quotes() -> None:
     [
         ("jammer.M.power_w", "did you mean jammers.M.power_w?"),
         ("power_w", "must be one of name, objective"),
-        ("airspce.altitude_m", "did you mean airspace.altitude_m?"),
         ("jammers.N.power_w", "got N, must be one of [0], M; did you mean jammers.M.power_w?"),
         ("jammers[1].power_w", "got [1], must be one of [0], M"),
-        ("nodes.S3.power_w", "must be one of [0], [1], S1, S2"),
-        (
-            "nodes.S1.power",
-            "did you mean nodes.S1.power_w?",
-        ),
         ("airspace.keepout", "did you mean airspace.keep_out_m?"),
         ("receiver[0]", "must be one of noise_w"),
         ("airspace.altitude_m[2]", "got [2], must be one of [0], [1]"),
-        ("airspace.altitude_m.low", "got low, must be one of [0], [1]"),
         ("airspace.altitude_m[0][0]", "it has no members, so set it whole"),
-        ("airspace.x_m[0]", "it has no members, so set it whole"),
-        ("receiver.noise_w[0]", "it has no members, so set it whole"),
         ("name.first", "it has no members, so set it whole"),
         ("jammers..power_w", "this is not a path"),
         ("nodes[-1].power_w", "this is not a path"),

@@ -44,19 +44,11 @@ def test_an_ellipsoid_turns_as_a_body_does(
     [
         ({"uncertainty_m": -1.0}, "uncertainty_m", "got -1.0, must be a radius in m"),
         ({"uncertainty_m": float("nan")}, "uncertainty_m", "got NaN"),
-        ({"uncertainty_m": float("inf")}, "uncertainty_m", "got infinity"),
         ({"uncertainty_m": "3"}, "uncertainty_m", "a radius in m (or a list of three semi-axes"),
-        ({"uncertainty_m": True}, "uncertainty_m", "got the truth value true"),
-        ({"uncertainty_m": {}}, "uncertainty_m", "got a table"),
         ({"uncertainty_m": []}, "uncertainty_m", "got an empty list, must be a list of three semi-axes"),
         ({"uncertainty_m": [1.0, 2.0]}, "uncertainty_m", "got a list of 2 values"),
         ({"uncertainty_m": [1.0, -2.0, 3.0]}, "uncertainty_m[1]", "got -2.0"),
         ({"uncertainty_attitude_deg": [0, 0, 0]}, "uncertainty_attitude_deg", "without three semi-axes"),
-        (
-            {"uncertainty_m": 3.0, "uncertainty_attitude_deg": [0, 0, 0]},
-            "uncertainty_attitude_deg",
-            "write uncertainty_m = [a, b, c]",
-        ),
         (
             {"uncertainty_m": [1, 2, 3], "uncertainty_attitude_deg": [0, 400, 0]},
             "uncertainty_attitude_deg[1]",
